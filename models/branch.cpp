@@ -16,16 +16,18 @@ struct Standing {
 };
 Standing standing(const Model& model, const Branch& branch) {
     Standing stands;
-    for (const auto& joint : model.joints) stands.joints.push_back(!joint.only_where_driven);
-    for (const auto& elastic : model.elastics) stands.elastics.push_back(!elastic.only_where_driven);
+    for (const auto& joint : model.joints) stands.joints.push_back(!joint.active_only_where_driven);
+    for (const auto& elastic : model.elastics)
+        stands.elastics.push_back(!elastic.active_only_where_driven);
     const auto element = [&](int k) { stands.elastics[static_cast<std::size_t>(k)] = true; };
     for (const auto& driver : branch.drivers)
-        std::visit(
-            overloaded{[](const Load&) {},
-                       [&](const Motion& m) { stands.joints[static_cast<std::size_t>(m.joint)] = true; },
-                       [&](const FreeLength& f) { element(f.elastic); },
-                       [&](const Preload& p) { element(p.elastic); }},
-            driver.what);
+        std::visit(overloaded{[](const Load&) {},
+                              [&](const Motion& m) {
+                                  stands.joints[static_cast<std::size_t>(m.joint)] = true;
+                              },
+                              [&](const FreeLength& f) { element(f.elastic); },
+                              [&](const Preload& p) { element(p.elastic); }},
+                   driver.what);
     return stands;
 }
 
@@ -56,8 +58,8 @@ std::vector<Branch> ways(const Branch& branch) {
     Branch back = branch, forth = branch;
     back.from = forth.from = 0;
     back.to = branch.from;
-    back.steps =
-        std::clamp(static_cast<int>(std::lround(branch.steps * share)), 1, std::max(1, branch.steps - 1));
+    back.steps = std::clamp(static_cast<int>(std::lround(branch.steps * share)), 1,
+                            std::max(1, branch.steps - 1));
     forth.steps = std::max(1, branch.steps - back.steps);
     return {back, forth};
 }
@@ -77,8 +79,9 @@ Model on_branch(const Model& model, const Branch& branch) {
     }
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         if (!stands.elastics[k])
-            result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind), false,
-                                  model.elastics[k].written_as, model.elastics[k].turned_round};
+            result.elastics[k] = {model.elastics[k].name, without_force(model.elastics[k].kind),
+                                  false, model.elastics[k].written_as,
+                                  model.elastics[k].markers_swapped};
     return result;
 }
 

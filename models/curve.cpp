@@ -24,7 +24,8 @@ double force(const ScalarLaw& law, double x) {
     const auto at = [&](const Curve& curve) {
         const auto piece = std::ranges::upper_bound(curve.knots, x) - curve.knots.begin();
         const Cubic& c = curve.pieces[static_cast<std::size_t>(piece)];
-        const double t = x - curve.knots[static_cast<std::size_t>(std::max<std::ptrdiff_t>(piece - 1, 0))];
+        const double t =
+            x - curve.knots[static_cast<std::size_t>(std::max<std::ptrdiff_t>(piece - 1, 0))];
         return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     };
     return std::visit(overloaded{[&](const LinearRate& u) { return u.k * x; }, at}, law);
@@ -39,7 +40,8 @@ Curve reversed(const Curve& curve) {
     // A piece between two knots refers to its left knot, which was the right one before the
     // reversal.
     for (std::size_t k = 1; k < n; ++k)
-        result.pieces[n - k] = reversed(shifted(curve.pieces[k], curve.knots[k] - curve.knots[k - 1]));
+        result.pieces[n - k] =
+            reversed(shifted(curve.pieces[k], curve.knots[k] - curve.knots[k - 1]));
     return result;
 }
 
@@ -49,7 +51,7 @@ ScalarLaw reversed(const ScalarLaw& law) {
                       law);
 }
 
-Bushing turned_round(const Bushing& bushing) {
+Bushing markers_swapped(const Bushing& bushing) {
     Bushing result = bushing;
     std::swap(result.i, result.j);
     std::visit(overloaded{[](LinearStiffness&) {},

@@ -1,7 +1,7 @@
 // Values of force curves, and reversal of a law's sign convention.
 #pragma once
 
-#include "models/mechanism.hpp"
+#include "elastocheck/mechanism.hpp"
 
 namespace elastocheck {
 
@@ -15,6 +15,6 @@ ScalarLaw reversed(const ScalarLaw& law);
 
 // The same bushing with its markers i and j swapped; deformations, preload and undeformed offset
 // change sign. A frame on j becomes a frame on i and vice versa.
-Bushing turned_round(const Bushing& bushing);
+Bushing markers_swapped(const Bushing& bushing);
 
 }  // namespace elastocheck

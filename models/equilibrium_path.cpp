@@ -1,4 +1,4 @@
-#include "models/equilibrium_path.hpp"
+#include "elastocheck/equilibrium_path.hpp"
 
 namespace elastocheck {
 
@@ -12,7 +12,7 @@ const char* name(Outcome outcome) {
         case Outcome::iteration_limit: return "iteration limit";
         case Outcome::diverged: return "diverged";
         case Outcome::limit_point: return "limit point";
-        case Outcome::dividing_point: return "dividing point";
+        case Outcome::bifurcation_point: return "bifurcation point";
         case Outcome::branch_lost: return "branch lost";
         case Outcome::not_conservative: return "not conservative";
         case Outcome::too_large: return "too large";

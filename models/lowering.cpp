@@ -11,7 +11,8 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 Quaterniond axes(const std::vector<Body>& bodies, BodyId body) {
-    return body == ground ? Quaterniond::Identity() : bodies[static_cast<std::size_t>(body)].design.p;
+    return body == ground ? Quaterniond::Identity()
+                          : bodies[static_cast<std::size_t>(body)].design.p;
 }
 
 // Two directions on the same body, perpendicular to `axis` and to each other.
@@ -56,7 +57,8 @@ std::vector<ConstraintKind> lower(const JointKind& joint, const std::vector<Body
             },
             [](const Planar& s) {
                 const auto [a, b] = across(s.normal_j);
-                return List{PointInPlane{s.i, s.j, s.normal_j}, Perp{s.normal_i, a}, Perp{s.normal_i, b}};
+                return List{PointInPlane{s.i, s.j, s.normal_j}, Perp{s.normal_i, a},
+                            Perp{s.normal_i, b}};
             },
             [](const Fixed& s) {
                 const Direction z_j{s.x_j.body, s.x_j.u_local.cross(s.y_j.u_local)};

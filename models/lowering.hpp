@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "models/model.hpp"
+#include "elastocheck/model.hpp"
 
 namespace elastocheck {
 

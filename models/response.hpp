@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
-#include "models/equilibrium_path.hpp"
-#include "models/mechanism.hpp"
-#include "models/scene.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/mechanism.hpp"
+#include "elastocheck/scene.hpp"
 
 namespace elastocheck {
 

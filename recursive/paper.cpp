@@ -1,8 +1,8 @@
 #include "recursive/paper.hpp"
 
-#include "recursive/analysis.hpp"
-#include "recursive/assembly.hpp"
-#include "recursive/drive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/formula/drive.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
 
 namespace elastocheck::recursive {
 
@@ -15,9 +15,11 @@ std::vector<PaperStep> paper(const Model& model, const Branch& branch, int N) {
     SaddlePoint<double> system = analyse(model).system;
     State<double> q = design_state<double>(model);
     Inputs<double> inputs = inputs_at<double>(model, branch, 0);
-    Vector<double> f_ext, f_before, stored(system.n), driven(system.m), Phi(system.m), x(system.n + system.m);
+    Vector<double> f_ext, f_before, stored(system.n), driven(system.m), Phi(system.m),
+        x(system.n + system.m);
     external_force<double>(model, branch, inputs, q, f_before);
-    Vector<double> carried = f_before - elastic_force<double>(model, inputs, q);  // at rest: Φ_qᵀ λ⁻¹
+    Vector<double> carried =
+        f_before - elastic_force<double>(model, inputs, q);  // at rest: Φ_qᵀ λ⁻¹
     std::vector<PaperStep> path{{q, Vector<double>::Zero(system.m)}};
 
     for (int k = 1; k <= N; ++k) {

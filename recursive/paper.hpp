@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "recursive/state.hpp"
+#include "recursive/formula/state.hpp"
 
 namespace elastocheck::recursive {
 

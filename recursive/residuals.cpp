@@ -1,6 +1,6 @@
-#include "recursive/assembly.hpp"
-#include "recursive/reactions.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/formula/reactions.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
 
 namespace elastocheck::recursive {
 

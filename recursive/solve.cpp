@@ -1,19 +1,19 @@
-#include "recursive/solve.hpp"
+#include "elastocheck/recursive.hpp"
 
 #include <fmt/format.h>
 
 #include <numbers>
 #include <stdexcept>
 
-#include "recursive/account.hpp"
-#include "recursive/adaptive.hpp"
-#include "recursive/centred.hpp"
-#include "recursive/delay.hpp"
-#include "recursive/finite.hpp"
-#include "recursive/grown.hpp"
+#include "recursive/diagnosis/finite.hpp"
+#include "recursive/formula/load_growth.hpp"
+#include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/sweep.hpp"
-#include "recursive/watch.hpp"
+#include "recursive/singularity/branch_events.hpp"
+#include "recursive/singularity/error_bound.hpp"
+#include "recursive/singularity/stability_limit.hpp"
+#include "recursive/stepping/adaptive.hpp"
+#include "recursive/stepping/sweep.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -41,16 +41,18 @@ std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
     return names;
 }
 
-std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& branch, const Method& method,
-                  Outcome outcome, const Stop& stop) {
+std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& branch,
+                  const Method& method, Outcome outcome, const Stop& stop) {
     if (stop.begins_unstable)
-        return fmt::format("the equilibrium that settles at {} is unstable", in_unit(branch.unit, 0));
-    std::string detail = std::isnan(stop.at) ? std::string("while what is held at the start settles")
-                                             : "at " + in_unit(branch.unit, stop.at);
+        return fmt::format("the equilibrium that settles at {} is unstable",
+                           in_unit(branch.unit, 0));
+    std::string detail = std::isnan(stop.at)
+                             ? std::string("while what is held at the start settles")
+                             : "at " + in_unit(branch.unit, stop.at);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
-            detail +=
-                ": the load pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
+            detail += ": the load pushes what no joint and no rate resists as drawn: " +
+                      idle_modes(diagnosis);
             break;
         case Outcome::singular:
             detail += ": the branch divides, turns back or loses its stability before";
@@ -62,26 +64,30 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                 detail += ": joints that say a thing twice contradict each other";
             else
                 detail = fmt::format(
-                    "the joints{} cannot be closed; as drawn they are open by up to {:.3g} mm, or mrad",
+                    "the joints{} cannot be closed; as drawn they are open by up to {:.3g} mm, or "
+                    "mrad",
                     in_contradiction(model, diagnosis), 1e3 * diagnosis.constraint_error);
             break;
         case Outcome::limit_point:
             detail += ": a limit point, past it no equilibrium continues the branch";
             break;
-        case Outcome::dividing_point:
-            detail += ": another curve of equilibria crosses the branch, which is unstable past this point";
+        case Outcome::bifurcation_point:
+            detail +=
+                ": another curve of equilibria crosses the branch, which is unstable past this "
+                "point";
             break;
         case Outcome::diverged:
-            detail +=
-                std::holds_alternative<Linear>(method.kind)
-                    ? ": the stored forces turn stiffer than the elements are, the recursion is unstable "
-                      "from here on"
-                    : ": what a step misses is more than half of it; take more steps";
+            detail += std::holds_alternative<Linear>(method.kind)
+                          ? ": the stored forces turn stiffer than the elements are, the recursion "
+                            "is unstable "
+                            "from here on"
+                          : ": what a step misses is more than half of it; take more steps";
             break;
         case Outcome::converged:
         case Outcome::iteration_limit:
-            detail += fmt::format(": {} steps were not enough, nearly singular as it is or by this tolerance",
-                                  most_steps);
+            detail += fmt::format(
+                ": {} steps were not enough, nearly singular as it is or by this tolerance",
+                most_steps);
             break;
         case Outcome::not_finite:
         case Outcome::branch_lost:
@@ -92,12 +98,15 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
     return detail;
 }
 
-EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit, Stop& stop) {
+EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch,
+                      const Options& options, const Analysis& analysis, const Visit& visit,
+                      Stop& stop) {
     switch (precision) {
         case Precision::single: return sweep<float>(model, branch, options, analysis, visit, stop);
-        case Precision::twofold: return sweep<double>(model, branch, options, analysis, visit, stop);
-        case Precision::extended: return sweep<long double>(model, branch, options, analysis, visit, stop);
+        case Precision::double_precision:
+            return sweep<double>(model, branch, options, analysis, visit, stop);
+        case Precision::extended:
+            return sweep<long double>(model, branch, options, analysis, visit, stop);
     }
     return {};
 }
@@ -108,12 +117,13 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
-        if (options.precision != Precision::twofold)
+        if (options.precision != Precision::double_precision)
             throw std::invalid_argument("the series is computed in double precision only");
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps
                                                : branch.steps;
-        return series::sample(model, series::follow(model, branch, *how, analysis), branch, points, visit);
+        return series::sample(model, series::follow(model, branch, *how, analysis), branch, points,
+                              visit);
     }
     // A method with equal steps may step across the end of the branch, and one with the stiffness
     // of (19) cannot detect it. So the end is located first, and points past it are dropped.
@@ -125,25 +135,27 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
         if (!is_past(point.load)) visit(point);
     };
     Stop stop;
-    EquilibriumPath path =
-        sweep(options.precision, model, branch, options, analysis, visit && event ? until : visit, stop);
+    EquilibriumPath path = sweep(options.precision, model, branch, options, analysis,
+                                 visit && event ? until : visit, stop);
     // If a method with the consistent tangent stopped by itself, find_event() determines the cause.
     const bool unsure = path.outcome == Outcome::singular || path.outcome == Outcome::diverged;
     if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stop.at))
         event = find_event(model, branch, analysis);
-    if (path.outcome == Outcome::converged ? event.has_value() : !std::isnan(stop.at) && is_past(stop.at)) {
+    if (path.outcome == Outcome::converged ? event.has_value()
+                                           : !std::isnan(stop.at) && is_past(stop.at)) {
         std::erase_if(path.points, [&](const Equilibrium& point) { return is_past(point.load); });
         path.outcome = event->outcome;
         stop = {event->load, event->begins_unstable};
     }
     if (path.outcome != Outcome::converged)
-        path.detail =
-            fmt::format("branch '{}': {}", branch.name,
-                        words(model, analysis.diagnosis, branch, options.method, path.outcome, stop));
+        path.detail = fmt::format(
+            "branch '{}': {}", branch.name,
+            words(model, analysis.diagnosis, branch, options.method, path.outcome, stop));
     if (path.outcome == Outcome::diverged && linear) {
         const auto limit = stability_limit(model, branch, options.method, analysis);
-        path.detail += limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)
-                             : std::string("; the model alone sets it no limit on this branch");
+        path.detail +=
+            limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)
+                  : std::string("; the model alone sets it no limit on this branch");
     }
     return path;
 }
@@ -161,16 +173,17 @@ void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
 
 EquilibriumPath with_accounts(const Model& model, const Branch& branch, const Options& options,
                               const Analysis& analysis, const Visit& visit) {
-    if (!options.account) return found(model, branch, options, analysis, visit);
+    if (!options.error_bound) return found(model, branch, options, analysis, visit);
     const auto* series = std::get_if<Series>(&options.method.kind);
-    const auto give_account = accountant(model, branch, analysis, series != nullptr && series->arc_length);
+    const auto add_error_bound =
+        error_estimator(model, branch, analysis, series != nullptr && series->arc_length);
     EquilibriumPath path;
     std::vector<Equilibrium> points;
     const int steps = options.steps > 0 ? options.steps : branch.steps,
               last = options.record > 0 ? options.record : steps;
     path = found(model, branch, options, analysis, [&, k = 0](const Equilibrium& found) mutable {
         Equilibrium point = found;
-        if (k % options.account_every == 0 || k == last) give_account(point);
+        if (k % options.error_bound_every == 0 || k == last) add_error_bound(point);
         ++k;
         if (visit)
             visit(point);
@@ -186,19 +199,21 @@ EquilibriumPath with_accounts(const Model& model, const Branch& branch, const Op
 bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     return (!linear || linear->follow == everything) &&
-           (outcome == Outcome::limit_point || outcome == Outcome::dividing_point ||
+           (outcome == Outcome::limit_point || outcome == Outcome::bifurcation_point ||
             outcome == Outcome::singular || outcome == Outcome::branch_lost);
 }
 
 EquilibriumPath solve_centred(const Model& model, const Eigen::Vector3d& c, const Branch& branch,
-                              const Options& options, const Analysis& analysis, const Visit& visit) {
+                              const Options& options, const Analysis& analysis,
+                              const Visit& visit) {
     Equilibrium moved;
     const Visit visit_moved = [&](const Equilibrium& point) {
         moved = point;
         move_back(moved, c);
         visit(moved);
     };
-    EquilibriumPath path = solve(centred(model, c), branch, options, analysis, visit ? visit_moved : Visit{});
+    EquilibriumPath path =
+        solve(centred(model, c), branch, options, analysis, visit ? visit_moved : Visit{});
     for (Equilibrium& point : path.points) move_back(point, c);
     return path;
 }
@@ -208,28 +223,35 @@ EquilibriumPath solve_centred(const Model& model, const Eigen::Vector3d& c, cons
 EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
     check(model, branch);
-    if (const auto c = far_centre(model)) return solve_centred(model, *c, branch, options, analysis, visit);
+    if (const auto c = far_centre(model))
+        return solve_centred(model, *c, branch, options, analysis, visit);
     if (std::isnan(analysis.diagnosis.constraint_error))
-        return {Outcome::not_finite, fmt::format("branch '{}': {}", branch.name, not_finite(model)), {}, {}};
-    if (options.account_every < 1)
+        return {Outcome::not_finite,
+                fmt::format("branch '{}': {}", branch.name, not_finite(model)),
+                {},
+                {}};
+    if (options.error_bound_every < 1)
         throw std::invalid_argument("account is given of every n-th point, n from 1");
     bool begun = false;
     const Visit counted = [&](const Equilibrium& point) {
         begun = true;
         visit(point);
     };
-    EquilibriumPath path = with_accounts(model, branch, options, analysis, visit ? counted : Visit{});
-    if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome)) return path;
+    EquilibriumPath path =
+        with_accounts(model, branch, options, analysis, visit ? counted : Visit{});
+    if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
+        return path;
     // Where a drawing far from rest has several equilibria, homotopies may settle at different ones: no error bound is claimed.
     if (const auto other = grown(model, branch)) {
-        EquilibriumPath again =
-            found(other->model, other->branch, options, analyse(other->model), visit ? counted : Visit{});
+        EquilibriumPath again = found(other->model, other->branch, options, analyse(other->model),
+                                      visit ? counted : Visit{});
         if (begun || !again.points.empty()) return again;
     }
     return path;
 }
 
-EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options, const Visit& visit) {
+EquilibriumPath solve(const Model& model, const Branch& branch, const Options& options,
+                      const Visit& visit) {
     check(model, branch);
     return solve(model, branch, options, analyse(model), visit);
 }

@@ -5,21 +5,22 @@ namespace Eigen {
 template class HouseholderQR<MatrixXd>;
 template class ColPivHouseholderQR<MatrixXd>;
 template class CompleteOrthogonalDecomposition<MatrixXd>;
-template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&, VectorXd&) const;
+template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,
+                                                                     VectorXd&) const;
 template class JacobiSVD<MatrixXd>;
-template SelfAdjointEigenSolver<Matrix<double, 6, 6>>& SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(
-    const EigenBase<Matrix<double, 6, 6>>&, int);
+template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
+SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
 
-template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheLeft(const Block<const MatrixXd, Dynamic, 1>&,
-                                                                     const double&, double*);
+template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheLeft(
+    const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);
 template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheRight(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);
 
 namespace internal {
 template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<MatrixXd>&,
                                                   const VectorBlock<const VectorXd>&, bool);
-template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, 0, 0, 1>, 4, 4, false,
-                            false>;
+template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, 0, 0, 1>, 4, 4,
+                            false, false>;
 }  // namespace internal
 
 }  // namespace Eigen

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "models/reader/interpolant.hpp"
+#include "models/reader/tables/interpolant.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -22,11 +22,13 @@ Apart off(const Rows& rows, const Theirs& theirs, Between between = Between::mon
         points.push_back({x, f});
         largest = std::max(largest, std::abs(f));
     }
-    const Curve ours = between == Between::straight ? reader::polygon(points) : reader::interpolant(points);
+    const Curve ours =
+        between == Between::straight ? reader::polygon(points) : reader::interpolant(points);
     Apart worst{.of = largest};
     for (std::size_t k = 0; k + 1 < rows.size(); ++k)
         for (int n = 1; n < samples; ++n) {
-            const double t = (rows[k + 1].first - rows[k].first) * n / samples, x = rows[k].first + t;
+            const double t = (rows[k + 1].first - rows[k].first) * n / samples,
+                         x = rows[k].first + t;
             const auto& c = ours.pieces[k + 1];
             const double force = std::abs(c[0] + t * (c[1] + t * (c[2] + t * c[3])) - theirs(k, x));
             if (force > worst.force) worst.force = force, worst.at = x;
@@ -63,7 +65,8 @@ Apart off_akima(const Rows& rows, Between ours) {
     std::vector<double> slope(n);
     for (std::size_t k = 0; k < n; ++k) {
         const double a = std::abs(m[k + 3] - m[k + 2]), b = std::abs(m[k + 1] - m[k]);
-        slope[k] = a + b > 0 ? (a * m[k + 1] + b * m[k + 2]) / (a + b) : 0.5 * (m[k + 1] + m[k + 2]);
+        slope[k] =
+            a + b > 0 ? (a * m[k + 1] + b * m[k + 2]) / (a + b) : 0.5 * (m[k + 1] + m[k + 2]);
     }
     return off(
         rows, [&](std::size_t k, double x) { return hermite(rows, slope, k, x); }, ours);
@@ -88,7 +91,8 @@ Apart off_natural(const Rows& rows) {
     return off(rows, [&](std::size_t k, double x) {
         const double H = h(k), a = rows[k + 1].first - x, b = x - rows[k].first;
         return M[k] * a * a * a / (6 * H) + M[k + 1] * b * b * b / (6 * H) +
-               (rows[k].second / H - M[k] * H / 6) * a + (rows[k + 1].second / H - M[k + 1] * H / 6) * b;
+               (rows[k].second / H - M[k] * H / 6) * a +
+               (rows[k + 1].second / H - M[k + 1] * H / 6) * b;
     });
 }
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "models/mechanism.hpp"
+#include "elastocheck/mechanism.hpp"
 
 namespace elastocheck::importer {
 

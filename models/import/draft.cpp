@@ -134,7 +134,8 @@ Fields& Fields::add(std::string_view key, std::string_view value) {
 std::string Names::take(std::string_view wanted) {
     std::string name;
     for (const char c : wanted.substr(0, longest_name - 8)) {
-        const bool fits = is_letter_or_digit(c) || (!name.empty() && (c == '-' || c == '+' || c == '.'));
+        const bool fits =
+            is_letter_or_digit(c) || (!name.empty() && (c == '-' || c == '+' || c == '.'));
         name += fits ? c : '_';
     }
     if (name.empty()) name = "unnamed";
@@ -153,9 +154,10 @@ void Hardpoints::add(const Vector3d& position, std::string_view wanted, const Pl
 
 std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, const Place& from) {
     const double near = same_place * size_, key = position.dot(askew);
-    for (auto found = by_x_.lower_bound(key - near); found != by_x_.end() && found->first <= key + near;
-         ++found)
-        if ((positions_[found->second] - position).norm() <= near) return entries_[found->second].name;
+    for (auto found = by_x_.lower_bound(key - near);
+         found != by_x_.end() && found->first <= key + near; ++found)
+        if ((positions_[found->second] - position).norm() <= near)
+            return entries_[found->second].name;
     add(position, wanted, from);
     return entries_.back().name;
 }
@@ -185,7 +187,8 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
                 continue;
             }
             double number = 0;
-            const auto [end, error] = std::from_chars(what.data() + k, what.data() + what.size(), number);
+            const auto [end, error] =
+                std::from_chars(what.data() + k, what.data() + what.size(), number);
             if (first < 0 && error == std::errc{}) first = number;
             k = static_cast<std::size_t>(end - what.data());
             if (error != std::errc{}) ++k;
@@ -208,7 +211,7 @@ std::vector<std::string> told(const Notes& notes) {
     for (const auto& [kind, n] : notes.understood)
         understood += fmt::format("{}{} {}", understood.empty() ? "" : ", ", n, kind);
     lines.push_back("Understood: " + (understood.empty() ? "nothing" : understood) + ".");
-    for (const auto& [why, what] : notes.left_out) {
+    for (const auto& [why, what] : notes.omitted) {
         std::string list;
         for (std::size_t k = 0; k < std::min(what.size(), most_told); ++k)
             list += (list.empty() ? "" : "; ") + told(what[k]);

@@ -79,13 +79,13 @@ class Hardpoints {
 struct Notes {
     std::map<std::string, int> understood;  // "JOINT" -> 12
     // reason -> parts without effect in statics
-    std::map<std::string, std::vector<Place>> left_out;
+    std::map<std::string, std::vector<Place>> omitted;
     std::vector<std::pair<Place, std::string>> warnings;
     // parts with an effect in statics that the scene cannot represent
     std::vector<std::pair<Place, std::string>> missing;
 
     void count(const std::string& kind) { ++understood[kind]; }
-    void leave_out(const std::string& why, Place what) { left_out[why].push_back(std::move(what)); }
+    void leave_out(const std::string& why, Place what) { omitted[why].push_back(std::move(what)); }
     void warn(Place at, std::string what) { warnings.emplace_back(std::move(at), std::move(what)); }
     void miss(Place at, std::string what) { missing.emplace_back(std::move(at), std::move(what)); }
 };
@@ -99,8 +99,8 @@ struct Draft {
     std::optional<std::string> mirror;  // "left -> right"
     Hardpoints points{1};
     std::optional<Eigen::Vector3d> gravity;  // [m/s²]
-    std::vector<Entry> bodies, joints, bushings, springs, stops, torsion_springs, static_loads, loads,
-        branches, wheels, probes, dampers;
+    std::vector<Entry> bodies, joints, bushings, springs, stops, torsion_springs, static_loads,
+        loads, branches, wheels, probes, dampers;
     Notes notes;
 };
 

@@ -4,10 +4,10 @@
 
 #include <charconv>
 
-#include "models/reader/scene_file.hpp"
-#include "models/reader/text_file.hpp"
-#include "models/reader/words.hpp"
-#include "models/reader/yaml.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/text_file.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -25,11 +25,12 @@ std::string where(const Place& place) {
     std::string message;
     for (std::size_t k = 0; k < std::min(notes.missing.size(), most_errors); ++k) {
         const auto& [place, what] = notes.missing[k];
-        message +=
-            fmt::format("{}{}{}: {}: {}", k ? "\n" : "", file, where(place), reader::shown(place.what), what);
+        message += fmt::format("{}{}{}: {}: {}", k ? "\n" : "", file, where(place),
+                               reader::shown(place.what), what);
     }
     if (notes.missing.size() > most_errors)
-        message += fmt::format("\n... and {} more of this kind", notes.missing.size() - most_errors);
+        message +=
+            fmt::format("\n... and {} more of this kind", notes.missing.size() - most_errors);
     message += fmt::format(
         "\n{} a scene cannot represent; --allow-missing imports the rest, and says so in its head",
         notes.missing.size() == 1 ? "This" : fmt::format("These {}", notes.missing.size()));
@@ -41,12 +42,14 @@ std::string where(const Place& place) {
     int line = 0;
     if (message.starts_with(name_of_text)) {
         message.remove_prefix(name_of_text.size() + 1);
-        const auto [end, error] = std::from_chars(message.data(), message.data() + message.size(), line);
+        const auto [end, error] =
+            std::from_chars(message.data(), message.data() + message.size(), line);
         if (error == std::errc{})
             message.remove_prefix(std::min<std::size_t>(end - message.data() + 2, message.size()));
     }
-    const Place from =
-        line > 0 && line <= static_cast<int>(text.line_of.size()) ? text.line_of[line - 1] : Place{};
+    const Place from = line > 0 && line <= static_cast<int>(text.line_of.size())
+                           ? text.line_of[line - 1]
+                           : Place{};
     throw SceneError(fmt::format("{}{}: {}{}", file, where(from),
                                  from.what.empty() ? "" : reader::shown(from.what) + ": ",
                                  fmt::format("the scene made of it is refused: {}", message)));
@@ -64,27 +67,28 @@ std::string extension(const std::string& file) {
 Imported import_text(std::string_view text, const std::string& file, const Options& options) {
     const std::string ending = extension(file);
     if (ending != ".adm" && ending != ".json" && ending != ".sub")
-        reader::fail(
-            file, 0, "",
-            fmt::format(
-                "{} is no ending that is known here; allowed: .adm (ADAMS datasets), .json (Chrono::Vehicle "
-                "suspensions), .sub (hardpoints of Adams/Car)",
-                reader::quote(ending)));
+        reader::fail(file, 0, "",
+                     fmt::format("{} is no ending that is known here; allowed: .adm (ADAMS "
+                                 "datasets), .json (Chrono::Vehicle "
+                                 "suspensions), .sub (hardpoints of Adams/Car)",
+                                 reader::quote(ending)));
     if (!options.axes.empty() && ending != ".sub")
-        reader::fail(file, 0, "--axes",
-                     "for hardpoints of Adams/Car (.sub) alone; the axes of a model are those of its file");
+        reader::fail(
+            file, 0, "--axes",
+            "for hardpoints of Adams/Car (.sub) alone; the axes of a model are those of its file");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
                                             : import_subsystem(text, file, options);
     if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
     if (draft.bodies.empty() && ending != ".sub")
-        reader::fail(file, 0, "", "nothing of it moves: no part is held by anything that a scene has");
+        reader::fail(file, 0, "",
+                     "nothing of it moves: no part is held by anything that a scene has");
     const Text written = write(draft);
     Imported result{.yaml = written.yaml, .notes = draft.notes};
     result.bodies = static_cast<int>(draft.bodies.size());
     result.joints = static_cast<int>(draft.joints.size());
-    result.elements = static_cast<int>(draft.bushings.size() + draft.springs.size() + draft.stops.size() +
-                                       draft.torsion_springs.size());
+    result.elements = static_cast<int>(draft.bushings.size() + draft.springs.size() +
+                                       draft.stops.size() + draft.torsion_springs.size());
     if (ending != ".sub") {  // hardpoints only: not a scene
         try {
             const Scene scene = parse_scene(written.yaml, std::string(name_of_text));

@@ -1,4 +1,4 @@
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -10,14 +10,14 @@
 #include <unordered_map>
 #include <utility>
 
-#include "models/reader/beams.hpp"
-#include "models/reader/driven.hpp"
-#include "models/reader/mirror.hpp"
-#include "models/reader/sections.hpp"
+#include "models/reader/definitions/beams.hpp"
+#include "models/reader/definitions/mirror.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/text_file.hpp"
+#include "models/reader/document/yaml.hpp"
+#include "models/reader/elements/driven.hpp"
+#include "models/reader/elements/sections.hpp"
 #include "models/reader/settings.hpp"
-#include "models/reader/text_file.hpp"
-#include "models/reader/words.hpp"
-#include "models/reader/yaml.hpp"
 
 namespace elastocheck {
 namespace reader {
@@ -31,8 +31,9 @@ using Folder = std::optional<std::filesystem::path>;
 void check_version(const Cursor& scene) {
     const Cursor version = scene.require("elastocheck");
     if (version.text("the version of the format") != std::to_string(format_version))
-        version.fail(fmt::format("{} is not a version of the format that this program reads; allowed: {}",
-                                 version.found(), format_version));
+        version.fail(
+            fmt::format("{} is not a version of the format that this program reads; allowed: {}",
+                        version.found(), format_version));
 }
 
 // Every body must be attached to some joint or element.
@@ -121,16 +122,19 @@ void read_elements(const Cursor& scene, const char* key, const Definitions& defs
     }
     for (std::size_t k = begin; k < elastics.size(); ++k)
         if (const auto found = is_written.find(elastics[k].name); found != is_written.end())
-            named[static_cast<int>(k)] = {std::string(key) + "." + elastics[k].name, !found->second};
+            named[static_cast<int>(k)] = {std::string(key) + "." + elastics[k].name,
+                                          !found->second};
 }
 
 // `wheel` is the short form for a single wheel without name.
 void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel>& wheels) {
     const auto one = scene.optional("wheel");
-    if (one && scene.optional("wheels")) one->fail("given together with wheels; allowed: one of the two");
+    if (one && scene.optional("wheels"))
+        one->fail("given together with wheels; allowed: one of the two");
     if (one && defs.mirror)
-        one->fail(fmt::format("a scene that mirrors itself has wheels with names; give wheels: {{{}: ...}}",
-                              defs.mirror->from));
+        one->fail(fmt::format(
+            "a scene that mirrors itself has wheels with names; give wheels: {{{}: ...}}",
+            defs.mirror->from));
     if (one) wheels.push_back(read_wheel(*one, defs));
     read_section(scene, "wheels", defs, Sides::both, wheels,
                  [](const std::string& name, const Cursor& at, const Definitions& definitions) {
@@ -163,7 +167,8 @@ std::map<int, int> add_held(const Cursor& scene, const Definitions& defs, Scene&
 }
 
 // The names that the reader gives to stops must be unused.
-void require_own_names(const Cursor& scene, const Definitions& defs, const std::vector<Elastic>& elastics) {
+void require_own_names(const Cursor& scene, const Definitions& defs,
+                       const std::vector<Elastic>& elastics) {
     std::unordered_map<std::string, int> called;
     for (const Elastic& elastic : elastics) ++called[elastic.name];
     for (const char* key : {"springs", "stops"}) {
@@ -195,10 +200,10 @@ void require_own_names(const Cursor& scene, const Scene& result) {
             const Cursor section = scene.require("dampers");
             section.optional(damper.name)
                 .value_or(section)
-                .fail(
-                    fmt::format("a spring is called {} as well, and each has an output of its name; call one "
-                                "of the two something else",
-                                quote(damper.name)));
+                .fail(fmt::format(
+                    "a spring is called {} as well, and each has an output of its name; call one "
+                    "of the two something else",
+                    quote(damper.name)));
         }
 }
 
@@ -209,11 +214,13 @@ void keep_each_once(std::vector<Number>& numbers) {
 }
 
 Scene read_tree(const Cursor& scene, const Folder& folder) {
-    if (scene.value->kind == Value::Kind::nothing) scene.fail("empty; a scene begins with `elastocheck: 1`");
-    scene.only_keys({"elastocheck",  "name",    "units", "mirror",          "gravity",  "points", "bodies",
-                     "joints",       "springs", "stops", "torsion_springs", "bushings", "beams",  "tyres",
-                     "static_loads", "loads",   "trim",  "branches",        "wheel",    "wheels", "probes",
-                     "dampers",      "vehicle"});
+    if (scene.value->kind == Value::Kind::nothing)
+        scene.fail("empty; a scene begins with `elastocheck: 1`");
+    scene.only_keys({"elastocheck",     "name",     "units",    "mirror",  "gravity",
+                     "points",          "bodies",   "joints",   "springs", "stops",
+                     "torsion_springs", "bushings", "beams",    "tyres",   "static_loads",
+                     "loads",           "trim",     "branches", "wheel",   "wheels",
+                     "probes",          "dampers",  "vehicle"});
     check_version(scene);
     Scene result;
     result.source = *scene.file;
@@ -238,8 +245,10 @@ Scene read_tree(const Cursor& scene, const Folder& folder) {
     read_section(scene, "probes", defs, Sides::any, result.probes, read_probe);
     read_section(scene, "dampers", defs, Sides::both, result.dampers, read_damper);
     require_own_names(scene, result);
-    if (const auto vehicle = scene.optional("vehicle")) result.vehicle = read_vehicle(*vehicle, defs);
-    if (result.wheels.empty() && result.probes.empty()) scene.fail("no output; a wheel or a probe is needed");
+    if (const auto vehicle = scene.optional("vehicle"))
+        result.vehicle = read_vehicle(*vehicle, defs);
+    if (result.wheels.empty() && result.probes.empty())
+        scene.fail("no output; a wheel or a probe is needed");
 
     std::map<std::string, Load> by_name;
     for (const Load& load : loads) by_name.emplace(load.name, load);
@@ -268,7 +277,8 @@ Scene read_whole(std::string_view text, const std::string& name, std::span<const
 
 }  // namespace reader
 
-Scene parse_scene(std::string_view text, const std::string& name, std::span<const Setting> settings) {
+Scene parse_scene(std::string_view text, const std::string& name,
+                  std::span<const Setting> settings) {
     return reader::read_whole(text, name, settings, std::nullopt);
 }
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <set>
 
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck {
 namespace reader {
@@ -35,7 +35,8 @@ Reached follow(Value& value, std::string_view path) {
         if (!path.starts_with(names[k])) continue;
         const std::string_view behind = path.substr(names[k].size());
         if (!behind.empty() && (behind.front() != '.' || behind.size() == 1)) continue;
-        const Reached there = follow(value.items[k], behind.substr(std::min<std::size_t>(behind.size(), 1)));
+        const Reached there =
+            follow(value.items[k], behind.substr(std::min<std::size_t>(behind.size(), 1)));
         if (there.rest.size() < best.rest.size()) best = there;
     }
     return best;
@@ -58,12 +59,14 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
         fail(file, value->line, shown_path,
              fmt::format("not one value; there: {}", names.empty() ? "nothing" : listed(names)));
     const std::string& text = setting.value;
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+    const auto is_control = [](char c) {
+        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    };
     if (text.empty() || text.size() > longest_value || std::ranges::any_of(text, is_control) ||
         !is_utf8(text))
         fail(file, value->line, shown_path,
-             fmt::format("{} cannot be set; allowed: one line of plain text, up to {} bytes", quote(text),
-                         longest_value));
+             fmt::format("{} cannot be set; allowed: one line of plain text, up to {} bytes",
+                         quote(text), longest_value));
     if (value->is_set) fail(file, value->line, shown_path, "set twice");
     *value = {.kind = Value::Kind::scalar, .text = text, .line = value->line, .is_set = true};
 }
@@ -79,8 +82,9 @@ void apply(std::span<const Setting> settings, Value& tree, const std::string& fi
 Setting parse_setting(std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
-        throw SceneError(fmt::format("{} is no setting; expected path=value, like points.ball_joint.z=-0.17",
-                                     reader::quote(text)));
+        throw SceneError(
+            fmt::format("{} is no setting; expected path=value, like points.ball_joint.z=-0.17",
+                        reader::quote(text)));
     return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 

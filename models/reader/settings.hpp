@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "models/reader/scene_file.hpp"
-#include "models/reader/yaml.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::reader {
 

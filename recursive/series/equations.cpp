@@ -9,20 +9,20 @@ namespace {
 
 // ---- Memory.
 
-void reserve_arm(Room& room, Arm& arm, BodyId body) {
+void reserve_arm(Arena& room, Arm& arm, BodyId body) {
     arm.body = body;
     reserve(room, arm.s, body == ground);
 }
-void reserve(Room& room, TurnSeries& t, bool constant = false) {
+void reserve(Arena& room, TurnSeries& t, bool constant = false) {
     const auto each = [&](auto&... all) { (reserve(room, all, constant), ...); };
     each(t.g, t.h, t.stretch, t.shrink, t.hg, t.C);
 }
-void reserve(Room& room, CubicSeries& t) {
+void reserve(Arena& room, CubicSeries& t) {
     for (auto* all : {&t.xi, &t.inner, &t.slope}) reserve(room, *all);
 }
 // A term between two bodies: memory for its two arms and for the listed series.
 template <class Term, class Kind, class... Members>
-Term between(Room& room, const Kind& kind, Members... members) {
+Term between(Arena& room, const Kind& kind, Members... members) {
     Term t;
     t.kind = kind;
     reserve_arm(room, t.i, kind.i.body);
@@ -31,21 +31,21 @@ Term between(Room& room, const Kind& kind, Members... members) {
     return t;
 }
 
-ElasticSeries term(Room& room, const AxialSpring& e) {
+ElasticSeries term(Arena& room, const AxialSpring& e) {
     using T = SpringSeries;
-    T t = between<T>(room, e, &T::D, &T::F, &T::length_squared, &T::length, &T::inverse, &T::stretch,
-                     &T::force, &T::tension);
+    T t = between<T>(room, e, &T::D, &T::F, &T::length_squared, &T::length, &T::inverse,
+                     &T::stretch, &T::force, &T::tension);
     t.free_length.start = e.free_length;
     if (std::holds_alternative<Curve>(e.law)) reserve(room, t.cubic);
     return t;
 }
 
-ElasticSeries term(Room& room, const Bushing& e) {
+ElasticSeries term(Arena& room, const Bushing& e) {
     using T = BushingSeries;
-    T t = between<T>(room, e, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta, &T::relative,
-                     &T::e, &T::gradient, &T::stress, &T::moment_local, &T::u_M, &T::u_u_M, &T::spread_1,
-                     &T::spread_2, &T::force_i, &T::moment_i, &T::F, &T::M, &T::dot_g, &T::W, &T::inverse,
-                     &T::s, &T::phi, &T::psi);
+    T t = between<T>(room, e, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta,
+                     &T::relative, &T::e, &T::gradient, &T::stress, &T::moment_local, &T::u_M,
+                     &T::u_u_M, &T::spread_1, &T::spread_2, &T::force_i, &T::moment_i, &T::F, &T::M,
+                     &T::dot_g, &T::W, &T::inverse, &T::s, &T::phi, &T::psi);
     t.preload.start = e.preload;
     t.rotational = rotational(e.law) || !e.preload.tail<3>().isZero(0);
     if (const auto* law = std::get_if<PerAxis>(&e.law)) {
@@ -76,25 +76,25 @@ ElasticSeries term(Room& room, const Bushing& e) {
     return t;
 }
 
-ConstraintSeries term(Room& room, const CoincidentPoints& c) {
+ConstraintSeries term(Arena& room, const CoincidentPoints& c) {
     return between<CoincidentSeries>(room, c, &CoincidentSeries::F);
 }
-ConstraintSeries term(Room& room, const PointInPlane& c) {
+ConstraintSeries term(Arena& room, const PointInPlane& c) {
     auto t = between<PlaneSeries>(room, c, &PlaneSeries::d, &PlaneSeries::rho, &PlaneSeries::F);
     reserve_arm(room, t.normal, c.normal_j.body);
     t.offset.start = c.offset;
     return t;
 }
-ConstraintSeries term(Room& room, const PerpendicularDirections& c) {
+ConstraintSeries term(Arena& room, const PerpendicularDirections& c) {
     return between<PerpendicularSeries>(room, c, &PerpendicularSeries::M);
 }
-ConstraintSeries term(Room& room, const DistanceBetween& c) {
+ConstraintSeries term(Arena& room, const DistanceBetween& c) {
     using T = DistanceSeries;
     T t = between<T>(room, c, &T::ell, &T::inverse, &T::share, &T::d, &T::F);
     t.length.start = c.length;
     return t;
 }
-ConstraintSeries term(Room& room, const DirectionAtAngle& c) {
+ConstraintSeries term(Arena& room, const DirectionAtAngle& c) {
     AngleSeries t;
     t.kind = c;
     t.angle.start = c.angle;
@@ -106,19 +106,20 @@ ConstraintSeries term(Room& room, const DirectionAtAngle& c) {
     return t;
 }
 
-LoadSeries term(Room& room, const DeadForce& f) {
+LoadSeries term(Arena& room, const DeadForce& f) {
     ForceSeries t;
     t.kind = f;
     reserve(room, t.size);
     reserve_arm(room, t.at, f.at.body);
     return t;
 }
-LoadSeries term(Room&, const DeadMoment& m) {
+LoadSeries term(Arena&, const DeadMoment& m) {
     MomentSeries t;
     t.kind = m;
     return t;
 }
-LoadSeries follower(Room& room, BodyId body, const Eigen::Vector3d& f_local, const Eigen::Vector3d& m_local) {
+LoadSeries follower(Arena& room, BodyId body, const Eigen::Vector3d& f_local,
+                    const Eigen::Vector3d& m_local) {
     FollowerSeries t;
     t.f_local = f_local;
     t.m_local = m_local;
@@ -127,11 +128,13 @@ LoadSeries follower(Room& room, BodyId body, const Eigen::Vector3d& f_local, con
     reserve_arm(room, t.m, body);
     return t;
 }
-LoadSeries term(Room& room, const FollowerForce& f) {
+LoadSeries term(Arena& room, const FollowerForce& f) {
     return follower(room, f.at.body, f.f_local, f.at.s_local.cross(f.f_local));
 }
-LoadSeries term(Room& room, const FollowerMoment& m) { return follower(room, m.body, V3::Zero(), m.m_local); }
-LoadSeries load(Room& room, const Load& load, const Driven<double>& factor) {
+LoadSeries term(Arena& room, const FollowerMoment& m) {
+    return follower(room, m.body, V3::Zero(), m.m_local);
+}
+LoadSeries load(Arena& room, const Load& load, const Driven<double>& factor) {
     LoadSeries all = std::visit([&](const auto& kind) { return term(room, kind); }, load.kind);
     std::visit([&](auto& t) { t.factor = factor; }, all);
     return all;
@@ -151,7 +154,9 @@ void move(PerpendicularSeries&, Drive, const Driver&) {
     throw std::invalid_argument("perpendicular directions have no offset");
 }
 void move(PlaneSeries& t, Drive drive, const Driver& driver) { add(t.offset, drive, driver, 1.0); }
-void move(DistanceSeries& t, Drive drive, const Driver& driver) { add(t.length, drive, driver, 1.0); }
+void move(DistanceSeries& t, Drive drive, const Driver& driver) {
+    add(t.length, drive, driver, 1.0);
+}
 void move(AngleSeries& t, Drive drive, const Driver& driver) { add(t.angle, drive, driver, 1.0); }
 
 void drive(Equations& e, const Model&, const Driver& driver, const Load& what) {
@@ -160,11 +165,12 @@ void drive(Equations& e, const Model&, const Driver& driver, const Load& what) {
     e.loads.push_back(load(e.room, what, factor));
 }
 void drive(Equations& e, const Model& model, const Driver& driver, const Motion& what) {
-    std::visit([&](auto& t) { move(t, e.drive, driver); }, e.constraints[constraint_of(model, what)]);
+    std::visit([&](auto& t) { move(t, e.drive, driver); },
+               e.constraints[constraint_of(model, what)]);
 }
 void drive(Equations& e, const Model&, const Driver& driver, const FreeLength& what) {
-    add(std::get<SpringSeries>(e.elastics[static_cast<std::size_t>(what.elastic)]).free_length, e.drive,
-        driver, 1.0);
+    add(std::get<SpringSeries>(e.elastics[static_cast<std::size_t>(what.elastic)]).free_length,
+        e.drive, driver, 1.0);
 }
 void drive(Equations& e, const Model&, const Driver& driver, const Preload& what) {
     auto& t = std::get<BushingSeries>(e.elastics[static_cast<std::size_t>(what.elastic)]);
@@ -267,7 +273,8 @@ void turn(Order o, const Equations& e, Arm& arm) {
 }
 
 // Adds a force with its moment from the lever to coefficient k of G, times sign.
-void push(Equations& e, int k, BodyId b, double sign, const Vector3Series& lever, const Vector3Series& F) {
+void push(Equations& e, int k, BodyId b, double sign, const Vector3Series& lever,
+          const Vector3Series& F) {
     if (b == ground) return;
     e.G.segment<3>(6 * b) += sign * at(F, k);
     e.G.segment<3>(6 * b + 3) += sign * convolution(k, lever, F, cross);
@@ -276,7 +283,8 @@ void twist(Equations& e, int k, BodyId b, double sign, const Vector3Series& M) {
     if (b != ground) e.G.segment<3>(6 * b + 3) += sign * at(M, k);
 }
 
-void distance(Order o, const Equations& e, const Arm& i, const Arm& j, Vector3Series& D) {  // p_j - p_i
+void distance(Order o, const Equations& e, const Arm& i, const Arm& j,
+              Vector3Series& D) {  // p_j - p_i
     const Vector3Series &r_i = e[i.body].r, &r_j = e[j.body].r;
     linear(o, D, [&](auto of) -> V3 { return of(r_j) + of(j.s) - of(r_i) - of(i.s); });
 }
@@ -388,8 +396,9 @@ void moment_of_rotation_vector(BushingSeries& t, Order o) {
     product(o, t.u, t.u_M, t.u_u_M, cross);
     product(o, t.phi.f, t.u_M, t.spread_1, scale);
     product(o, t.psi.f, t.u_u_M, t.spread_2, scale);
-    linear(o, t.moment_i,
-           [&](auto of) -> V3 { return t.E_i * (of(t.moment_local) + of(t.spread_1) + of(t.spread_2)); });
+    linear(o, t.moment_i, [&](auto of) -> V3 {
+        return t.E_i * (of(t.moment_local) + of(t.spread_1) + of(t.spread_2));
+    });
 }
 
 // p·p B(p), as a bilinear map of p with itself
@@ -410,7 +419,8 @@ void angle(Order o, PlaneAngleSeries& t) {
 // row = fixed + z/r (cos · of_cosine + sin · of_sine)
 void row_of(Order o, PlaneAngleSeries& t, const V3& fixed, const V3& of_cosine, const V3& of_sine) {
     product(o, t.z, t.inverse, t.factor, std::multiplies<>());
-    linear(o, t.along, [&](auto of) -> V3 { return of(t.unit).x() * of_cosine + of(t.unit).y() * of_sine; });
+    linear(o, t.along,
+           [&](auto of) -> V3 { return of(t.unit).x() * of_cosine + of(t.unit).y() * of_sine; });
     product(o, t.factor, t.along, t.row, scale);
     if (o.k == 0) t.row.c[0] += fixed;
 }
@@ -463,11 +473,13 @@ void plane_angles(BushingSeries& t, Order o) {
 void moment_of_plane_angles(BushingSeries& t, Order o) {
     for (std::size_t n = 0; n < 3; ++n) {
         PlaneAngleSeries& each = t.angles->axis[n];
-        linear(o, each.moment, [&](auto of) { return of(t.moment_local)[static_cast<Eigen::Index>(n)]; });
+        linear(o, each.moment,
+               [&](auto of) { return of(t.moment_local)[static_cast<Eigen::Index>(n)]; });
         product(o, each.moment, each.row, each.share, scale);
     }
     const auto& [x, y, z] = t.angles->axis;
-    linear(o, t.moment_i, [&](auto of) -> V3 { return t.E_i * (of(x.share) + of(y.share) + of(z.share)); });
+    linear(o, t.moment_i,
+           [&](auto of) -> V3 { return t.E_i * (of(x.share) + of(y.share) + of(z.share)); });
 }
 
 // ---- The frame on i: d = d_i.
@@ -522,8 +534,9 @@ void evaluate_moment(Equations& e, BushingSeries& t, Order o) {
     else
         t.angles != nullptr ? moment_of_plane_angles(t, o) : moment_of_rotation_vector(t, o);
     if (t.middle != nullptr && t.kind.formulation.offset_moment)
-        add_linear(o, t.moment_i,
-                   [&](auto of) -> V3 { return t.E_i * (of(t.middle->m) + of(t.middle->g_m)) / 2; });
+        add_linear(o, t.moment_i, [&](auto of) -> V3 {
+            return t.E_i * (of(t.middle->m) + of(t.middle->g_m)) / 2;
+        });
     product(o, e[t.i.body].C, t.moment_i, t.M, apply);
 }
 
@@ -657,8 +670,8 @@ void evaluate(Equations& e, FollowerSeries& t, Order o) {
 }  // namespace
 
 Equations equations(const Model& model, const Branch& branch, int order, Drive drive_) {
-    Equations e{Room(order), drive_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, false};
-    Room& room = e.room;
+    Equations e{Arena(order), drive_, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, false};
+    Arena& room = e.room;
     e.slots.resize(model.bodies.size() + 1);
     for (std::size_t b = 0; b < e.slots.size(); ++b) {
         reserve(room, e.slots[b].r, b == 0);
@@ -671,14 +684,16 @@ Equations equations(const Model& model, const Branch& branch, int order, Drive d
     e.constraints.reserve(model.constraints.size());
     e.loads.reserve(model.static_loads.size() + branch.drivers.size());
     for (const auto& elastic : model.elastics)
-        e.elastics.push_back(std::visit([&](const auto& kind) { return term(room, kind); }, elastic.kind));
+        e.elastics.push_back(
+            std::visit([&](const auto& kind) { return term(room, kind); }, elastic.kind));
     for (const auto& constraint : model.constraints)
         e.constraints.push_back(
             std::visit([&](const auto& kind) { return term(room, kind); }, constraint.kind));
     for (const auto& each : model.static_loads) e.loads.push_back(load(room, each, {1, 0}));
     for (const auto& driver : branch.drivers)
         std::visit([&](const auto& what) { drive(e, model, driver, what); }, driver.what);
-    for (auto& constraint : e.constraints) std::visit([](auto& t) { settle_on_constants(t); }, constraint);
+    for (auto& constraint : e.constraints)
+        std::visit([](auto& t) { settle_on_constants(t); }, constraint);
     e.curved = std::ranges::any_of(e.elastics, [](const ElasticSeries& elastic) {
         return std::visit([](const auto& t) { return curved(t); }, elastic);
     });
@@ -694,7 +709,8 @@ CubicSeries& cubic_of(Equations& e, std::size_t elastic, int axis) {
     return std::get<BushingSeries>(e.elastics[elastic]).axis[axis].cubic;
 }
 double deformation(const Equations& e, std::size_t elastic, int axis, int k) {
-    if (const auto* spring = std::get_if<SpringSeries>(&e.elastics[elastic])) return at(spring->stretch, k);
+    if (const auto* spring = std::get_if<SpringSeries>(&e.elastics[elastic]))
+        return at(spring->stretch, k);
     return at(std::get<BushingSeries>(e.elastics[elastic]).axis[axis].x, k);
 }
 
@@ -703,7 +719,8 @@ void begin(Equations& e, const State<double>& q, const Vector<double>& lambda, d
         e[b].r.c[0] = q[b].r;
         e[b].g.c[0].setZero();
     }
-    for (std::size_t k = 0; k < e.lambda.size(); ++k) e.lambda[k].c[0] = lambda[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0; k < e.lambda.size(); ++k)
+        e.lambda[k].c[0] = lambda[static_cast<Eigen::Index>(k)];
     e.a.c[0] = a;
     const auto place_all = [&](auto& terms) {
         for (auto& term : terms) std::visit([&](auto& t) { place(t, q); }, term);

@@ -25,7 +25,7 @@
 #include <array>
 #include <variant>
 
-#include "recursive/drive.hpp"
+#include "recursive/formula/drive.hpp"
 #include "recursive/series/taylor.hpp"
 
 namespace elastocheck::recursive::series {
@@ -81,9 +81,10 @@ struct AxisSeries {
 // d in axes half way between those of i and j (Formulation::Frame::middle): B^½ has the Gibbs
 // vector tan(|θ|/4) θ/|θ| = V / (|p| + W), p = (W, V) the relative quaternion.
 struct MiddleSeries {
-    Scalar squared, size, sum, inverse;          // p·p, |p|, |p| + W, 1 / (|p| + W)
-    TurnSeries half;                             // B^½
-    Vector3Series d_i, d, F_local, F_i, m, g_m;  // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
+    Scalar squared, size, sum, inverse;  // p·p, |p|, |p| + W, 1 / (|p| + W)
+    TurnSeries half;                     // B^½
+    Vector3Series d_i, d, F_local, F_i, m,
+        g_m;  // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
 };
 
 // One of the three Cardan or projected angles of B: the polar angle of a vector in a plane, with
@@ -107,8 +108,8 @@ struct BushingSeries {
     Matrix3<double> E_i;  // axes of marker i at τ = 0
     Eigen::Matrix4d
         to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion p of B = A_iᵀ A_j, any length
-    Vector3Series rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1, spread_2, force_i,
-        moment_i, F, M;
+    Vector3Series rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1,
+        spread_2, force_i, moment_i, F, M;
     Series<Eigen::Vector4d> relative;
     Vector6Series e, gradient, stress;  // (d, θ) - e₀, ∂u/∂e, ∂u/∂e + preload
     Scalar dot_g, W, inverse, s;
@@ -182,7 +183,7 @@ using LoadSeries = std::variant<ForceSeries, MomentSeries, FollowerSeries>;
 
 // All series of a model on a branch; allocated once.
 struct Equations {
-    Room room;
+    Arena room;
     Drive drive = Drive::rate;      // rate: the parameter is a; start: t
     std::vector<BodySeries> slots;  // ground, fixed, in slot 0
     std::vector<Scalar> lambda;     // one per row of Φ

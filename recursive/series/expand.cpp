@@ -10,17 +10,17 @@ namespace elastocheck::recursive::series {
 // not help.
 constexpr double loses_digits = 1e-13;
 
-Coefficients reserve_coefficients(const March<double>& s, int order) {
+Coefficients reserve_coefficients(const SteppingState<double>& s, int order) {
     const int N = s.n() + s.m();
-    return {Matrix<double>::Zero(N, order + 1), Vector<double>::Zero(order + 1), Vector<double>::Zero(N),
-            Vector<double>::Zero(N)};
+    return {Matrix<double>::Zero(N, order + 1), Vector<double>::Zero(order + 1),
+            Vector<double>::Zero(N), Vector<double>::Zero(N)};
 }
 
-double parameter(const March<double>& s, Drive drive) {
+double parameter(const SteppingState<double>& s, Drive drive) {
     return drive == Drive::start ? s.place.t : s.place.a;
 }
 
-void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
+void expand(SteppingState<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
             const Vector<double>& ahead) {
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
@@ -90,15 +90,16 @@ void expand(March<double>& s, Equations& e, Coefficients& c, double first, bool 
     }
 }
 
-double reach(const March<double>& s, const Coefficients& c, double tolerance, double per_load,
-             double radius) {
+double reach(const SteppingState<double>& s, const Coefficients& c, double tolerance,
+             double per_load, double radius) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     // Where constraints alone determine the motion, λ has a longer series than the motion. A force
     // counts as the displacement that it causes at the largest stiffness.
     const double most = stiffest(s.system.M), per_force = most > 0 ? 1 / most : 0;
     const auto size = [&](int k) {
         return std::hypot(c.x.col(k).head(n).cwiseProduct(s.system.weight.head(n)).norm(),
-                          per_force * c.x.col(k).tail(s.m()).norm(), k > 1 ? per_load * c.load[k] : 0.0);
+                          per_force * c.x.col(k).tail(s.m()).norm(),
+                          k > 1 ? per_load * c.load[k] : 0.0);
     };
     double last = size(p);
     if (p > 1 && std::isfinite(radius)) last = std::max(last, size(p - 1) / radius);
@@ -110,12 +111,13 @@ double reach(const March<double>& s, const Coefficients& c, double tolerance, do
     tau = std::min(tau, radius);
     for (int k = 0; k < 50; ++k) {
         const double middle = (least + tau) / 2;
-        (last * std::pow(middle, p) * middle / (radius - middle) <= tolerance ? least : tau) = middle;
+        (last * std::pow(middle, p) * middle / (radius - middle) <= tolerance ? least : tau) =
+            middle;
     }
     return least;
 }
 
-Singularity nearest_singularity(const March<double>& s, const Coefficients& c) {
+Singularity nearest_singularity(const SteppingState<double>& s, const Coefficients& c) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     const int from = std::max(4, p - 5);
     Singularity none{std::numeric_limits<double>::infinity(), 0, 1};
@@ -126,9 +128,9 @@ Singularity nearest_singularity(const March<double>& s, const Coefficients& c) {
     if (p < 5 || !(last > 0 || before > 0)) return none;
     // Scale τ so that the last coefficients are near one and all orders have the same weight in the
     // fit.
-    const double unit =
-        std::min(last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
-                 before > 0 ? std::pow(before, -1.0 / (p - 1)) : std::numeric_limits<double>::infinity());
+    const double unit = std::min(
+        last > 0 ? std::pow(last, -1.0 / p) : std::numeric_limits<double>::infinity(),
+        before > 0 ? std::pow(before, -1.0 / (p - 1)) : std::numeric_limits<double>::infinity());
     Matrix<double> y(n, p + 1);
     double binomial = 1, power = 1;
     for (int k = 0; k <= p; ++k) {
@@ -161,7 +163,8 @@ void horner(const Eigen::MatrixXd& c, double tau, Vector<double>& value) {
     for (Eigen::Index k = p; k-- > 0;) value = value * tau + c.col(k);
 }
 
-void displace(const State<double>& from, const Eigen::Ref<const Vector<double>>& x, State<double>& q) {
+void displace(const State<double>& from, const Eigen::Ref<const Vector<double>>& x,
+              State<double>& q) {
     for (BodyId b = 0; b < from.bodies(); ++b) {
         const Vector3<double> g = x.segment<3>(6 * b + 3) / 2;
         q[b].r = from[b].r + x.segment<3>(6 * b);

@@ -4,12 +4,12 @@
 
 #include <array>
 
-#include "recursive/finite.hpp"
-#include "recursive/recording.hpp"
+#include "recursive/diagnosis/finite.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
-#include "recursive/settle.hpp"
-#include "recursive/stiffness.hpp"
+#include "recursive/stepping/recording.hpp"
+#include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive::series {
 namespace {
@@ -55,8 +55,8 @@ std::optional<double> first_zero(Function f, double reach) {
 
 // One continuation: t from 0 to 1 while the start settles, or a from 0 to the branch's end.
 struct Walk {
-    March<double>& s;
-    const Options& options;
+    SteppingState<double>& s;
+    const recursive::Series& options;
     Equations e;
     Coefficients c;
     std::vector<Followed>& curves;
@@ -70,7 +70,7 @@ struct Walk {
     double heading = 0;
     // sign of the determinant at the start; by arc length of the matrix bordered by x'
     int side = 0;
-    Softest<double> softest = {};
+    SubspaceBasis<double> softest = {};
     bool stable = false;   // whether the start is stable; then every later point must be
     double log_begin = 0;  // log₂ |determinant| at the start of the expansion
     // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
@@ -78,7 +78,8 @@ struct Walk {
     Vector<double> x;  // value of the polynomial
     Path path;
 
-    Walk(March<double>& s_, std::vector<Followed>& curves_, const Options& options_, Drive drive)
+    Walk(SteppingState<double>& s_, std::vector<Followed>& curves_,
+         const recursive::Series& options_, Drive drive)
         : s(s_),
           options(options_),
           e(equations(s.model, s.branch, options.order, drive)),
@@ -106,12 +107,14 @@ struct Walk {
     }
 };
 
-double largest_force(const March<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
-double largest_violation(const March<double>& s) { return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff(); }
+double largest_force(const SteppingState<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
+double largest_violation(const SteppingState<double>& s) {
+    return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff();
+}
 
 // Whether redundant joints have become inconsistent by their drivers.
-bool contradicts(March<double>& s) {
-    if (!says_twice(s)) return false;
+bool contradicts(SteppingState<double>& s) {
+    if (!has_redundancy(s)) return false;
     residual_at(s, s.q, s.lambda);
     return contradict(s, s.q);
 }
@@ -128,7 +131,7 @@ Outcome judge_push_here(Walk& w, double missed) {
 // correction is the error of the expansion. With arc length the parameter is corrected too, so that
 // nothing moves along the path.
 Outcome arrive(Walk& w, Certificate* judged, double& error) {
-    March<double>& s = w.s;
+    SteppingState<double>& s = w.s;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
@@ -151,14 +154,16 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         back_substitute(s);
         if (slide) {
             const auto along = w.ahead.head(n).array() * W2;
-            const double da = -(along * s.x.head(n).array()).sum() / (along * w.c.unit.head(n).array()).sum();
+            const double da =
+                -(along * s.x.head(n).array()).sum() / (along * w.c.unit.head(n).array()).sum();
             s.x += da * w.c.unit;
             w.go_to(w.at() + da);
             slid = w.per_unit * std::abs(da);
         }
         if (!s.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
-        if (const Outcome outcome = judge_push_here(w, std::max(size, slid)); outcome != Outcome::converged)
+        if (const Outcome outcome = judge_push_here(w, std::max(size, slid));
+            outcome != Outcome::converged)
             return outcome;
         if (k == 0) error = std::max(size, slid);
         if (!(size < before)) break;  // at rounding level
@@ -207,7 +212,8 @@ void stop_at_knots(const Walk& w, End& end) {
         }
     // Several deformations may reach their knots at the same τ.
     for (const auto& [crossing, there] : met)
-        if (there.tau <= end.tau || meets(w.e, w.curves[crossing.curve], crossing.direction, end.tau, w.near))
+        if (there.tau <= end.tau ||
+            meets(w.e, w.curves[crossing.curve], crossing.direction, end.tau, w.near))
             end.over.push_back(crossing);
 }
 
@@ -232,7 +238,8 @@ Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end
     if (w.by_arc()) {
         // [m]; a branch without curvature would have an infinite range
         end.tau = std::min(end.tau, 1.0);
-        if (const auto met = first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
+        if (const auto met =
+                first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
             end = {*met, true, {}, {}};
         stop_at_knots(w, end);
         return Outcome::converged;
@@ -257,7 +264,8 @@ Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end
 // x'(τ) of the polynomial with the columns c.
 Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
     Vector<double> d = Vector<double>::Zero(c.rows());
-    for (Eigen::Index k = c.cols() - 1; k >= 1; --k) d = d * tau + static_cast<double>(k) * c.col(k);
+    for (Eigen::Index k = c.cols() - 1; k >= 1; --k)
+        d = d * tau + static_cast<double>(k) * c.col(k);
     return d;
 }
 
@@ -309,7 +317,8 @@ Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged)
         judged.force_middle = largest_force(w.s);
         judged.constraint_middle = largest_violation(w.s);
         if (w.stable)
-            w.in_middle = factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged ? determinant(w) : -1;
+            w.in_middle =
+                factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged ? determinant(w) : -1;
 
         move_to(w, from, end.tau);
         if (end.last && !w.by_arc()) w.go_to(w.to);
@@ -359,7 +368,8 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
         w.follow(curve);
     }
     w.go_to(w.to);  // with all forces at the end of the branch
-    if (w.e.drive == Drive::start ? pushes_idle_mode(w.s) : judge_push_here(w, 0) != Outcome::converged)
+    if (w.e.drive == Drive::start ? pushes_idle_mode(w.s)
+                                  : judge_push_here(w, 0) != Outcome::converged)
         return Outcome::loaded_idle_mode;
     w.go_to(0);
     if (w.curves.empty()) return judge(w.s, w.s.q, analysis.pivot_ratio);
@@ -399,7 +409,8 @@ Outcome set_out(Walk& w, Singularity& singularity, End& end) {
     for (;;) {
         expand(w.s, w.e, w.c, w.first, w.by_arc(), w.ahead);
         singularity = nearest_singularity(w.s, w.c);
-        if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged) return o;
+        if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged)
+            return o;
         if (end.at_once.empty()) return Outcome::converged;
         tried.push_back(pieces());
         const auto would_repeat = [&] {
@@ -425,7 +436,8 @@ double divide(Walk& w, const State<double>& from, double reach) {
     for (int k = 0; k < halvings && !w.by_arc(); ++k) {
         const double middle = before + (past - before) / 2;
         move_to(w, from, middle);
-        (factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged && !is_past(w, w.to) ? before : past) =
+        (factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged && !is_past(w, w.to) ? before
+                                                                                         : past) =
             middle;
     }
     move_to(w, from, past);
@@ -454,7 +466,9 @@ std::optional<double> lost_inside(Walk& w, const State<double>& from, double rea
         const double before = (at[1] - at[0]) / (tau[1] - tau[0]),
                      behind = (at[2] - at[1]) / (tau[2] - tau[1]);
         const double bend = (behind - before) / (tau[2] - tau[0]);
-        const auto parabola = [&](double x) { return at[0] + (x - tau[0]) * (before + bend * (x - tau[1])); };
+        const auto parabola = [&](double x) {
+            return at[0] + (x - tau[0]) * (before + bend * (x - tau[1]));
+        };
         double there = (tau[0] + tau[1]) / 2 - before / (2 * bend);
         const double least = parabola(there);
         if (!(bend > 0) || !(there > tau[0] && there < tau[2]) || !(least < deep)) break;
@@ -466,7 +480,8 @@ std::optional<double> lost_inside(Walk& w, const State<double>& from, double rea
             lambda_end = w.s.lambda;
         }
         move_to(w, from, there);
-        if (factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to)) return there;
+        if (factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to))
+            return there;
         const double here = determinant(w);
         if (std::abs(here - parabola(there)) <= foretold * least) break;
         const bool left = there < tau[1];
@@ -498,7 +513,7 @@ std::size_t most_expansions(const Walk& w, std::size_t gone_over) {
 
 // From an equilibrium, with its factors in s.system, to the end.
 Outcome walk(Walk& w) {
-    March<double>& s = w.s;
+    SteppingState<double>& s = w.s;
     std::size_t gone_over = 0;
     while (w.path.expansions.size() < most_expansions(w, gone_over)) {
         const State<double> from = s.q;
@@ -528,7 +543,7 @@ Outcome walk(Walk& w) {
         w.path.expansions.push_back({poses_of(from), w.c.x, w.c.load, end.tau,
                                      static_cast<int>(end.over.size()), singularity, judged});
         gone_over += end.over.size();
-        if (past) return Outcome::dividing_point;
+        if (past) return Outcome::bifurcation_point;
         if (end.last) return Outcome::converged;
         if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
         if (const Outcome o = go_over(w, end.over); o != Outcome::converged) return o;
@@ -539,47 +554,55 @@ Outcome walk(Walk& w) {
 std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
-    const std::string at = settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
-                                   : fmt::format("{}: at {:.6g}", branch, w.at());
-    if (w.s.begins_unstable) return fmt::format("{}: the equilibrium that settles at 0 is unstable", branch);
+    const std::string at =
+        settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
+                : fmt::format("{}: at {:.6g}", branch, w.at());
+    if (w.s.begins_unstable)
+        return fmt::format("{}: the equilibrium that settles at 0 is unstable", branch);
     switch (outcome) {
         case Outcome::limit_point:
             return settles ? fmt::format(
-                                 "{}: settling what is held, limit point at {:.9g} of it: from the drawing "
+                                 "{}: settling what is held, limit point at {:.9g} of it: from the "
+                                 "drawing "
                                  "no equilibrium leads further",
                                  branch, w.path.limits.back())
                            : fmt::format(
-                                 "{}: limit point near {:.9g}, past it no equilibrium continues the branch",
+                                 "{}: limit point near {:.9g}, past it no equilibrium continues "
+                                 "the branch",
                                  branch, w.path.limits.back());
         case Outcome::iteration_limit:
             return at + fmt::format(": {} expansions were not enough", w.path.expansions.size());
         case Outcome::singular:
             return at +
-                   ": the matrix is singular here or was on the way: the branch divides, or loses its "
+                   ": the matrix is singular here or was on the way: the branch divides, or loses "
+                   "its "
                    "stability" +
                    (diagnosis.null_space.cols() > 0
                         ? ", or what was idle or redundant at the design position no longer is"
                         : "");
-        case Outcome::dividing_point:
-            return at + ": another curve of equilibria crosses the branch, which is unstable past this point";
+        case Outcome::bifurcation_point:
+            return at +
+                   ": another curve of equilibria crosses the branch, which is unstable past this "
+                   "point";
         case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
         case Outcome::loaded_idle_mode:
-            return at +
-                   ": the load pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
+            return at + ": the load pushes what no joint and no rate resists as drawn: " +
+                   idle_modes(diagnosis);
         default: return at;
     }
 }
 
 }  // namespace
 
-Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis) {
+Path follow(const Model& model, const Branch& branch, const recursive::Series& options,
+            const Analysis& analysis) {
     check(model, branch);
     if (std::isnan(analysis.diagnosis.constraint_error)) {
         Path none;
         none.outcome = Outcome::not_finite, none.detail = not_finite(model);
         return none;
     }
-    March<double> s(model, branch, analysis);
+    SteppingState<double> s(model, branch, analysis);
     s.consistent = true;
     s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
     std::vector<Followed> curves = curves_of(model);
@@ -601,17 +624,19 @@ Path follow(const Model& model, const Branch& branch, const Options& options, co
             return finish(settling, o);
         const Outcome walked = walk(settling);
         if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
-        if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged) return finish(settling, o);
+        if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged)
+            return finish(settling, o);
         Walk w(s, curves, options, Drive::rate);
         w.go_to(0);
         return finish(w, walk(w));
     }
     Walk w(s, curves, options, Drive::rate);
-    if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged) return finish(w, o);
+    if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
+        return finish(w, o);
     return finish(w, walk(w));
 }
 
-Path follow(const Model& model, const Branch& branch, const Options& options) {
+Path follow(const Model& model, const Branch& branch, const recursive::Series& options) {
     return follow(model, branch, options, analyse(model));
 }
 
@@ -639,9 +664,11 @@ std::optional<Place> find(const Path& path, double load) {
                 return Place{k, std::clamp(tau, 0.0, x.reach)};
         } else {
             if (std::abs(load - from) <= rounding) return Place{k, 0};
-            if (const auto tau = first_zero([&](double t) { return polynomial(x.load, t) - load; }, x.reach))
+            if (const auto tau =
+                    first_zero([&](double t) { return polynomial(x.load, t) - load; }, x.reach))
                 return Place{k, *tau};
-            if (k + 1 == path.expansions.size() && std::abs(load - to) <= rounding) return Place{k, x.reach};
+            if (k + 1 == path.expansions.size() && std::abs(load - to) <= rounding)
+                return Place{k, x.reach};
         }
     }
     return std::nullopt;
@@ -679,20 +706,23 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
     Inputs<double> inputs;
     set_inputs<double>(model, branch, drawn, 1, 0, inputs);
     // Of the driven inputs, wrenches depend on joint offsets only.
-    const bool moves = std::ranges::any_of(
-        branch.drivers, [](const Driver& driver) { return std::holds_alternative<Motion>(driver.what); });
+    const bool moves = std::ranges::any_of(branch.drivers, [](const Driver& driver) {
+        return std::holds_alternative<Motion>(driver.what);
+    });
     for (std::size_t k = 0; k < path.expansions.size();) {
         const Expansion& expansion = path.expansions[k];
         const bool last = k + 1 == path.expansions.size();
         taus.clear();
         loads.clear();
-        for (std::size_t next = recording.reached; next < recording.points && taus.size() < at_once; ++next) {
+        for (std::size_t next = recording.reached; next < recording.points && taus.size() < at_once;
+             ++next) {
             // Same expression as in the other methods, to the last bit: curves are compared at
             // equal loads only.
             const double load = branch.to * static_cast<double>(next) / points;
             double tau = path.arc_length ? whole * static_cast<double>(next) / points - before
                                          : (load - expansion.load[0]) / expansion.load[1];
-            const double rounding = path.arc_length ? 1e-12 * expansion.reach : slack(expansion, load);
+            const double rounding =
+                path.arc_length ? 1e-12 * expansion.reach : slack(expansion, load);
             const bool beyond = tau > expansion.reach + rounding;
             if (beyond && !(last && path.arc_length && next + 1 == recording.points)) break;
             tau = std::clamp(tau, 0.0, expansion.reach);
@@ -703,7 +733,8 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
         powers.resize(expansion.x.cols(), static_cast<Eigen::Index>(taus.size()));
         for (Eigen::Index c = 0; c < powers.cols(); ++c) {
             double power = 1;
-            for (Eigen::Index row = 0; row < powers.rows(); ++row, power *= taus[static_cast<std::size_t>(c)])
+            for (Eigen::Index row = 0; row < powers.rows();
+                 ++row, power *= taus[static_cast<std::size_t>(c)])
                 powers(row, c) = power;
         }
         x.noalias() = expansion.x * powers;

@@ -14,17 +14,18 @@
 #include <optional>
 #include <vector>
 
-#include "models/equilibrium_path.hpp"
-#include "models/model.hpp"
-#include "recursive/analysis.hpp"
-#include "recursive/series/options.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
+#include "elastocheck/recursive_method.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 namespace elastocheck::recursive::series {
 
 // Pole or branch point nearest to τ = 0, estimated from the coefficients.
 struct Singularity {
     double radius = 0;  // |τ|
-    double angle = 0;  // of τ in the complex plane: 0 straight ahead, ±π/2 beside the path, π behind [rad]
+    double angle =
+        0;  // of τ in the complex plane: 0 straight ahead, ±π/2 beside the path, π behind [rad]
     double misfit = 0;  // relative residual of the fit: 0 exact, 1 no fit
 };
 
@@ -38,10 +39,10 @@ struct Certificate {
 
 struct Expansion {
     std::vector<Pose> start;  // at τ = 0
-    Eigen::MatrixXd x;        // (r_k, 2 g_k; λ_k) for k = 0 ... p: [(6nb + m) × (p+1)]; r_0 = 2 g_0 = 0
-    Eigen::VectorXd load;     // a_k
-    double reach = 0;         // used for 0 ≤ τ ≤ reach
-    int knots = 0;            // knots crossed at the end
+    Eigen::MatrixXd x;  // (r_k, 2 g_k; λ_k) for k = 0 ... p: [(6nb + m) × (p+1)]; r_0 = 2 g_0 = 0
+    Eigen::VectorXd load;  // a_k
+    double reach = 0;      // used for 0 ≤ τ ≤ reach
+    int knots = 0;         // knots crossed at the end
     Singularity singularity;
     Certificate certificate;
 
@@ -60,8 +61,9 @@ struct Path {
 
 // Follows the branch from load factor 0 to branch.to. With the load as parameter, ends with
 // `limit_point` where no equilibrium continues the branch.
-Path follow(const Model& model, const Branch& branch, const Options& options, const Analysis& analysis);
-Path follow(const Model& model, const Branch& branch, const Options& options = {});
+Path follow(const Model& model, const Branch& branch, const recursive::Series& options,
+            const Analysis& analysis);
+Path follow(const Model& model, const Branch& branch, const recursive::Series& options = {});
 
 // Position on the path; find() returns the first position with the given load factor.
 struct Place {

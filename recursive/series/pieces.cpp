@@ -31,7 +31,8 @@ Polynomial bernstein(const Polynomial& c, double h) {
 
 // First τ in [from, to] at which the polynomial is below `level`, to round-off of `to`: bisection,
 // left half first, skipping halves that are above `level` throughout.
-std::optional<double> first_below(Polynomial b, double level, double from, double to, int halvings) {
+std::optional<double> first_below(Polynomial b, double level, double from, double to,
+                                  int halvings) {
     if (!(b.minCoeff() < level)) return std::nullopt;
     if (b[0] < level || halvings == 0) return b[0] < level ? from : to;
     const Eigen::Index p = b.size() - 1;
@@ -82,7 +83,9 @@ std::optional<Leaving> leaving(const Polynomial& f, int direction, double reach,
     return Leaving{to, direction, bernstein(g, to).maxCoeff() <= touch};
 }
 
-double slope(const Curve& curve, Piece piece, double x) { return piece_of<double>(curve, x, piece).slope(); }
+double slope(const Curve& curve, Piece piece, double x) {
+    return piece_of<double>(curve, x, piece).slope();
+}
 
 }  // namespace
 
@@ -132,20 +135,22 @@ bool step_over(Followed& f, int direction) {
     return std::abs(behind - before) > 1e-12 * std::max(std::abs(before), std::abs(behind));
 }
 
-std::optional<Leaving> leaving(const Equations& e, const Followed& f, double reach, const Near& near) {
+std::optional<Leaving> leaving(const Equations& e, const Followed& f, double reach,
+                               const Near& near) {
     const double unit = f.turns() ? near.length : 1;
     std::optional<Leaving> first;
     for (const int direction : {+1, -1}) {
         if (!has_knot(f, direction)) continue;
-        const auto there =
-            leaving(inside(e, f, direction), direction, reach, near.touch / unit, near.arrived / unit);
+        const auto there = leaving(inside(e, f, direction), direction, reach, near.touch / unit,
+                                   near.arrived / unit);
         if (there && (!first || there->tau < first->tau)) first = there;
     }
     return first;
 }
 
 bool meets(const Equations& e, const Followed& f, int direction, double tau, const Near& near) {
-    return std::abs(value(inside(e, f, direction), tau)) <= near.touch / (f.turns() ? near.length : 1);
+    return std::abs(value(inside(e, f, direction), tau)) <=
+           near.touch / (f.turns() ? near.length : 1);
 }
 
 }  // namespace elastocheck::recursive::series

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "recursive/inputs.hpp"
+#include "recursive/formula/inputs.hpp"
 #include "recursive/series/equations.hpp"
 
 namespace elastocheck::recursive::series {
@@ -55,7 +55,8 @@ struct Leaving {
     int direction = 0;     // the knot behind the piece (+1), or the one before it (-1)
     bool at_once = false;  // it starts at that knot and moves out of the piece: wrong piece
 };
-std::optional<Leaving> leaving(const Equations& e, const Followed& curve, double reach, const Near& near);
+std::optional<Leaving> leaving(const Equations& e, const Followed& curve, double reach,
+                               const Near& near);
 
 // Whether the deformation at τ is at the knot in that direction.
 bool meets(const Equations& e, const Followed& curve, int direction, double tau, const Near& near);

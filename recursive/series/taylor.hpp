@@ -15,7 +15,7 @@
 #include <memory_resource>
 #include <span>
 
-#include "recursive/state.hpp"
+#include "recursive/formula/state.hpp"
 
 namespace elastocheck::recursive::series {
 
@@ -26,12 +26,13 @@ struct Order {
 };
 
 // Memory of all series of one set of equations, freed as a whole.
-struct Room {
+struct Arena {
     int order = 0;  // p
     std::unique_ptr<std::pmr::monotonic_buffer_resource> memory;
 
-    explicit Room(int p)
-        : order(p), memory(std::make_unique<std::pmr::monotonic_buffer_resource>(std::size_t{1} << 15)) {}
+    explicit Arena(int p)
+        : order(p),
+          memory(std::make_unique<std::pmr::monotonic_buffer_resource>(std::size_t{1} << 15)) {}
 
     template <class T>
     T* take(int count, const T& value) {
@@ -64,7 +65,7 @@ using Vector6Series = Series<Vector6<double>>;
 using Matrix3Series = Series<Matrix3<double>>;
 
 template <class T>
-void reserve(Room& room, Series<T>& s, bool constant = false) {
+void reserve(Arena& room, Series<T>& s, bool constant = false) {
     s.c = room.take<T>(room.order + 1, s.zero());
     s.last = constant ? 0 : room.order;
 }
@@ -98,19 +99,26 @@ void product(Order o, const Series<A>& a, const Series<B>& b, Series<C>& c, Time
     }
 }
 
-inline constexpr auto scale = [](double a, const Vector3<double>& b) -> Vector3<double> { return a * b; };
-inline constexpr auto dot = [](const Vector3<double>& a, const Vector3<double>& b) { return a.dot(b); };
-inline constexpr auto cross = [](const Vector3<double>& a, const Vector3<double>& b) -> Vector3<double> {
+inline constexpr auto scale = [](double a, const Vector3<double>& b) -> Vector3<double> {
+    return a * b;
+};
+inline constexpr auto dot = [](const Vector3<double>& a, const Vector3<double>& b) {
+    return a.dot(b);
+};
+inline constexpr auto cross = [](const Vector3<double>& a,
+                                 const Vector3<double>& b) -> Vector3<double> {
     return a.cross(b);
 };
-inline constexpr auto outer = [](const Vector3<double>& a, const Vector3<double>& b) -> Matrix3<double> {
+inline constexpr auto outer = [](const Vector3<double>& a,
+                                 const Vector3<double>& b) -> Matrix3<double> {
     return a * b.transpose();
 };
-inline constexpr auto apply = [](const Matrix3<double>& A, const Vector3<double>& b) -> Vector3<double> {
-    return A * b;
+inline constexpr auto apply = [](const Matrix3<double>& A,
+                                 const Vector3<double>& b) -> Vector3<double> { return A * b; };
+inline constexpr auto apply_transposed = [](const Matrix3<double>& A,
+                                            const Vector3<double>& b) -> Vector3<double> {
+    return A.transpose() * b;
 };
-inline constexpr auto apply_transposed =
-    [](const Matrix3<double>& A, const Vector3<double>& b) -> Vector3<double> { return A.transpose() * b; };
 
 // Coefficient k of a linear map of series: map(get), where get(s) reads coefficient k of s.
 template <class C, class Map>
@@ -231,7 +239,7 @@ struct Composition {
     double* power;        // coefficient k of σⁿ at n (p + 1) + k, n = 2 ... p
     Scalar f;
 };
-inline void reserve(Room& room, Composition& c) {
+inline void reserve(Arena& room, Composition& c) {
     const int n = room.order + 1;
     c.b = {room.take<double>(n, 0), static_cast<std::size_t>(n)};
     c.power = room.take<double>(n * n, 0);
@@ -250,7 +258,8 @@ inline void compose(Order o, const Scalar& s, Composition& c) {
     const int k = o.k, columns = static_cast<int>(c.b.size());
     double sum = c.b[1] * at(s, k);
     for (int n = 2; n <= k; ++n) {
-        const double* const lower = n == 2 ? s.c : c.power + (n - 1) * columns;  // σⁿ⁻¹ begins at order n - 1
+        const double* const lower =
+            n == 2 ? s.c : c.power + (n - 1) * columns;  // σⁿ⁻¹ begins at order n - 1
         double power = 0;
         for (int i = 1; i + (n - 1) <= k; ++i) power += at(s, i) * lower[k - i];
         c.power[n * columns + k] = power;

@@ -129,7 +129,8 @@ struct Walk {
         const Values<double> of = evaluate(here, doubles(node.y), a, Slopes::yes);
         node.Y = inverse(square(of.J, here.size()));
         VectorXd right(here.size());
-        right << -Eigen::Map<const VectorXd>(of.E_a.data(), here.n()), border.g.transpose() * guess.slope;
+        right << -Eigen::Map<const VectorXd>(of.E_a.data(), here.n()),
+            border.g.transpose() * guess.slope;
         node.rate = node.Y * right;
         node.found = node.y.allFinite() && node.rate.allFinite();
         return node;
@@ -150,7 +151,8 @@ struct Piece {
 
 Piece quintic(const Node& from, const Node& middle, const Node& to) {
     const double h = to.a / 2 - from.a / 2;
-    const VectorXd d = (to.y - from.y) / 2, q_from = (h * from.rate - d) / 2, q_to = (d - h * to.rate) / 2;
+    const VectorXd d = (to.y - from.y) / 2, q_from = (h * from.rate - d) / 2,
+                   q_to = (d - h * to.rate) / 2;
     Piece piece{from.a, to.a, from.y, to.y, {}, {}};
     piece.q[0] = middle.y - (from.y + to.y) / 2;
     piece.q[1] = h * middle.rate - d;
@@ -167,7 +169,8 @@ Piece straight(const Node& from, const Node& to) {
 std::array<Interval, 6> powers(const Piece& piece, Index i) {
     const Interval y0 = piece.y0[i], y1 = piece.y1[i], half = 0.5;
     const auto q = [&](std::size_t k) { return Interval(piece.q[k][i]); };
-    return {(y0 + y1) * half + q(0), (y1 - y0) * half + q(1), q(2) - q(0), q(3) - q(1), -q(2), -q(3)};
+    return {
+        (y0 + y1) * half + q(0), (y1 - y0) * half + q(1), q(2) - q(0), q(3) - q(1), -q(2), -q(3)};
 }
 
 // Taylor coefficients about all s in S at once.
@@ -210,7 +213,8 @@ std::vector<std::vector<Interval>> coefficients(const Evaluate& evaluate) {
 }
 
 // Y(s) F| ≤ Σ |Y₀ F_k| + |Y₁ F_k|, as |s| ≤ 1. The gauge is zero along the piece by definition.
-VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>> F, int gauge_from) {
+VectorXd step(const std::vector<MatrixXd>& Y, std::vector<std::vector<Interval>> F,
+              int gauge_from) {
     VectorXd sum = VectorXd::Zero(Y.front().rows());
     for (auto& part : F) {
         std::fill(part.begin() + gauge_from, part.end(), Interval());
@@ -322,7 +326,8 @@ bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& j
     // Range of the tube over which F' is evaluated.
     const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
     const auto J = coefficients<J_order>([&](const Interval& S) {
-        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S), Slopes::yes)
+        return evaluate(problem, along<J_order>(piece, S, &room), parameter<J_order>(piece, S),
+                        Slopes::yes)
             .J;
     });
     for (const auto& part : J)
@@ -345,10 +350,12 @@ bool over_a_corner(const System& system, const Piece& piece) {
 }
 
 // The same for a piece across a knot.
-bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint, const Tolerance& tolerance) {
+bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint,
+                     const Tolerance& tolerance) {
     const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
     const auto F = coefficients<1>([&](const Interval& S) {
-        return evaluate_without_slopes(problem, along<1>(piece, S, nullptr), parameter<1>(piece, S)).E;
+        return evaluate_without_slopes(problem, along<1>(piece, S, nullptr), parameter<1>(piece, S))
+            .E;
     });
     const auto slopes = [&](const VectorXd& room) {
         std::vector<Interval> y;
@@ -389,7 +396,8 @@ Extent distance(const Piece& piece, const StateAt& at) {
     const Interval a0 = piece.a0, a1 = piece.a1,
                    s = (Interval(2) * Interval(at.state.load) - a0 - a1) / (a1 - a0);
     std::vector<Interval> z;
-    for (const auto& jet : along<0>(piece, intersection(s, Interval(-1, 1)), &piece.r)) z.push_back(jet.c[0]);
+    for (const auto& jet : along<0>(piece, intersection(s, Interval(-1, 1)), &piece.r))
+        z.push_back(jet.c[0]);
     z.resize(static_cast<std::size_t>(at.system.n()));
     return distance(at, z);
 }
@@ -403,7 +411,8 @@ Held held_over(const Walk& walk, const Piece& piece) {
     const Index k = walk.border.count(), n = walk.system.n(), balances = 6 * walk.system.bodies;
     if (k == 0) return {};
     VectorXd mu = piece.r.tail(k);
-    for (Index i = 0; i < k; ++i) mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
+    for (Index i = 0; i < k; ++i)
+        mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
     const VectorXd all = walk.border.U.cwiseAbs() * mu * (1 + 1e-12);
     return {balances > 0 ? all.head(balances).maxCoeff() : 0,
             walk.system.rows > 0 ? all.segment(balances, walk.system.rows).maxCoeff() : 0};
@@ -422,7 +431,9 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     };
     if (states.size() < 2) return open("a way between states needs two of them");
     if (!arithmetic_is_as_proved())
-        return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
+        return open(
+            "this machine does not round to nearest, or drops small numbers: nothing can be "
+            "proved");
     const System system = make_system(model, branch, Corners::apart);
     if (const auto why = too_large(system); !why.empty()) return open(why);
     std::vector<StateAt> at;
@@ -430,13 +441,15 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     tube.from = tube.to = states.front().load;
     const double end = states.back().load, way = end - tube.from;
     for (std::size_t k = 0; k < at.size(); ++k) {
-        if (!at[k].z.allFinite() || !std::isfinite(states[k].load)) return open("a state is not finite");
+        if (!at[k].z.allFinite() || !std::isfinite(states[k].load))
+            return open("a state is not finite");
         if (k > 0 && !((states[k].load - states[k - 1].load) * way > 0))
             return open(fmt::format("the states turn back at {:.9g}", states[k].load));
     }
     const StateAt& middle = at[at.size() / 2];
     const Interpolant interpolant_of = interpolant(at);
-    const Walk walk{system, interpolant_of, approach(system, middle.z, middle.state.load).problem.border};
+    const Walk walk{system, interpolant_of,
+                    approach(system, middle.z, middle.state.load).problem.border};
 
     // Step-size control: halved after a failure, enlarged by three fifths after a success.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
@@ -445,7 +458,8 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     Held held, pushed;
     Node from = walk.node(tube.from), middle_node, to;
     if (!from.found)
-        return open(fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
+        return open(
+            fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
     enclose(walk, from);
     if (from.box.size() == 0 || !walk.is_sound(from))
         return open(fmt::format("nothing is proved at {:.9g}", tube.from));
@@ -455,19 +469,22 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     int bridges = 0;  // consecutive pieces across knots up to here
     while (tube.to != end) {
         if (bridges == most_bridges)
-            return open(fmt::format("past {:.12g} the way stays on a knot, or close to one", tube.to));
+            return open(
+                fmt::format("past {:.12g} the way stays on a knot, or close to one", tube.to));
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
         if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
             if (pushed.held > tolerance.held)
-                return open(
-                    fmt::format("past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m",
-                                tube.to, idle_bodies(system, walk.border), pushed.held));
+                return open(fmt::format(
+                    "past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m",
+                    tube.to, idle_bodies(system, walk.border), pushed.held));
             if (pushed.gap > tolerance.gap)
-                return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad", tube.to,
-                                        redundant_joints(system, walk.border), pushed.gap));
+                return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad",
+                                        tube.to, redundant_joints(system, walk.border),
+                                        pushed.gap));
             return open(fmt::format(
-                "no piece is proved past {:.12g}: the branch turns back or divides, or a law ends", tube.to));
+                "no piece is proved past {:.12g}: the branch turns back or divides, or a law ends",
+                tube.to));
         }
         to = halved && middle_node.a == a1 ? middle_node : walk.node(a1);
         middle_node = walk.node(tube.to / 2 + a1 / 2);
@@ -475,11 +492,14 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         bool proved = false, over_knot = false;
         Held of_piece;
         // Whether the boxes at both ends lie within the tube.
-        const auto joined = [&] { return all_less(from.box, piece.r) && all_less(to.box, piece.r); };
+        const auto joined = [&] {
+            return all_less(from.box, piece.r) && all_less(to.box, piece.r);
+        };
         const auto attempt = [&](const VectorXd& joint) {
             if (to.found && middle_node.found) {
                 piece = quintic(from, middle_node, to);
-                proved = !over_a_corner(system, piece) && prove(walk, piece, middle_node.Y, joint, tolerance);
+                proved = !over_a_corner(system, piece) &&
+                         prove(walk, piece, middle_node.Y, joint, tolerance);
             }
             over_knot = false;
             if (!proved && to.found && std::abs(h) < bridge * std::abs(way)) {
@@ -527,21 +547,25 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         bridges = over_knot ? bridges + 1 : 0;
         if (std::abs(h) > std::abs(way)) h = way;
     }
-    const bool near = tube.width.length <= tolerance.length && tube.width.angle <= tolerance.angle &&
-                      tube.width.force <= tolerance.force && tube.width.moment <= tolerance.moment;
+    const bool near = tube.width.length <= tolerance.length &&
+                      tube.width.angle <= tolerance.angle && tube.width.force <= tolerance.force &&
+                      tube.width.moment <= tolerance.moment;
     if (!near)
-        return open(fmt::format(
-            "a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m "
-            "from the states, which is more than the tolerance",
-            1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi, tube.width.force,
-            tube.width.moment));
+        return open(
+            fmt::format("a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} "
+                        "N and {:.2g} N·m "
+                        "from the states, which is more than the tolerance",
+                        1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi,
+                        tube.width.force, tube.width.moment));
     tube.answer = Answer::proved;
     if (walk.border.count() > walk.border.redundant)
-        tube.detail = fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
-                                  idle_bodies(system, walk.border), held.held);
+        tube.detail =
+            fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
+                        idle_bodies(system, walk.border), held.held);
     if (walk.border.redundant > 0)
         tube.detail += fmt::format(
-            "{}joints {} hold more than once: they share as in the states, and stay open by at most "
+            "{}joints {} hold more than once: they share as in the states, and stay open by at "
+            "most "
             "{:.1e} m or rad",
             tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), held.gap);
     return tube;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "models/equilibrium_path.hpp"
-#include "models/model.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
 
 namespace elastocheck::reference::certificate {
 
@@ -71,7 +71,7 @@ struct Tube {
     Answer answer = Answer::open;
     std::string detail;
     double from = 0, to = 0;  // range of a covered without a gap
-    Extent width;             // of the tube: largest distance of the curve from the states at their a
+    Extent width;  // of the tube: largest distance of the curve from the states at their a
     int pieces = 0;
     int corners = 0;  // number of pieces across a stop that closes or opens
 };

@@ -34,8 +34,8 @@ Near near_of(const Tolerance& tolerance) {
     return {tolerance.length, tolerance.angle, tolerance.force, tolerance.moment};
 }
 bool within(const Extent& far, const Tolerance& tolerance) {
-    return far.length <= tolerance.length && far.angle <= tolerance.angle && far.force <= tolerance.force &&
-           far.moment <= tolerance.moment;
+    return far.length <= tolerance.length && far.angle <= tolerance.angle &&
+           far.force <= tolerance.force && far.moment <= tolerance.moment;
 }
 
 // ---- The smallest box
@@ -176,7 +176,8 @@ Extent unique_around(const StateAt& at, const Approximate& found, double t) {
 bool none_within(const StateAt& at, const Tolerance& tolerance) {
     const System& system = at.system;
     const double load = at.state.load;
-    const Problem problem{system, border_at(system, at.z, load, little_is_nothing), at.z, false, {}, {}};
+    const Problem problem{system, border_at(system, at.z, load, little_is_nothing), at.z, false, {},
+                          {}};
     const Index n = system.n(), k = problem.border.count();
     const Near near = near_of(tolerance);
     const VectorXd delta = radii(at, near);
@@ -187,7 +188,8 @@ bool none_within(const StateAt& at, const Tolerance& tolerance) {
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = at.z;
     const Interval a = load;
-    const Eigen::MatrixXd Y = inverse(square(evaluate(problem, doubles(y), load, Slopes::yes).J, n + k));
+    const Eigen::MatrixXd Y =
+        inverse(square(evaluate(problem, doubles(y), load, Slopes::yes).J, n + k));
     if (!Y.allFinite()) return false;
     const auto E = evaluate(system, thin(at.z), a, Slopes::no).E;
     const auto J = evaluate(system, around_state, a, Slopes::yes).J;
@@ -218,8 +220,9 @@ Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
     centre.load = at.state.load;
     for (BodyId body = 0; body < system.bodies; ++body) {
         const int k = system.pose(body);
-        centre.poses.push_back({z.segment<3>(k) + system.c,
-                                Eigen::Quaterniond(z[k + 3], z[k + 4], z[k + 5], z[k + 6]).normalized()});
+        centre.poses.push_back(
+            {z.segment<3>(k) + system.c,
+             Eigen::Quaterniond(z[k + 3], z[k + 4], z[k + 5], z[k + 6]).normalized()});
     }
     const auto vector = [](const Vec<double>& v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
     for (const auto& wrench : wrenches(system, doubles(z), at.state.load))
@@ -237,16 +240,18 @@ std::string on_knots(const System& system, const std::vector<Interval>& z, const
         return curve != nullptr && bounded(x) && over_a_knot(*curve, x);
     };
     for (std::size_t e = 0; e < all.size(); ++e) {
-        const bool on =
-            std::visit(overloaded{[&](const AxialSpring& spring) { return note(spring.law, all[e][0]); },
-                                  [&](const Bushing& bushing) {
-                                      const auto* law = std::get_if<PerAxis>(&bushing.law);
-                                      for (std::size_t k = 0; law != nullptr && k < 6; ++k)
-                                          if (note(law->axis[k], all[e][k])) return true;
-                                      return false;
-                                  }},
-                       system.model->elastics[e].kind);
-        if (on) names += fmt::format("{}'{}'", names.empty() ? "" : ", ", system.model->elastics[e].name);
+        const bool on = std::visit(
+            overloaded{[&](const AxialSpring& spring) { return note(spring.law, all[e][0]); },
+                       [&](const Bushing& bushing) {
+                           const auto* law = std::get_if<PerAxis>(&bushing.law);
+                           for (std::size_t k = 0; law != nullptr && k < 6; ++k)
+                               if (note(law->axis[k], all[e][k])) return true;
+                           return false;
+                       }},
+            system.model->elastics[e].kind);
+        if (on)
+            names +=
+                fmt::format("{}'{}'", names.empty() ? "" : ", ", system.model->elastics[e].name);
     }
     return names;
 }
@@ -270,13 +275,14 @@ std::string theorem(const Problem& problem, const Certificate& certificate) {
     std::string words;
     const Border& border = problem.border;
     if (border.count() > border.redundant)
-        say(words, fmt::format("idle motion of {} stands as in the state, held by at most {:.1e} N or N·m",
-                               idle_bodies(problem.system, border), certificate.held));
-    if (border.redundant > 0)
         say(words,
-            fmt::format("joints {} hold more than once: they share as in the state, and stay open by at most "
-                        "{:.1e} m or rad",
-                        redundant_joints(problem.system, border), certificate.gap));
+            fmt::format("idle motion of {} stands as in the state, held by at most {:.1e} N or N·m",
+                        idle_bodies(problem.system, border), certificate.held));
+    if (border.redundant > 0)
+        say(words, fmt::format("joints {} hold more than once: they share as in the state, and "
+                               "stay open by at most "
+                               "{:.1e} m or rad",
+                               redundant_joints(problem.system, border), certificate.gap));
     return words;
 }
 
@@ -289,7 +295,9 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         return certificate;
     };
     if (!arithmetic_is_as_proved())
-        return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
+        return open(
+            "this machine does not round to nearest, or drops small numbers: nothing can be "
+            "proved");
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
     if (const auto why = too_large(system); !why.empty()) return open(why);
 
@@ -307,17 +315,19 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             const VectorXd mu =
                 (found.y.tail(problem.border.count()).cwiseAbs() + r.tail(problem.border.count()));
             set_held(certificate, problem, mu);
-            const bool balanced =
-                there.sound && certificate.held <= tolerance.held && certificate.gap <= tolerance.gap;
+            const bool balanced = there.sound && certificate.held <= tolerance.held &&
+                                  certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
-                certificate.unique = unique_around(at, found, alone(problem, found.y, state.load, r));
+                certificate.unique =
+                    unique_around(at, found, alone(problem, found.y, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 say(certificate.detail, theorem(problem, certificate));
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
                     say(certificate.detail,
-                        fmt::format("{} on a knot of its curve, whose pieces are taken to meet there",
-                                    knots));
+                        fmt::format(
+                            "{} on a knot of its curve, whose pieces are taken to meet there",
+                            knots));
                 return certificate;
             }
         }
@@ -325,31 +335,35 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
     if (none_within(at, tolerance)) {
         certificate.answer = Answer::excluded;
         if (std::isfinite(certificate.error.length))
-            certificate.detail =
-                fmt::format("the nearest one found{} is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m away",
-                            problem.border.count() > problem.border.redundant
-                                ? fmt::format(", with the idle motion of {} where the state has it,",
-                                              idle_bodies(system, problem.border))
-                                : "",
-                            1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
-                            certificate.error.force, certificate.error.moment);
+            certificate.detail = fmt::format(
+                "the nearest one found{} is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m away",
+                problem.border.count() > problem.border.redundant
+                    ? fmt::format(", with the idle motion of {} where the state has it,",
+                                  idle_bodies(system, problem.border))
+                    : "",
+                1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
+                certificate.error.force, certificate.error.moment);
         else
             certificate.detail = "none is found near the state either";
         if (there.pushed)
-            say(certificate.detail, fmt::format("the idle motion of {} is pushed by {:.2g} N or N·m",
-                                                idle_bodies(system, problem.border), certificate.held));
+            say(certificate.detail,
+                fmt::format("the idle motion of {} is pushed by {:.2g} N or N·m",
+                            idle_bodies(system, problem.border), certificate.held));
         if (there.open)
-            say(certificate.detail, fmt::format("joints {} stay open by {:.2g} m or rad",
-                                                redundant_joints(system, problem.border), certificate.gap));
+            say(certificate.detail,
+                fmt::format("joints {} stay open by {:.2g} m or rad",
+                            redundant_joints(system, problem.border), certificate.gap));
         return certificate;
     }
     if (!found.settled) return open("Newton's method settles nowhere near the state");
     if (!std::isfinite(certificate.error.length))
         return open(
-            "the test contracts in no box: the stiffness is too near to singular for doubles, or a law ends "
+            "the test contracts in no box: the stiffness is too near to singular for doubles, or a "
+            "law ends "
             "here");
     return open(fmt::format(
-        "an equilibrium is within {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m, which is more than "
+        "an equilibrium is within {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m, which is more "
+        "than "
         "the tolerance, and none could not be shown",
         1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
         certificate.error.force, certificate.error.moment));

@@ -60,9 +60,11 @@ VectorXd passing(const VectorXd& first, const Contraction& rest) {
     constexpr double least = 1e-20;
     const Index n = first.size();
     const VectorXd covered = first.cwiseMax(least) * 1.05;
-    const MatrixXd A = MatrixXd::Identity(n, n) - rest.rest - rest.Y * (rest.R + rest.gamma * rest.M);
+    const MatrixXd A =
+        MatrixXd::Identity(n, n) - rest.rest - rest.Y * (rest.R + rest.gamma * rest.M);
     const VectorXd r = Eigen::PartialPivLU<MatrixXd>(A).solve(covered);
-    return r.allFinite() && all_less((first + rest(r.cwiseMax(0))) * (1 + 1e-14), r) ? r : VectorXd();
+    return r.allFinite() && all_less((first + rest(r.cwiseMax(0))) * (1 + 1e-14), r) ? r
+                                                                                     : VectorXd();
 }
 
 VectorXd step(const MatrixXd& Y, const std::vector<Interval>& F) {

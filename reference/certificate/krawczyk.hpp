@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "reference/certificate/interval.hpp"
+#include "reference/certificate/interval/interval.hpp"
 
 namespace elastocheck::reference::certificate {
 

@@ -112,7 +112,8 @@ Segment segment(const Problem& problem, const VectorXd& y, const MatrixXd& Y, do
         if (!of.rest.finite) return of;
         VectorXd next = (first * wider).cwiseMax(least);
         for (int k = 0; k < 3; ++k) next = ((first + of.rest(next)) * wider).cwiseMax(least);
-        if ((next.array() <= r.array()).all() && all_less((first + of.rest(next)) * (1 + 1e-14), next)) {
+        if ((next.array() <= r.array()).all() &&
+            all_less((first + of.rest(next)) * (1 + 1e-14), next)) {
             of.r = next;
             of.proved = true;
             return of;
@@ -133,13 +134,16 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         return limit;
     };
     if (!arithmetic_is_as_proved())
-        return open("this machine does not round to nearest, or drops small numbers: nothing can be proved");
+        return open(
+            "this machine does not round to nearest, or drops small numbers: nothing can be "
+            "proved");
     const System system = make_system(model, branch);
     if (const auto why = too_large(system); !why.empty()) return open(why);
     const StateAt at = state_at(system, state);
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
 
-    Problem known{system, border_at(system, at.z, state.load, little_is_nothing), at.z, false, {}, {}};
+    Problem known{system, border_at(system, at.z, state.load, little_is_nothing), at.z, false, {},
+                  {}};
     const Index n = known.size() + 1;
     VectorXd y = VectorXd::Zero(n);
     y.head(system.n()) = at.z;
@@ -155,7 +159,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     if (!top.found) return open("no limit point is found near the state");
     if (!worth(problem, top.y, top.y[n - 1]).sound)
         return open(
-            "what is held as idle or redundant at the limit point is not, or is pushed or open there");
+            "what is held as idle or redundant at the limit point is not, or is pushed or open "
+            "there");
 
     problem.y_t = top.y;
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {
@@ -173,9 +178,11 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
             if (!point.proved) break;
             Interval sigma;
             for (Index i = 0; i < n; ++i)
-                sigma += Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
-            const bool on_segment = mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
-                                    all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
+                sigma +=
+                    Interval(problem.t[i]) * (around(end.y[i], point.r[i]) - Interval(top.y[i]));
+            const bool on_segment =
+                mag(sigma) <= delta && sigma.lo * to > 0 && sigma.hi * to > 0 &&
+                all_less(((end.y - top.y).cwiseAbs() + point.r) * (1 + 1e-14), all.r);
             const SlopeOf slope = slope_of_a(end.Y, point.rest);
             if (!on_segment || !(std::abs(slope.middle) > slope.radius)) break;
             sign[side] = slope.middle > 0 ? 1 : -1;
@@ -195,8 +202,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
             limit.detail = fmt::format(
                 "a limit point is proved, {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m from the "
                 "state, which is more than the tolerance",
-                1e3 * limit.error.length, limit.error.angle * 180 / std::numbers::pi, limit.error.force,
-                limit.error.moment);
+                1e3 * limit.error.length, limit.error.angle * 180 / std::numbers::pi,
+                limit.error.force, limit.error.moment);
         return limit;
     }
     return open("no box contracts on both sides of the limit point");

@@ -31,7 +31,8 @@ double power_of_two(double x) { return std::exp2(std::nearbyint(std::log2(x))); 
 using Sparse = std::vector<std::pair<Index, Interval>>;  // one row: its nonzero entries
 
 // A row of the Jacobian with respect to (δr, L δπ) of each body.
-Sparse turned_row(const System& system, const std::vector<Interval>& z, const Interval* J, double length) {
+Sparse turned_row(const System& system, const std::vector<Interval>& z, const Interval* J,
+                  double length) {
     Sparse row;
     for (BodyId body = 0; body < system.bodies; ++body) {
         const auto k = static_cast<std::size_t>(system.pose(body));
@@ -60,19 +61,23 @@ bool positive_definite(const MatrixXd& M, const MatrixXd& R) {
     const MatrixXd G = cholesky.matrixL().solve(MatrixXd::Identity(n, n)), size = G.cwiseAbs();
     if (!G.allFinite()) return false;
     const MatrixXd rest = (MatrixXd::Identity(n, n) - G * M * G.transpose()).cwiseAbs();
-    const double unit = std::numeric_limits<double>::epsilon(), gamma = 2 * static_cast<double>(n + 4) * unit;
+    const double unit = std::numeric_limits<double>::epsilon(),
+                 gamma = 2 * static_cast<double>(n + 4) * unit;
     const Eigen::VectorXd one = Eigen::VectorXd::Ones(n), across = above(size.transpose(), one);
     const Eigen::VectorXd off =
         above(rest, one) + above(size, above(R, across) + gamma * above(M.cwiseAbs(), across));
     return (off.array() < 0.99).all();
 }
 
-bool stable(const Problem& problem, const std::vector<Interval>& z, const std::vector<Interval>& J) {
+bool stable(const Problem& problem, const std::vector<Interval>& z,
+            const std::vector<Interval>& J) {
     const System& system = problem.system;
     const Index n = 6 * system.bodies;
     const auto size = static_cast<std::size_t>(problem.size());
     const double length = power_of_two(system.length);
-    const auto row_of = [&](std::size_t row) { return turned_row(system, z, &J[row * size], length); };
+    const auto row_of = [&](std::size_t row) {
+        return turned_row(system, z, &J[row * size], length);
+    };
 
     const auto N = static_cast<std::size_t>(n);
     std::vector<Interval> H(N * N);

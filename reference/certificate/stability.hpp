@@ -1,7 +1,7 @@
 // Proof that every stiffness over a box is positive, by a verified Cholesky factorisation.
 #pragma once
 
-#include "reference/certificate/bordered.hpp"
+#include "reference/certificate/statement/bordered.hpp"
 
 namespace elastocheck::reference::certificate {
 

@@ -55,7 +55,8 @@ Vec<Interval> place(const StateAt& at, BodyId body) {
     Vec<Interval> r;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto i = static_cast<Index>(k);
-        r[k] = Interval(at.state.poses[static_cast<std::size_t>(body)].r[i]) - Interval(at.system.c[i]);
+        r[k] = Interval(at.state.poses[static_cast<std::size_t>(body)].r[i]) -
+               Interval(at.system.c[i]);
     }
     return r;
 }
@@ -118,16 +119,19 @@ VectorXd radii(const StateAt& at, const Near& near) {
     for (BodyId body = 0; body < system.bodies; ++body) {
         const int k = system.pose(body);
         const Vec<Interval> place_of = place(at, body);
-        const Quat<Interval> p = direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p);
+        const Quat<Interval> p =
+            direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p);
         for (int i = 0; i < 3; ++i)
-            r[k + i] = (Interval(near.length) +
-                        Interval(mag(place_of[static_cast<std::size_t>(i)] - Interval(at.z[k + i]))))
-                           .hi;
+            r[k + i] =
+                (Interval(near.length) +
+                 Interval(mag(place_of[static_cast<std::size_t>(i)] - Interval(at.z[k + i]))))
+                    .hi;
         const std::array<Interval, 4> parts{p.w, p.v[0], p.v[1], p.v[2]};
         for (int i = 0; i < 4; ++i)
-            r[k + 3 + i] = (Interval(near.angle) * Interval(0.5) +
-                            Interval(mag(parts[static_cast<std::size_t>(i)] - Interval(at.z[k + 3 + i]))))
-                               .hi;
+            r[k + 3 + i] =
+                (Interval(near.angle) * Interval(0.5) +
+                 Interval(mag(parts[static_cast<std::size_t>(i)] - Interval(at.z[k + 3 + i]))))
+                    .hi;
     }
     const auto poses = box(at.z, r);
     const Interval length = system.length;
@@ -146,13 +150,16 @@ VectorXd radii(const StateAt& at, const Near& near) {
             if (constraint.joint == joint)
                 for (int n = 0; n < elastocheck::rows(constraint.kind); ++n)
                     moment.push_back(is_direction(constraint.kind));
-        const auto in_newtons = [&](const Interval& x, std::size_t i) { return moment[i] ? x / length : x; };
+        const auto in_newtons = [&](const Interval& x, std::size_t i) {
+            return moment[i] ? x / length : x;
+        };
         for (std::size_t i = 0; i < q; ++i) {
             Interval sum = -R0[i], spread, rest_norm;
             for (std::size_t k = 0; k < 6; ++k) {
                 const Interval p = P(static_cast<Index>(i), static_cast<Index>(k));
                 sum += p * w0[k];
-                spread += Interval(mag(p)) * (k < 3 ? Interval(near.force) : Interval(near.moment) / length);
+                spread += Interval(mag(p)) *
+                          (k < 3 ? Interval(near.force) : Interval(near.moment) / length);
             }
             for (std::size_t j = 0; j < q; ++j) {
                 Interval E = i == j ? Interval(1) : Interval(0);
@@ -190,11 +197,12 @@ Extent distance(const StateAt& at, const std::vector<Interval>& z) {
     for (BodyId body = 0; body < at.system.bodies; ++body) {
         const Vec<Interval> from = place(at, body);
         const auto k = static_cast<std::size_t>(at.system.pose(body));
-        far.length = std::max(far.length,
-                              size_above(std::array{z[k] - from[0], z[k + 1] - from[1], z[k + 2] - from[2]}));
+        far.length = std::max(far.length, size_above(std::array{z[k] - from[0], z[k + 1] - from[1],
+                                                                z[k + 2] - from[2]}));
         far.angle = std::max(
-            far.angle, angle_above(direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p),
-                                   quaternion(at.system, z, body)));
+            far.angle,
+            angle_above(direction_of<Interval>(at.state.poses[static_cast<std::size_t>(body)].p),
+                        quaternion(at.system, z, body)));
     }
     const auto all = wrenches(at.system, z, Interval(at.state.load));
     for (std::size_t joint = 0; joint < all.size(); ++joint) {

@@ -1,8 +1,8 @@
 // Maps a state of any leg to the unknowns, and a distance in poses and wrenches to a box.
 #pragma once
 
-#include "reference/certificate/bordered.hpp"
 #include "reference/certificate/certificate.hpp"
+#include "reference/certificate/statement/bordered.hpp"
 
 namespace elastocheck::reference::certificate {
 

@@ -3,11 +3,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "elastocheck/energy.hpp"
 #include "models/branch.hpp"
-#include "reference/energy/balance.hpp"
-#include "reference/energy/centred.hpp"
-#include "reference/energy/conservative.hpp"
-#include "reference/energy/solve.hpp"
+#include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/potential/conservative.hpp"
+#include "reference/energy/potential/recentre.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {
@@ -17,7 +17,9 @@ using Eigen::VectorXd;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double backwards = 2;  // distance of two opposite unit vectors
 
-double max_or_nan(double a, double b) { return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b); }
+double max_or_nan(double a, double b) {
+    return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b);
+}
 
 }  // namespace
 
@@ -44,7 +46,8 @@ Residuals residuals(const Model& as_told, const Branch& branch, const Equilibriu
     for (std::size_t k = 0; k < model.constraints.size(); ++k) {
         const auto& kind = model.constraints[k].kind;
         double error = largest(values.Phi.segment(row, rows(kind)));
-        if (points_backwards(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart)) error = backwards;
+        if (points_backwards(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart))
+            error = backwards;
         double& of_kind = is_cosine(kind) ? worst.direction : worst.length;
         of_kind = max_or_nan(of_kind, error);
         row += rows(kind);
@@ -52,7 +55,8 @@ Residuals residuals(const Model& as_told, const Branch& branch, const Equilibriu
     // An orientation counts as a direction too: it must be a unit quaternion.
     for (const auto& pose : state.poses)
         worst.direction = max_or_nan(worst.direction, std::abs(pose.p.norm() - 1));
-    if (without_potential(model, branch) || !within_laws(model, turning_bushings(model, course), state.poses))
+    if (without_potential(model, branch) ||
+        !within_laws(model, turning_bushings(model, course), state.poses))
         worst.force = worst.moment = unknown;
     for (std::size_t b = 0; b < state.poses.size(); ++b) {
         const int at = 6 * static_cast<int>(b);

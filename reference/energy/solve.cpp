@@ -1,4 +1,4 @@
-#include "reference/energy/solve.hpp"
+#include "elastocheck/energy.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
-#include "reference/energy/account.hpp"
-#include "reference/energy/centred.hpp"
-#include "reference/energy/conservative.hpp"
-#include "reference/energy/cost.hpp"
-#include "reference/energy/reactions.hpp"
-#include "reference/energy/settle.hpp"
+#include "reference/energy/constraints/reactions.hpp"
+#include "reference/energy/minimise/cost.hpp"
+#include "reference/energy/minimise/error_bound.hpp"
+#include "reference/energy/minimise/settle.hpp"
+#include "reference/energy/potential/conservative.hpp"
+#include "reference/energy/potential/recentre.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {
@@ -22,7 +22,8 @@ using Eigen::VectorXd;
 Equilibrium equilibrium(const Path& path, const State& state) {
     const Chart chart = chart_about(state.poses);
     const ConstraintValues values = constraints(path.model, at(path.course, state.a), chart);
-    const VectorXd lambda = path.scales.energy() * path.scales.rows(path.model).cwiseProduct(state.at.lambda);
+    const VectorXd lambda =
+        path.scales.energy() * path.scales.rows(path.model).cwiseProduct(state.at.lambda);
     return {state.a, state.poses, reactions(path.model, chart, values, lambda), values.Phi.norm()};
 }
 
@@ -49,7 +50,8 @@ std::optional<Failure> impossible_length(const Path& path, double a) {
             return Failure{
                 Outcome::inconsistent_constraints,
                 fmt::format("joint '{}' would have the length {:.6g} m",
-                            path.model.joints[static_cast<std::size_t>(constraint.joint)].name, length)};
+                            path.model.joints[static_cast<std::size_t>(constraint.joint)].name,
+                            length)};
     }
     return {};
 }
@@ -59,10 +61,12 @@ Failure reason(const Path& path, const State& last, double a, const Failure& fai
     const bool may_open =
         !path.course.rate.offset.isZero(0) &&
         (failure.outcome == Outcome::branch_lost || failure.outcome == Outcome::limit_point ||
-         failure.outcome == Outcome::dividing_point || failure.outcome == Outcome::iteration_limit);
+         failure.outcome == Outcome::bifurcation_point ||
+         failure.outcome == Outcome::iteration_limit);
     if (may_open)
         if (const auto joint = contradicting_joint(path, a, last.poses))
-            return {Outcome::inconsistent_constraints, fmt::format("joint '{}' cannot be closed", *joint)};
+            return {Outcome::inconsistent_constraints,
+                    fmt::format("joint '{}' cannot be closed", *joint)};
     return failure;
 }
 
@@ -79,20 +83,26 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         result.detail = fmt::format("branch '{}': {}", branch.name, *what);
         return result;
     }
-    if (const double operations = cost_of(model, values.size()).operations(); operations > most_operations) {
+    if (const double operations = cost_of(model, values.size()).operations();
+        operations > most_operations) {
         result.outcome = Outcome::too_large;
         result.detail = fmt::format(
-            "branch '{}': the energy leg is not asked: some {:.1g} operations for {} coordinates, at most "
+            "branch '{}': the energy leg is not asked: some {:.1g} operations for {} coordinates, "
+            "at most "
             "{:.1g} are worth it",
             branch.name, operations, coordinates(model), most_operations);
         return result;
     }
-    const auto fail = [&](const Failure& failure, const std::string& where, const std::string& reached) {
+    const auto fail = [&](const Failure& failure, const std::string& where,
+                          const std::string& reached) {
         result.outcome = failure.outcome;
-        result.detail = fmt::format("branch '{}', {}: {}{}", branch.name, where, failure.what, reached);
+        result.detail =
+            fmt::format("branch '{}', {}: {}{}", branch.name, where, failure.what, reached);
         return result;
     };
-    const auto in_units = [&](double a) { return fmt::format("{:.10g}{}", a, symbol(branch.unit)); };
+    const auto in_units = [&](double a) {
+        return fmt::format("{:.10g}{}", a, symbol(branch.unit));
+    };
 
     std::vector<double> ends(values.begin(), values.end());
     ends.push_back(branch.to);
@@ -102,8 +112,9 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     double span = 0;
     for (const double a : ends)
         if (std::isfinite(a)) span = std::max(span, std::abs(a));
-    Path path{here, options,      scales_of(here, course, ends), course, turning_bushings(here, course),
-              span, result.counts};
+    Path path{
+        here, options,      scales_of(here, course, ends), course, turning_bushings(here, course),
+        span, result.counts};
 
     const std::string settling = "settling from the design pose";
     if (const auto failure = impossible_length(path, 0)) return fail(*failure, settling, "");
@@ -121,7 +132,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
             return fail(reason(path, walk.state, a, *failure), "at " + in_units(a),
                         reached + in_units(walk.state.a));
         Equilibrium point = equilibrium(path, walk.state);
-        if (options.account) give_account(path, walk.state, point);
+        if (options.error_bound) add_error_bound(path, walk.state, point);
         point.poses = moved_by(std::move(point.poses), centre);
         point.bound.length += std::numeric_limits<double>::epsilon() * centre.norm();
         if (visit)

@@ -1,9 +1,9 @@
 // Joint reactions for given poses.
 #include <limits>
 
-#include "reference/equilibrium/derivatives.hpp"
-#include "reference/equilibrium/linearisation.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "reference/equilibrium/linear_algebra/derivatives.hpp"
+#include "reference/equilibrium/linear_algebra/linearisation.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
@@ -17,7 +17,8 @@ std::vector<Wrench> reactions_at(const Model& model, const Branch& branch, doubl
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
     if (!by.E.allFinite() || !is_finite(by.J)) {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-        return {model.joints.size(), {Eigen::Vector3d::Constant(nan), Eigen::Vector3d::Constant(nan)}};
+        return {model.joints.size(),
+                {Eigen::Vector3d::Constant(nan), Eigen::Vector3d::Constant(nan)}};
     }
     if (n > 0 && m > 0) x.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
     return state_of(system, {a}, x).reactions;

@@ -2,8 +2,8 @@
 #include <Eigen/QR>
 #include <algorithm>
 
-#include "reference/equilibrium/solve.hpp"
-#include "reference/equilibrium/system.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "reference/equilibrium/statement/system.hpp"
 
 namespace elastocheck::reference::equilibrium {
 namespace {
@@ -53,9 +53,9 @@ MatrixXd transmitted_by(const Judge& judge, std::size_t joint, const Vector3d& a
         const auto [i, j] = bodies_of(constraints[c].kind);
         for (int k = 0; k < rows(constraints[c].kind); ++k) {
             const Vector3d unit = Vector3d::Unit(k);
-            const auto on_i =
-                holding(judge.system, c, judge.state.load, 0., judge.frame(i), judge.frame(j), unit.data())
-                    .reaction;
+            const auto on_i = holding(judge.system, c, judge.state.load, 0., judge.frame(i),
+                                      judge.frame(j), unit.data())
+                                  .reaction;
             columns.conservativeResize(6, columns.cols() + 1);
             columns.rightCols<1>() << on_i.force,
                 (on_i.moment + cross(Vector3d(on_i.at - at), on_i.force)) / judge.system.length;
@@ -100,7 +100,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
             const Frame<double> on_j = judge.frame(j);
             const Vector3d there = std::cos(value) * direction(on_j, angle->j.u_local) +
                                    std::sin(value) * direction(on_j, angle->y_j.u_local);
-            if (direction(judge.frame(i), angle->i.u_local).dot(there) < 0) raise(worst.direction, 1);
+            if (direction(judge.frame(i), angle->i.u_local).dot(there) < 0)
+                raise(worst.direction, 1);
         }
     }
 
@@ -113,7 +114,8 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     for (const auto& load : system.loads) {
         const BodyId body = body_of(load.kind);
         if (body == ground) continue;
-        const auto on = std::visit([&](const auto& k) { return on_body(k, judge.frame(body)); }, load.kind);
+        const auto on =
+            std::visit([&](const auto& k) { return on_body(k, judge.frame(body)); }, load.kind);
         judge.apply(body, on, load.factor.at(a));
     }
 

@@ -1,11 +1,11 @@
-#include "reference/equilibrium/solve.hpp"
+#include "elastocheck/equilibrium.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "reference/equilibrium/account.hpp"
-#include "reference/equilibrium/settle.hpp"
+#include "reference/equilibrium/continuation/error_bound.hpp"
+#include "reference/equilibrium/continuation/settle.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
@@ -23,8 +23,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
 
     Walk walk = start(system, options);
     if (!walk.here.x.allFinite() || !system.at_design.allFinite() || !walk.here.E_rate.allFinite())
-        return ended(
-            {Outcome::not_finite, "the equations give a number that is not finite at the design pose"});
+        return ended({Outcome::not_finite,
+                      "the equations give a number that is not finite at the design pose"});
     double reach = 0;
     for (const double a : points) reach = std::max(reach, std::abs(a));
     auto failed = settle(walk, system, reach);
@@ -32,7 +32,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         failed = advance(walk, *a);
         if (failed) break;
         Equilibrium point = state_of(system, loading_at(walk, *a), walk.here.x);
-        if (options.account) give_account(walk, point);
+        if (options.error_bound) add_error_bound(walk, point);
         if (visit)
             visit(point);
         else

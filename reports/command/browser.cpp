@@ -35,7 +35,8 @@ std::vector<std::string> parts(const std::string& list, char between) {
 bool is_there(const std::string& command) {
     const auto words = parts(command, ' ');
     if (words.empty()) return false;
-    if (words.front().find('/') != std::string::npos) return ::access(words.front().c_str(), X_OK) == 0;
+    if (words.front().find('/') != std::string::npos)
+        return ::access(words.front().c_str(), X_OK) == 0;
     for (const auto& folder : parts(variable("PATH"), ':'))
         if (::access((fs::path(folder) / words.front()).c_str(), X_OK) == 0) return true;
     return false;
@@ -69,16 +70,18 @@ void open_in(const std::string& browser, const std::string& page) {
     ::posix_spawn_file_actions_init(&streams);
     ::posix_spawn_file_actions_adddup2(&streams, STDERR_FILENO, STDOUT_FILENO);
     pid_t child = 0;
-    const int failed = ::posix_spawnp(&child, argv.front(), &streams, nullptr, argv.data(), environ);
+    const int failed =
+        ::posix_spawnp(&child, argv.front(), &streams, nullptr, argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&streams);
     if (failed != 0)
-        throw std::invalid_argument(fmt::format("--open: {} cannot be run ({}); the page is {}", browser,
-                                                std::strerror(failed), page));
+        throw std::invalid_argument(fmt::format("--open: {} cannot be run ({}); the page is {}",
+                                                browser, std::strerror(failed), page));
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw std::invalid_argument(fmt::format("--open: {} failed; the page is {}", browser, page));
+        throw std::invalid_argument(
+            fmt::format("--open: {} failed; the page is {}", browser, page));
 }
 
 }  // namespace elastocheck::reports

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <memory>
 
-#include "compare/certify.hpp"
-#include "recursive/diagnosis.hpp"
-#include "reports/command/command.hpp"
+#include "compare/proofs/certify.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/limits.hpp"
-#include "reports/command/load_scene.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/limits.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/certify_tables.hpp"
 
@@ -23,12 +23,12 @@ struct Request {
     bool as_json = false;
 };
 
-compare::Gait gait_of(const std::string& solver) {
+compare::SolverSettings gait_of(const std::string& solver) {
     for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series})
         if (solver == name(leg)) return {.leg = leg};
-    compare::Gait gait;
-    gait.recursion.method = *recursive::find_method(solver);
-    return gait;
+    compare::SolverSettings solver;
+    solver.recursion.method = *recursive::find_method(solver);
+    return solver;
 }
 
 int certify(const Request& request, const std::string& command) {
@@ -38,19 +38,22 @@ int certify(const Request& request, const std::string& command) {
     for (const auto& solver : request.solvers) options.solvers.push_back(gait_of(solver));
     options.points = request.points;
     options.progress = progress;
-    const Delivery delivery{.folder = request.folder, .as_json = request.as_json, .command = command};
+    const Delivery delivery{
+        .folder = request.folder, .as_json = request.as_json, .command = command};
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const compare::CertifyStudy study = compare::certify(loaded.model, options);
     progress("");
     delivery.say(certify_text(study));
     const bool conclusive = study.conclusive();
     if (delivery.wants_document()) {
-        nlohmann::ordered_json part = scene_document(loaded.scene, read_whole(request.scene), loaded.model,
-                                                     recursive::diagnose(loaded.model));
+        nlohmann::ordered_json part =
+            scene_document(loaded.scene, read_whole(request.scene), loaded.model,
+                           recursive::diagnose(loaded.model));
         if (loaded.trim) add_trim(part, *loaded.trim);
         part["certify"] = certify_json(study);
-        add_verdict(part, study.points(),
-                    conclusive ? std::vector<std::string>{} : std::vector<std::string>{sentence(study)});
+        add_verdict(
+            part, study.points(),
+            conclusive ? std::vector<std::string>{} : std::vector<std::string>{sentence(study)});
         deliver(delivery, std::move(part), {{"certify.csv", csv(certify_table(study))}});
     }
     delivery.say(sentence(study) + "\n");
@@ -63,20 +66,20 @@ Command certify_command() {
     const auto request = std::make_shared<Request>();
     std::vector<std::string> known{"equilibrium", "energy"};
     for (const auto& method : recursive::methods) known.emplace_back(method.name);
-    return {
-        "certify",
-        "Prove by interval arithmetic that what a solver found are equilibria, and alone",
-        {scene_option(request->scene),
-         set_option(request->settings),
-         {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
-          "whose points: equilibrium, energy, series (default: these three), or a method of the recursion"},
-         {"--tolerance", Text{&request->tolerance},
-          "accuracy that is to be proved (default: 1e-6mm,1e-6deg)"},
-         {"--points", Integer{&request->points, 1, most_steps},
-          "of each way of a branch, besides its start (default: 20)"},
-         output_option(request->folder, "folder for result.json and certify.csv"),
-         json_option(request->as_json)},
-        [request](const std::string& line) { return certify(*request, line); }};
+    return {"certify",
+            "Prove by interval arithmetic that what a solver found are equilibria, and alone",
+            {scene_option(request->scene),
+             set_option(request->settings),
+             {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
+              "whose points: equilibrium, energy, series (default: these three), or a method of "
+              "the recursion"},
+             {"--tolerance", Text{&request->tolerance},
+              "accuracy that is to be proved (default: 1e-6mm,1e-6deg)"},
+             {"--points", Integer{&request->points, 1, most_steps},
+              "of each way of a branch, besides its start (default: 20)"},
+             output_option(request->folder, "folder for result.json and certify.csv"),
+             json_option(request->as_json)},
+            [request](const std::string& line) { return certify(*request, line); }};
 }
 
 }  // namespace elastocheck::reports

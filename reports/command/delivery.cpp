@@ -9,7 +9,8 @@ namespace elastocheck::reports {
 
 void print_document(const nlohmann::ordered_json& document) { print(document.dump(1) + "\n"); }
 
-void deliver(const Delivery& delivery, nlohmann::ordered_json scene, std::vector<NamedContent> tables) {
+void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
+             std::vector<NamedContent> tables) {
     nlohmann::ordered_json result = document(delivery.command, provenance());
     result["scenes"].push_back(std::move(scene));
     if (!delivery.folder.empty()) {
@@ -19,9 +20,10 @@ void deliver(const Delivery& delivery, nlohmann::ordered_json scene, std::vector
         write_folder(delivery.folder, tables);
         std::string written;
         for (const auto& file : tables)
-            written += fmt::format("{}{}/{}", written.empty() ? "" : ", ", delivery.folder, file.name);
+            written +=
+                fmt::format("{}{}/{}", written.empty() ? "" : ", ", delivery.folder, file.name);
         if (delivery.as_json)
-            complain("Written: {}\n", written);
+            print_error("Written: {}\n", written);
         else
             print("Written: {}\n", written);
     }

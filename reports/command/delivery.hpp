@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "reports/files/folder.hpp"
-#include "reports/text/terminal.hpp"
+#include "reports/files/terminal.hpp"
 
 namespace elastocheck::reports {
 
@@ -27,6 +27,7 @@ void print_document(const nlohmann::ordered_json& document);
 
 // Writes the result document of one scene: to the folder, with curves.csv and `tables` beside it,
 // in one step; to standard output; or both.
-void deliver(const Delivery& delivery, nlohmann::ordered_json scene, std::vector<NamedContent> tables);
+void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
+             std::vector<NamedContent> tables);
 
 }  // namespace elastocheck::reports

@@ -7,15 +7,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "compare/find_all.hpp"
-#include "models/reader/words.hpp"
-#include "reports/command/command.hpp"
+#include "compare/proofs/multiple_equilibria.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/load_scene.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/document/document.hpp"
+#include "reports/files/terminal.hpp"
 #include "reports/tables/equilibria.hpp"
-#include "reports/text/terminal.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -36,7 +36,8 @@ const Branch& branch_named(const Model& model, const std::string& name) {
         if (branch.name == name) return branch;
         names.push_back(branch.name);
     }
-    throw std::invalid_argument(fmt::format("--branch: the scene has no branch {}{}", reader::quote(name),
+    throw std::invalid_argument(fmt::format("--branch: the scene has no branch {}{}",
+                                            reader::quote(name),
                                             reader::did_you_mean(name, names, "branches")));
 }
 
@@ -46,8 +47,9 @@ int equilibria(const Request& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Branch& branch = branch_named(loaded.model, request.branch);
     const double a = request.at / compare::in_unit(compare::unit_of(branch.unit));
-    const auto all = compare::find_all(loaded.model, branch, a,
-                                       {.turn = request.turned / 57.29577951308232, .progress = progress});
+    const auto all = compare::find_equilibria(
+        loaded.model, branch, a,
+        {.turn = request.turned / 57.29577951308232, .progress = progress});
     progress("");
     delivery.say(equilibria_text(all));
     if (delivery.as_json) {
@@ -65,19 +67,20 @@ int equilibria(const Request& request, const Delivery& delivery) {
 Command equilibria_command() {
     const auto request = std::make_shared<Request>();
     constexpr double any = std::numeric_limits<double>::infinity();
-    return {"equilibria",
-            "All equilibria that can be found at one load, each proved, and what they mean",
-            {scene_option(request->scene),
-             {"--at", RealNumber{&request->at, -any, any},
-              "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg", true},
-             {"--branch", Text{&request->branch}, "name of the branch (default: the first)"},
-             {"--turned", RealNumber{&request->turned, 0, 180},
-              "list none with a body turned by more [deg] (default: 90)"},
-             set_option(request->settings),
-             json_option(request->as_json)},
-            [request](const std::string& line) {
-                return equilibria(*request, {.as_json = request->as_json, .command = line});
-            }};
+    return {
+        "equilibria",
+        "All equilibria that can be found at one load, each proved, and what they mean",
+        {scene_option(request->scene),
+         {"--at", RealNumber{&request->at, -any, any},
+          "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg", true},
+         {"--branch", Text{&request->branch}, "name of the branch (default: the first)"},
+         {"--turned", RealNumber{&request->turned, 0, 180},
+          "list none with a body turned by more [deg] (default: 90)"},
+         set_option(request->settings),
+         json_option(request->as_json)},
+        [request](const std::string& line) {
+            return equilibria(*request, {.as_json = request->as_json, .command = line});
+        }};
 }
 
 }  // namespace elastocheck::reports

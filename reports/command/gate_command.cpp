@@ -9,21 +9,21 @@
 #include <memory>
 #include <optional>
 
-#include "compare/changes.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reports/command/candidate_options.hpp"
-#include "reports/command/command.hpp"
+#include "compare/comparison/changes.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/limits.hpp"
-#include "reports/command/load_scene.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/candidate_options.hpp"
+#include "reports/command/options/limits.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/files/files.hpp"
+#include "reports/files/terminal.hpp"
 #include "reports/gate/baseline.hpp"
 #include "reports/gate/gate_report.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/text/escape.hpp"
-#include "reports/text/terminal.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -46,7 +46,9 @@ bool says_yes(const char* variable) {
     return !word.empty() && word != "false" && word != "0";
 }
 
-bool blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
+bool blank(const std::string& text) {
+    return text.find_first_not_of(" \t\r\n") == std::string::npos;
+}
 
 // A scene and its baseline.
 struct Task {
@@ -61,19 +63,21 @@ fs::path baseline_of(const fs::path& scene, const std::string& folder) {
 
 std::vector<Task> tasks(const GateOptions& options) {
     std::vector<Task> all;
-    for (const auto& scene : options.scenes) all.push_back({scene, baseline_of(scene, options.folder), ""});
+    for (const auto& scene : options.scenes)
+        all.push_back({scene, baseline_of(scene, options.folder), ""});
     if (!all.empty()) return all;
     const fs::path folder = options.folder.empty() ? "baselines" : options.folder;
     std::error_code unreadable;
     const auto entries = fs::directory_iterator(folder, unreadable);
     if (unreadable && unreadable != std::errc::no_such_file_or_directory)
-        throw FileError(fmt::format("{}: cannot be read: {}", folder.string(), unreadable.message()));
+        throw FileError(
+            fmt::format("{}: cannot be read: {}", folder.string(), unreadable.message()));
     for (const auto& entry : entries) {
         if (entry.path().extension() != ".json") continue;
         if (const std::string wrong = flaw(entry.path().filename().string()); !wrong.empty())
-            throw FileError(fmt::format("{}: {}; names are one line of UTF-8 text",
-                                        (folder / for_terminal(entry.path().filename().string())).string(),
-                                        wrong));
+            throw FileError(fmt::format(
+                "{}: {}; names are one line of UTF-8 text",
+                (folder / for_terminal(entry.path().filename().string())).string(), wrong));
         try {
             const BaselineFile file =
                 parse_baseline(read_whole(entry.path(), largest_baseline), entry.path().string());
@@ -84,8 +88,10 @@ std::vector<Task> tasks(const GateOptions& options) {
     }
     std::ranges::sort(all, {}, &Task::baseline);
     if (all.empty())
-        complain("elastocheck: there is no baseline in {}; name a SCENE, or the folder with --baseline\n",
-                 folder.string());
+        print_error(
+            "elastocheck: there is no baseline in {}; name a SCENE, or the folder with "
+            "--baseline\n",
+            folder.string());
     return all;
 }
 
@@ -140,9 +146,9 @@ bool is_there(const fs::path& file) {
 // The accepted baseline; without one the verdict of the scene gives the reason.
 std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
     if (!is_there(task.baseline)) {
-        scene.verdict.reasons.push_back(
-            fmt::format("there is no baseline {}; 'elastocheck gate {} --accept --reason ...' makes one",
-                        task.baseline.string(), task.scene.string()));
+        scene.verdict.reasons.push_back(fmt::format(
+            "there is no baseline {}; 'elastocheck gate {} --accept --reason ...' makes one",
+            task.baseline.string(), task.scene.string()));
         return std::nullopt;
     }
     try {
@@ -158,7 +164,8 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
     }
 }
 
-void judge(const BaselineFile& was, const BaselineFile& is, const std::string& forced, GatedScene& scene) {
+void judge(const BaselineFile& was, const BaselineFile& is, const std::string& forced,
+           GatedScene& scene) {
     const BuildDistance apart = distance(was.provenance, is.provenance);
     ToleranceClass kind = apart.kind;
     scene.differs = apart.differs;
@@ -172,8 +179,9 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
             ? "; which of its numbers changed is not known, they are kept from the next --accept on"
         : scene.changed.empty() ? "; none of its numbers changed"
                                 : "";
-    scene.notes.push_back(fmt::format("the scene file is not the one that was accepted ({}, now {}){}",
-                                      was.input_hash, is.input_hash, what));
+    scene.notes.push_back(
+        fmt::format("the scene file is not the one that was accepted ({}, now {}){}",
+                    was.input_hash, is.input_hash, what));
 }
 
 // Judges by the default tolerance, independent of the baseline, since no accepted result applies to
@@ -185,29 +193,32 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
     how.progress = options.progress;
     const auto comparison = compare::compare(loaded.model, how);
     for (const auto& output : outputs_of(options.candidate, task.scene, {steps_of(loaded.model)})) {
-        const auto judgement =
-            judged(output, options.candidate, loaded, comparison, compare::default_tolerance, false);
+        const auto judgement = judged(output, options.candidate, loaded, comparison,
+                                      compare::default_tolerance, false);
         scene.notes.push_back(sentence(judgement, comparison));
         scene.verdict.compared += judgement.compared;
         for (const auto& reason : judgement.reasons)
-            scene.verdict.reasons.push_back(fmt::format("candidate '{}': {}", judgement.name, reason));
+            scene.verdict.reasons.push_back(
+                fmt::format("candidate '{}': {}", judgement.name, reason));
         if (judgement.verdict != compare::Grade::fail) continue;
         std::vector<compare::Offence> offences;
         for (const auto& worst : judgement.worst)
             if (!(worst.max <= worst.limit))
-                offences.push_back({.branch = worst.branch,
-                                    .quantity = worst.kind == compare::ReadingKind::equal_parameter
-                                                    ? compare::Quantity::deviation_at_equal_parameter
-                                                    : compare::Quantity::deviation_at_equal_abscissa,
-                                    .channel = fmt::format("{} of '{}'", worst.channel, judgement.name),
-                                    .unit = symbol(worst.unit),
-                                    .of_limit = true,
-                                    .was = worst.limit,
-                                    .is = worst.max});
+                offences.push_back(
+                    {.branch = worst.branch,
+                     .quantity = worst.kind == compare::ReadingKind::equal_parameter
+                                     ? compare::Quantity::deviation_at_equal_parameter
+                                     : compare::Quantity::deviation_at_equal_abscissa,
+                     .channel = fmt::format("{} of '{}'", worst.channel, judgement.name),
+                     .unit = symbol(worst.unit),
+                     .of_limit = true,
+                     .was = worst.limit,
+                     .is = worst.max});
         if (offences.empty())
             scene.verdict.reasons.push_back(
                 fmt::format("candidate '{}': its states miss the constraints", judgement.name));
-        scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(), offences.end());
+        scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(),
+                                      offences.end());
     }
 }
 
@@ -224,8 +235,8 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
             // A baseline made in the same run would always agree.
             if (says_yes("CI"))
                 if (const std::string why = not_committed(task.baseline); !why.empty())
-                    scene.verdict.reasons.push_back(
-                        fmt::format("nobody can have reviewed {}: {}", task.baseline.string(), why));
+                    scene.verdict.reasons.push_back(fmt::format("nobody can have reviewed {}: {}",
+                                                                task.baseline.string(), why));
         } else {
             compile(read_scene(task.scene,
                                // distinguishes a bad scene from a missing baseline
@@ -252,15 +263,17 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
 // absolute limit: limits are edited by hand, where a review sees the change.
 int accept_scene(const Task& task, const GateOptions& options) {
     if (!task.no_scene.empty()) {
-        complain("elastocheck: {}\n", task.no_scene);
+        print_error("elastocheck: {}\n", task.no_scene);
         return could_not_judge;
     }
     GatedScene scene = unjudged(task);
     const bool there = is_there(task.baseline);
     const auto was = accepted(task, scene);
     if (there && !was) {
-        complain("elastocheck: {}\nRestore or delete it first: its tolerances and limits would be lost.\n",
-                 scene.verdict.reasons.front());
+        print_error(
+            "elastocheck: {}\nRestore or delete it first: its tolerances and limits would be "
+            "lost.\n",
+            scene.verdict.reasons.front());
         return could_not_judge;
     }
     BaselineFile is = measured(task, options);
@@ -268,11 +281,12 @@ int accept_scene(const Task& task, const GateOptions& options) {
     std::vector<std::string> worthless = now.inconclusive;
     for (const auto& s : now.series)
         if (!std::ranges::all_of(s.values, [](double v) { return std::isfinite(v); }))
-            worthless.push_back(
-                fmt::format("branch '{}', {}: {} is not finite", s.branch, name(s.quantity), s.channel));
+            worthless.push_back(fmt::format("branch '{}', {}: {} is not finite", s.branch,
+                                            name(s.quantity), s.channel));
     if (now.series.empty()) worthless.emplace_back("nothing was measured");
     if (!worthless.empty()) {
-        complain("elastocheck: {}: nothing is accepted: {}\n", scene.file, fmt::join(worthless, "; "));
+        print_error("elastocheck: {}: nothing is accepted: {}\n", scene.file,
+                    fmt::join(worthless, "; "));
         return could_not_judge;
     }
     is.baseline.reason = options.reason;
@@ -282,7 +296,8 @@ int accept_scene(const Task& task, const GateOptions& options) {
         // default tolerances for classes that the old baseline does not define
         auto& tolerances = is.baseline.tolerances;
         for (auto& [kind, usual] : tolerances)
-            if (const auto own = was->baseline.tolerances.find(kind); own != was->baseline.tolerances.end()) {
+            if (const auto own = was->baseline.tolerances.find(kind);
+                own != was->baseline.tolerances.end()) {
                 auto kept = own->second;
                 kept.insert(usual.begin(), usual.end());
                 usual = std::move(kept);
@@ -293,8 +308,10 @@ int accept_scene(const Task& task, const GateOptions& options) {
         print(gate_table(scene));
         const bool over = std::ranges::any_of(scene.verdict.offences, &compare::Offence::of_limit);
         if (over) {
-            print("{}: not accepted: an absolute limit is broken; limits are changed by hand, in {}\n",
-                  scene.file, task.baseline.string());
+            print(
+                "{}: not accepted: an absolute limit is broken; limits are changed by hand, in "
+                "{}\n",
+                scene.file, task.baseline.string());
             return limit_broken;
         }
         const auto text_without_reason = [](BaselineFile file) {
@@ -336,7 +353,8 @@ int accept(const GateOptions& options) {
 int gate(const GateOptions& options) {
     check(options.candidate, options.settings);
     if (options.candidate.wanted() && options.accept)
-        throw std::invalid_argument("--candidate: not with --accept: nothing of a candidate is kept");
+        throw std::invalid_argument(
+            "--candidate: not with --accept: nothing of a candidate is kept");
     if (!options.candidate.files.empty() && options.scenes.size() != 1)
         throw std::invalid_argument(
             "--candidate: a file is of one scene; name it, or give --candidate-command");
@@ -359,7 +377,7 @@ int gate(const GateOptions& options) {
     if (options.as_json) print_document(gate_document(scenes, provenance()));
     // GitHub reads them from either stream.
     if (says_yes("GITHUB_ACTIONS"))
-        options.as_json ? complain(annotations(scenes)) : print(annotations(scenes));
+        options.as_json ? print_error(annotations(scenes)) : print(annotations(scenes));
     if (!options.junit.empty()) write_whole(options.junit, junit(scenes), junit_file);
     if (to_append)
         append(options.summary, step_summary(scenes));
@@ -390,7 +408,8 @@ Command gate_command() {
          "judge this measurement (a file like a baseline); nothing is solved"}};
     add_candidate_options(list, options->candidate);
     list.push_back(json_option(options->as_json));
-    list.push_back({"--accept", Flag{&options->accept}, "print what changed, then make it the baseline"});
+    list.push_back(
+        {"--accept", Flag{&options->accept}, "print what changed, then make it the baseline"});
     list.push_back({"--reason", Text{&options->reason}, "why, in words; with --accept"});
     return {"gate", "Judge scenes by their accepted baselines, for CI", std::move(list),
             [options](const std::string&) { return gate(*options); }};

@@ -8,19 +8,19 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "compare/formulations.hpp"
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
-#include "models/import/export_adm.hpp"
-#include "models/import/export_chrono.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/studies/formulations.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "models/import/export/export_adm.hpp"
+#include "models/import/export/export_chrono.hpp"
 #include "models/import/import.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
 #include "reports/files/files.hpp"
-#include "reports/text/terminal.hpp"
+#include "reports/files/terminal.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -74,15 +74,16 @@ std::string apart(const compare::FormulationStudy& study) {
             if (same == list.end()) same = list.insert(list.end(), {channel.unit, -1, {}});
             if (output.spread > same->by) {
                 same->by = output.spread;
-                same->where = fmt::format("{} on branch '{}' at {:.6g} {}", channel.name, branch.branch,
-                                          output.at, compare::symbol(branch.unit));
+                same->where = fmt::format("{} on branch '{}' at {:.6g} {}", channel.name,
+                                          branch.branch, output.at, compare::symbol(branch.unit));
             }
         }
     std::string text;
     for (const auto& [unit, by, where] : list) {
         text += text.empty() ? "" : " and ";
-        text += by < least_told ? fmt::format("less than {:g} {}", least_told, compare::symbol(unit))
-                                : fmt::format("{:.2g} {} ({})", by, compare::symbol(unit), where);
+        text += by < least_told
+                    ? fmt::format("less than {:g} {}", least_told, compare::symbol(unit))
+                    : fmt::format("{:.2g} {} ({})", by, compare::symbol(unit), where);
     }
     return text;
 }
@@ -90,18 +91,19 @@ std::string apart(const compare::FormulationStudy& study) {
 // Converts all bushings to the formulation of the other program, and adds a warning with the change
 // of the outputs by the equilibrium leg. False where that change could not be computed.
 bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
-    const auto conversion =
-        compare::converted(scene, target == "chrono" ? importer::chrono_bushing : importer::adams_bushing);
+    const auto conversion = compare::converted(
+        scene, target == "chrono" ? importer::chrono_bushing : importer::adams_bushing);
     if (conversion.bushings.empty()) return true;
     const auto study = compare::spread_among({{"as written", scene}, {target, conversion.scene}},
                                              steps_of_conversion, 1, progress);
     progress("");
     scene = conversion.scene;
     std::string effect = apart(study);
-    if (!effect.empty()) effect = "the outputs move by up to " + effect + ", by the equilibrium leg";
+    if (!effect.empty())
+        effect = "the outputs move by up to " + effect + ", by the equilibrium leg";
     for (const auto& why : study.inconclusive)
-        effect +=
-            fmt::format("{}by how much the outputs move is not known: {}", effect.empty() ? "" : "; ", why);
+        effect += fmt::format("{}by how much the outputs move is not known: {}",
+                              effect.empty() ? "" : "; ", why);
     notes.warn({0, fmt::format("elements {}", fmt::join(conversion.bushings, ", "))},
                fmt::format("converted to the bushing formulation of {}: {}", target, effect));
     return study.conclusive();
@@ -112,7 +114,8 @@ std::string first_line(std::string text) { return text.substr(0, text.find('\n')
 // Outcome of each file, one row each, including rejected imports.
 int print_table(const ImportRequest& request) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    if (!request.as_json) print("| file | bodies | joints | elements | outcome |\n|---|---|---|---|---|\n");
+    if (!request.as_json)
+        print("| file | bodies | joints | elements | outcome |\n|---|---|---|---|---|\n");
     for (const std::string& file : request.files) {
         const std::string name = std::filesystem::path(file).filename().string();
         nlohmann::ordered_json row{{"file", name}};
@@ -125,18 +128,21 @@ int print_table(const ImportRequest& request) {
             if (!result.notes.warnings.empty())
                 outcome += fmt::format(", {} warning{}", result.notes.warnings.size(),
                                        result.notes.warnings.size() == 1 ? "" : "s");
-            row.update({{"bodies", result.bodies}, {"joints", result.joints}, {"elements", result.elements}});
+            row.update({{"bodies", result.bodies},
+                        {"joints", result.joints},
+                        {"elements", result.elements}});
         } catch (const SceneError& error) {
             outcome = first_line(error.what());
-            if (outcome.starts_with(file)) outcome = "refused: " + name + outcome.substr(file.size());
+            if (outcome.starts_with(file))
+                outcome = "refused: " + name + outcome.substr(file.size());
         }
         row["outcome"] = outcome;
         const auto count = [&](const char* key) {
             return row.contains(key) ? std::to_string(row[key].get<int>()) : "-";
         };
         if (!request.as_json)
-            print("| {} | {} | {} | {} | {} |\n", name, count("bodies"), count("joints"), count("elements"),
-                  outcome);
+            print("| {} | {} | {} | {} | {} |\n", name, count("bodies"), count("joints"),
+                  count("elements"), outcome);
         rows.push_back(row);
     }
     if (request.as_json) print_document({{"schema", import_schema}, {"files", rows}});
@@ -156,7 +162,7 @@ std::string settling(const std::string& yaml) {
         branch.to *= 1e-6;
         branch.steps = 1;
         const auto path =
-            compare::walk(compare::ways_of(model, branch, 1), {.leg = compare::Leg::equilibrium});
+            compare::walk(compare::sides_of(model, branch, 1), {.leg = compare::Leg::equilibrium});
         if (path.points.empty())
             return fmt::format("The drawn position does NOT settle, so no branch begins: {}: {}.",
                                name(path.outcome), path.detail);
@@ -166,8 +172,9 @@ std::string settling(const std::string& yaml) {
             moved = std::max(moved, (rest.r - drawn.r).norm());
             turned = std::max(turned, rest.p.angularDistance(drawn.p));
         }
-        return fmt::format("The drawn position settles: bodies go by up to {:.3g} mm and {:.3g} deg.",
-                           1e3 * moved, turned * 180 / std::numbers::pi);
+        return fmt::format(
+            "The drawn position settles: bodies go by up to {:.3g} mm and {:.3g} deg.", 1e3 * moved,
+            turned * 180 / std::numbers::pi);
     } catch (const SceneError&) {
         return "";  // a scene of hardpoints alone is incomplete
     }
@@ -176,7 +183,8 @@ std::string settling(const std::string& yaml) {
 int import(const ImportRequest& request) {
     if (request.table) return print_table(request);
     if (request.files.size() > 1)
-        throw std::invalid_argument("import: one FILE at a time makes a scene; several with --table");
+        throw std::invalid_argument(
+            "import: one FILE at a time makes a scene; several with --table");
     if (!request.output.empty()) check_may_write(request.output, scene_file);
     importer::Imported result = importer::import_file(request.files.front(), options(request));
     auto lines = importer::told(result.notes);
@@ -202,7 +210,7 @@ int import(const ImportRequest& request) {
         for (const auto& line : lines)
             if (line.starts_with("Warning") || line.starts_with("MISSING") ||
                 line.find("NOT settle") != line.npos)
-                complain("elastocheck: {}\n", line);
+                print_error("elastocheck: {}\n", line);
         return fine;
     }
     for (const auto& line : lines) print("{}\n", line);
@@ -217,18 +225,21 @@ int export_scene(const ExportRequest& request) {
         throw std::invalid_argument(fmt::format("--formulation {}: not of --format {}; allowed: {}",
                                                 request.formulation, request.format,
                                                 chrono ? "chrono" : "adams"));
-    if (!request.output.empty()) check_may_write(request.output, chrono ? suspension_file : dataset_file);
+    if (!request.output.empty())
+        check_may_write(request.output, chrono ? suspension_file : dataset_file);
     Scene scene = compare::trim(read_scene(request.scene, request.settings)).scene;
     importer::Notes notes;
     const bool is_known = request.formulation.empty() || convert(scene, request.formulation, notes);
-    const importer::Exported result = chrono ? importer::export_chrono(scene, request.allow_missing, notes)
-                                             : importer::export_adm(scene, request.allow_missing, notes);
+    const importer::Exported result =
+        chrono ? importer::export_chrono(scene, request.allow_missing, notes)
+               : importer::export_adm(scene, request.allow_missing, notes);
     if (request.output.empty())
         print("{}", result.text);
     else
         write_whole(request.output, result.text, chrono ? suspension_file : dataset_file);
     for (const auto& line : importer::told(result.notes))
-        if (line.starts_with("Warning") || line.starts_with("MISSING")) complain("elastocheck: {}\n", line);
+        if (line.starts_with("Warning") || line.starts_with("MISSING"))
+            print_error("elastocheck: {}\n", line);
     return is_known ? fine : could_not_judge;
 }
 
@@ -238,10 +249,12 @@ Command import_command() {
     const auto request = std::make_shared<ImportRequest>();
     return {
         "import",
-        "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints .sub",
+        "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints "
+        ".sub",
         {{"FILE", TextList{&request->files, TextList::Form::separate, a_file("*")},
           "the model (.adm, .json, .sub)", true},
-         {"-o,--output", Text{&request->output, a_file("*.yaml")}, "write the scene to this file instead"},
+         {"-o,--output", Text{&request->output, a_file("*.yaml")},
+          "write the scene to this file instead"},
          {"--wheel", Text{&request->wheel},
           "the part that carries the wheel, or a marker at its centre: name or id (.adm)"},
          {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
@@ -259,19 +272,21 @@ Command import_command() {
 
 Command export_command() {
     const auto request = std::make_shared<ExportRequest>();
-    return {"export",
-            "Write a scene as another program's model, trimmed: ADAMS, Chrono",
-            {scene_option(request->scene),
-             {"--format", Text{&request->format, one_of({"adm", "chrono"})},
-              "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)"},
-             {"-o,--output", Text{&request->output, a_file("*.adm *.json")}, "write it to this file instead"},
-             {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
-              "adams or chrono, as the format: convert the bushings to that program's formulation, and "
-              "say by how much the outputs move"},
-             {"--allow-missing", Flag{&request->allow_missing},
-              "warn of what the other program has no element for, instead of refusing the scene"},
-             set_option(request->settings)},
-            [request](const std::string&) { return export_scene(*request); }};
+    return {
+        "export",
+        "Write a scene as another program's model, trimmed: ADAMS, Chrono",
+        {scene_option(request->scene),
+         {"--format", Text{&request->format, one_of({"adm", "chrono"})},
+          "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)"},
+         {"-o,--output", Text{&request->output, a_file("*.adm *.json")},
+          "write it to this file instead"},
+         {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
+          "adams or chrono, as the format: convert the bushings to that program's formulation, and "
+          "say by how much the outputs move"},
+         {"--allow-missing", Flag{&request->allow_missing},
+          "warn of what the other program has no element for, instead of refusing the scene"},
+         set_option(request->settings)},
+        [request](const std::string&) { return export_scene(*request); }};
 }
 
 }  // namespace elastocheck::reports

@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "recursive/diagnosis.hpp"
-#include "reports/command/candidate_options.hpp"
-#include "reports/command/command.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/limits.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/candidate_options.hpp"
+#include "reports/command/options/limits.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -31,7 +31,8 @@ struct Request {
 // Exit code: 0 all pass, 1 one fails, 3 none fails and one could not be judged.
 int judge(const Request& request, const Delivery& delivery) {
     if (!request.candidate.wanted())
-        throw std::invalid_argument("judge: nobody to judge; give --candidate FILE or --candidate-command");
+        throw std::invalid_argument(
+            "judge: nobody to judge; give --candidate FILE or --candidate-command");
     const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::forces_too);
     const bool asked = request.tolerance != Request{}.tolerance;
     check(request.candidate, request.settings);
@@ -53,19 +54,21 @@ int judge(const Request& request, const Delivery& delivery) {
     std::vector<std::string> reasons;
     int compared = 0;
     for (const auto& output : outputs) {
-        const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance, asked);
+        const auto judgement =
+            judged(output, request.candidate, loaded, comparison, tolerance, asked);
         const std::string said = sentence(judgement, comparison);
         delivery.say(candidate_text(judgement, comparison));
         delivery.say(said + "\n");
         candidates.push_back(candidate_json(judgement, comparison, said));
         compared += judgement.compared;
-        for (const auto& reason : judgement.reasons) reasons.push_back(judgement.name + ": " + reason);
+        for (const auto& reason : judgement.reasons)
+            reasons.push_back(judgement.name + ": " + reason);
         if (judgement.verdict == compare::Grade::fail) code = limit_broken;
         if (judgement.verdict == compare::Grade::not_judged && code == fine) code = could_not_judge;
     }
     if (delivery.wants_document()) {
-        auto part =
-            scene_document(loaded.scene, read_whole(request.scene), model, recursive::diagnose(model));
+        auto part = scene_document(loaded.scene, read_whole(request.scene), model,
+                                   recursive::diagnose(model));
         if (loaded.trim) add_trim(part, *loaded.trim);
         add_comparison(part, loaded.scene, model, comparison);
         part["candidates"] = std::move(candidates);
@@ -81,18 +84,20 @@ Command judge_command() {
     const auto request = std::make_shared<Request>();
     std::vector<Option> options{scene_option(request->scene), set_option(request->settings)};
     add_candidate_options(options, request->candidate);
-    options.insert(options.end(),
-                   {{"--steps", Integer{&request->steps, 1, most_steps},
-                     "that the command is asked for per branch (default: as the scene says)"},
-                    {"--tolerance", Text{&request->tolerance},
-                     "accuracy asked for: mm, deg, N, Nm, and % of the extent of forces, moments and rates "
-                     "(default: 0.01mm,0.001deg,1%)"},
-                    output_option(request->folder, "folder for result.json and curves.csv"),
-                    json_option(request->as_json)});
-    return {"judge", "Judge another solver's results by the references: pass or fail", std::move(options),
-            [request](const std::string& line) {
-                return judge(*request,
-                             {.folder = request->folder, .as_json = request->as_json, .command = line});
+    options.insert(
+        options.end(),
+        {{"--steps", Integer{&request->steps, 1, most_steps},
+          "that the command is asked for per branch (default: as the scene says)"},
+         {"--tolerance", Text{&request->tolerance},
+          "accuracy asked for: mm, deg, N, Nm, and % of the extent of forces, moments and rates "
+          "(default: 0.01mm,0.001deg,1%)"},
+         output_option(request->folder, "folder for result.json and curves.csv"),
+         json_option(request->as_json)});
+    return {"judge", "Judge another solver's results by the references: pass or fail",
+            std::move(options), [request](const std::string& line) {
+                return judge(
+                    *request,
+                    {.folder = request->folder, .as_json = request->as_json, .command = line});
             }};
 }
 

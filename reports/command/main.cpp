@@ -11,22 +11,22 @@
 #include <memory>
 #include <new>
 
-#include "models/reader/scene_file.hpp"
-#include "reports/command/completion.hpp"
-#include "reports/command/documentation.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/grammar.hpp"
-#include "reports/command/load_scene.hpp"
-#include "reports/command/manual.hpp"
-#include "reports/command/parse.hpp"
-#include "reports/command/registry.hpp"
-#include "reports/document/field.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "reports/command/grammar/completion.hpp"
+#include "reports/command/grammar/documentation.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/grammar/grammar.hpp"
+#include "reports/command/grammar/manual.hpp"
+#include "reports/command/grammar/parse.hpp"
+#include "reports/command/grammar/registry.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/document/measurement.hpp"
-#include "reports/document/provenance.hpp"
 #include "reports/files/cleanup.hpp"
 #include "reports/files/files.hpp"
+#include "reports/files/provenance.hpp"
+#include "reports/files/terminal.hpp"
+#include "reports/json/json_cursor.hpp"
 #include "reports/page/gnuplot.hpp"
-#include "reports/text/terminal.hpp"
 
 namespace {
 
@@ -35,7 +35,8 @@ using namespace elastocheck::reports;
 
 std::string footer(const std::function<std::string(const std::string&)>& place) {
     return fmt::format(
-        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 internal error.\n"
+        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 "
+        "internal error.\n"
         "The scene files: {}\nWhat commands write: {}\n",
         place("models/scenes/README.md"), place("reports/README.md"));
 }
@@ -48,9 +49,11 @@ int print_text(const std::string& text) {
 Program program(const std::function<std::string(const std::string&)>& place) {
     return {.name = "elastocheck",
             .description =
-                "Can I trust my suspension solver? One scene, solved three ways that share nothing but the "
+                "Can I trust my suspension solver? One scene, solved three ways that share nothing "
+                "but the "
                 "scene:\n"
-                "the linear recursive formula of Kang's paper, the full equilibrium equations, and an energy "
+                "the linear recursive formula of Kang's paper, the full equilibrium equations, and "
+                "an energy "
                 "minimisation.",
             .version = version_text(provenance()),
             .footer = footer(place)};
@@ -66,17 +69,20 @@ std::vector<Command> commands() {
                                 "bash, zsh or fish", true}},
                    .run =
                        [shell](const std::string&) {
-                           return print_text(completion(grammar(program(documentation), registry()), *shell));
+                           return print_text(
+                               completion(grammar(program(documentation), registry()), *shell));
                        },
                    .hidden = true});
-    const auto installed = [](const std::string& name) { return "PREFIX/share/doc/elastocheck/" + name; };
+    const auto installed = [](const std::string& name) {
+        return "PREFIX/share/doc/elastocheck/" + name;
+    };
     all.push_back({.name = "man",
                    .description = "Print the page of the manual",
                    .options = {},
                    .run =
                        [installed](const std::string&) {
-                           return print_text(
-                               manual(grammar(program(installed), registry()), provenance().version));
+                           return print_text(manual(grammar(program(installed), registry()),
+                                                    provenance().version));
                        },
                    .hidden = true});
     return all;
@@ -86,7 +92,7 @@ std::vector<Command> commands() {
 
 int main(int argc, char** argv) {
     const auto fail = [](Exit code, std::string_view what) -> int {
-        complain("elastocheck: {}{}\n", code == bug ? "internal error: " : "", what);
+        print_error("elastocheck: {}{}\n", code == bug ? "internal error: " : "", what);
         return code;
     };
     clean_up_on_signals();
@@ -99,7 +105,7 @@ int main(int argc, char** argv) {
         const int code = parse_and_run(program(documentation), commands(), argc, argv);
         finish_printing();
         return code;
-    } catch (const NobodyReads&) {
+    } catch (const OutputClosed&) {
         // Ends the program by SIGPIPE.
         std::signal(SIGPIPE, SIG_DFL);
         std::raise(SIGPIPE);
@@ -118,7 +124,8 @@ int main(int argc, char** argv) {
         return fail(bad_input, error.what());
         // loops of links, inaccessible folders
     } catch (const std::filesystem::filesystem_error& error) {
-        return fail(bad_input, fmt::format("{}: {}", error.path1().string(), error.code().message()));
+        return fail(bad_input,
+                    fmt::format("{}: {}", error.path1().string(), error.code().message()));
     } catch (const std::invalid_argument& error) {
         return fail(bad_input, error.what());
     } catch (const std::bad_alloc&) {

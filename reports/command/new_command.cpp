@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "models/reader/words.hpp"
-#include "reports/command/command.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/text/terminal.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/files/terminal.hpp"
 #include "scenes_embedded.hpp"  // generated: name and text of every scene of models/scenes
 
 namespace elastocheck::reports {
@@ -58,20 +58,23 @@ int new_scene(const std::string& name, bool as_json) {
         if (as_json)
             print_document(
                 {{"schema", templates_schema},
-                 {"templates", {{{"template", name}, {"name", title(scene.text)}, {"text", scene.text}}}}});
+                 {"templates",
+                  {{{"template", name}, {"name", title(scene.text)}, {"text", scene.text}}}}});
         else
             print("{}", scene.text);
         return fine;
     }
     const std::vector<std::string> names = templates();
     if (!name.empty())
-        throw std::invalid_argument(fmt::format("new: no template is called {}{}", reader::quote(name),
+        throw std::invalid_argument(fmt::format("new: no template is called {}{}",
+                                                reader::quote(name),
                                                 reader::did_you_mean(name, names, "there are")));
     if (as_json) {
         print_document({{"schema", templates_schema}, {"templates", list}});
         return fine;
     }
-    for (const auto& scene : embedded_scenes) print("{:<{}}  {}\n", scene.name, longest, title(scene.text));
+    for (const auto& scene : embedded_scenes)
+        print("{:<{}}  {}\n", scene.name, longest, title(scene.text));
     print("\nelastocheck new NAME > my.yaml\n");
     return fine;
 }

@@ -5,40 +5,40 @@
 #include <chrono>
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "compare/formulations.hpp"
-#include "compare/order_study.hpp"
-#include "compare/precision.hpp"
-#include "compare/profile.hpp"
-#include "compare/study.hpp"
-#include "compare/trade.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/diagnosis.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/studies/formulations.hpp"
+#include "compare/studies/order_study.hpp"
+#include "compare/studies/precision.hpp"
+#include "compare/studies/profile.hpp"
+#include "compare/studies/study.hpp"
+#include "compare/studies/work_precision.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/browser.hpp"
-#include "reports/command/candidate_options.hpp"
-#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/limits.hpp"
-#include "reports/command/load_scene.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/candidate_options.hpp"
+#include "reports/command/options/limits.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
-#include "reports/document/field.hpp"
-#include "reports/document/json.hpp"
 #include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
+#include "reports/files/terminal.hpp"
+#include "reports/json/json.hpp"
+#include "reports/json/json_cursor.hpp"
 #include "reports/page/gnuplot.hpp"
-#include "reports/page/report.hpp"
+#include "reports/page/report/report.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/stress_tables.hpp"
-#include "reports/tables/study_tables.hpp"
-#include "reports/tables/trade_tables.hpp"
-#include "reports/text/terminal.hpp"
+#include "reports/tables/studies/precision_tables.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
+#include "reports/tables/studies/work_precision_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -74,7 +74,8 @@ json recommended(const Model& model, const compare::Trade& trade) {
         const auto profile = compare::profile(model, branch, point).profile;
         json mm = json::array(), deg = json::array();
         for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
-        branches.push_back({{"name", branch.name}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
+        branches.push_back(
+            {{"name", branch.name}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
     }
     json result = {{"method", point.method}};
     if (point.steps > 0) result["steps"] = point.steps;
@@ -105,11 +106,11 @@ json solve_scene(const std::string& file, const Request& request) {
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
         add_formulations(document, compare::formulation_study(scene, 0, 1, tell), comparison);
     if (!request.measured.empty()) {
-        add_measurement(document, read_whole(request.measured, largest_measurement), request.measured, model,
-                        comparison, load_cases(request));
+        add_measurement(document, read_whole(request.measured, largest_measurement),
+                        request.measured, model, comparison, load_cases(request));
         if (compared_with_measurement(document) == 0)
-            reasons.push_back(fmt::format("no point of {} lies where the legs could be compared with it",
-                                          request.measured));
+            reasons.push_back(fmt::format(
+                "no point of {} lies where the legs could be compared with it", request.measured));
     }
 
     compare::StudyOptions study_options;
@@ -124,21 +125,24 @@ json solve_scene(const std::string& file, const Request& request) {
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 
     compare::TradeOptions trade_options;
-    trade_options.tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
+    trade_options.tolerance =
+        compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     if (request.archive) trade_options.rounds = 0;
     trade_options.progress = tell;
     const auto trade = compare::trade(model, trade_options);
     document["trade"] = trade_json(trade);
-    if (const json profile = recommended(model, trade); !profile.is_null()) document["recommended"] = profile;
+    if (const json profile = recommended(model, trade); !profile.is_null())
+        document["recommended"] = profile;
 
     document["orders"] = table_json(order_table(compare::order_study(model, {.progress = tell})));
 
     // `elastocheck trade` uses a million steps, which shows more round-off but takes half a minute.
-    document["precision"] = precision_json(
-        compare::precision_study(model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
+    document["precision"] = precision_json(compare::precision_study(
+        model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
     if (request.candidate.wanted()) {
         document["candidates"] = json::array();
-        const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
+        const auto tolerance =
+            compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
         for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
             const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
                                           request.tolerance != Request{}.tolerance);
@@ -147,9 +151,10 @@ json solve_scene(const std::string& file, const Request& request) {
         }
     }
     add_verdict(document, comparison.compared, reasons);
-    auto judgement =
-        compare::assess(model, comparison, trade_options.tolerance, request.tolerance != Request{}.tolerance);
-    if (!reasons.empty()) judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
+    auto judgement = compare::assess(model, comparison, trade_options.tolerance,
+                                     request.tolerance != Request{}.tolerance);
+    if (!reasons.empty())
+        judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
     return document;
 }
@@ -175,14 +180,16 @@ json read_stress(const std::string& file) {
         throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
     }
     if (!stress.is_object() || stress.value("schema", json()) != stress_schema)
-        throw std::invalid_argument(fmt::format(
-            "{}: is not the stress.json that `elastocheck stress` writes ('{}')", file, stress_schema));
+        throw std::invalid_argument(
+            fmt::format("{}: is not the stress.json that `elastocheck stress` writes ('{}')", file,
+                        stress_schema));
     for (const char* key : {"cells", "reproduce"}) stress.erase(key);
     return stress;
 }
 
 // Answer of each scene, and whether it passes.
-json answer_document(const json& result, const std::vector<Answer>& answers, const std::string& page) {
+json answer_document(const json& result, const std::vector<Answer>& answers,
+                     const std::string& page) {
     json scenes = json::array();
     for (const auto& answer : answers)
         scenes.push_back({{"name", answer.name},
@@ -190,14 +197,18 @@ json answer_document(const json& result, const std::vector<Answer>& answers, con
                           {"mark", answer.mark},
                           {"answer", answer.sentence},
                           {"verdict", result["scenes"][scenes.size()]["verdict"]}});
-    return {
-        {"schema", report_schema}, {"provenance", result["provenance"]}, {"page", page}, {"scenes", scenes}};
+    return {{"schema", report_schema},
+            {"provenance", result["provenance"]},
+            {"page", page},
+            {"scenes", scenes}};
 }
 
-std::string answer_text(const std::vector<Answer>& answers, const std::string& page, double seconds) {
+std::string answer_text(const std::vector<Answer>& answers, const std::string& page,
+                        double seconds) {
     std::string text;
     for (const auto& answer : answers)
-        if (!answer.sentence.empty()) text += fmt::format("{}: {}\n\n", answer.name, answer.sentence);
+        if (!answer.sentence.empty())
+            text += fmt::format("{}: {}\n\n", answer.name, answer.sentence);
     for (const auto& answer : answers) text += fmt::format("{}: {}\n", answer.source, answer.mark);
     return text + fmt::format("The page: {} ({} scene{}, {:.1f} s)\n", page, answers.size(),
                               answers.size() == 1 ? "" : "s", seconds);
@@ -216,7 +227,8 @@ void remove_times(json& value) {
 // Returns the exit code. `reproduce` is the command line as given.
 int report(const Request& request, const std::string& reproduce) {
     if (request.from.empty() == request.scenes.empty())
-        throw std::invalid_argument("report: needs scene files or --from a result.json, one of the two");
+        throw std::invalid_argument(
+            "report: needs scene files or --from a result.json, one of the two");
     if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
     if (request.candidate.wanted() && request.scenes.size() != 1)
@@ -240,9 +252,11 @@ int report(const Request& request, const std::string& reproduce) {
             "report: --branch-column and --case say how to read --measured; give a file");
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
-        throw std::invalid_argument("report: --alarms belongs to what is solved; --from has it already");
+        throw std::invalid_argument(
+            "report: --alarms belongs to what is solved; --from has it already");
     if (!request.stress.empty() && !request.from.empty())
-        throw std::invalid_argument("report: --stress belongs to what is solved; --from has it already");
+        throw std::invalid_argument(
+            "report: --stress belongs to what is solved; --from has it already");
     const json stress = request.stress.empty() ? json() : read_stress(request.stress);
     const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
@@ -252,22 +266,23 @@ int report(const Request& request, const std::string& reproduce) {
     } else {
         file = "result.json";
         result = document(reproduce, provenance());
-        for (const auto& scene : request.scenes) result["scenes"].push_back(solve_scene(scene, request));
+        for (const auto& scene : request.scenes)
+            result["scenes"].push_back(solve_scene(scene, request));
         if (!stress.is_null()) result["stress"] = stress;
         if (!alarms.is_null()) result["alarms"] = alarms;
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
-    const auto answers =
-        write_report(result, file, request.folder,
-                     {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
+    const auto answers = write_report(
+        result, file, request.folder,
+        {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
     for (const auto& scene : result["scenes"])
         if (scene.contains("candidates"))
             for (const auto& candidate : scene["candidates"]) {
-                complain("{}\n", candidate["sentence"].get<std::string>());
+                print_error("{}\n", candidate["sentence"].get<std::string>());
                 if (candidate["verdict"] == "fail") code = limit_broken;
                 if (candidate["verdict"] == "not judged" && code == fine) code = could_not_judge;
             }
@@ -275,7 +290,7 @@ int report(const Request& request, const std::string& reproduce) {
         if (!answer.conclusive) {
             code = could_not_judge;
             for (const auto& reason : answer.reasons)
-                complain("{}: inconclusive: {}\n", answer.source, reason);
+                print_error("{}: inconclusive: {}\n", answer.source, reason);
         }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     const std::string page = request.folder + (request.archive ? "/README.md" : "/report.html");
@@ -295,10 +310,12 @@ Command report_command() {
         {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
          "scene files (YAML)"},
         set_option(request->settings),
-        {"--from", Text{&request->from, a_file("*.json")}, "draw from this result.json, without solving"},
+        {"--from", Text{&request->from, a_file("*.json")},
+         "draw from this result.json, without solving"},
         {"-o,--output", Text{&request->folder, a_folder()},
          "folder for report.html, report.md, result.json, curves.csv, figures/", true},
-        {"--tolerance", Text{&request->tolerance}, "accuracy asked for (default: 0.01mm,0.001deg,1%)"},
+        {"--tolerance", Text{&request->tolerance},
+         "accuracy asked for (default: 0.01mm,0.001deg,1%)"},
         {"--alarms", Text{&request->alarms, a_file("*.json")},
          "results.json of seeded faults (./dev mutate), to show which alarms ring"},
         {"--stress", Text{&request->stress, a_file("*.json")},
@@ -310,16 +327,17 @@ Command report_command() {
         {"--case", TextList{&request->cases, TextList::Form::separate},
          "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated"}};
     add_candidate_options(options, request->candidate);
-    options.insert(
-        options.end(),
-        {{"--figures", Text{&request->figures, one_of({"svg", "pdf"})},
-          "svg (default), or pdf: PDF files beside the SVG"},
-         {"--archive", Flag{&request->archive},
-          "only what belongs in version control: README.md, numbers.csv, figures/*.svg, without times"},
-         json_option(request->as_json),
-         {"--open", Flag{&request->open}, "then open the page: by $BROWSER, else by xdg-open"}});
+    options.insert(options.end(), {{"--figures", Text{&request->figures, one_of({"svg", "pdf"})},
+                                    "svg (default), or pdf: PDF files beside the SVG"},
+                                   {"--archive", Flag{&request->archive},
+                                    "only what belongs in version control: README.md, numbers.csv, "
+                                    "figures/*.svg, without times"},
+                                   json_option(request->as_json),
+                                   {"--open", Flag{&request->open},
+                                    "then open the page: by $BROWSER, else by xdg-open"}});
     return {"report", "Everything about one or more scenes as a page: verdict, figures, tables",
-            std::move(options), [request](const std::string& line) { return report(*request, line); }};
+            std::move(options),
+            [request](const std::string& line) { return report(*request, line); }};
 }
 
 }  // namespace elastocheck::reports

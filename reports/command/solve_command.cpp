@@ -7,26 +7,26 @@
 #include <optional>
 #include <stdexcept>
 
-#include "compare/channels.hpp"
-#include "compare/characteristics.hpp"
-#include "compare/elements.hpp"
-#include "compare/legs.hpp"
-#include "compare/outlook.hpp"
-#include "compare/rates.hpp"
-#include "models/reader/words.hpp"
-#include "recursive/diagnosis.hpp"
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/comparison/extrapolation.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/outputs/channels.hpp"
+#include "compare/outputs/rates.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
-#include "reports/command/command.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/limits.hpp"
-#include "reports/command/load_scene.hpp"
-#include "reports/command/recursion_options.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/limits.hpp"
+#include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/recursion_options.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
+#include "reports/files/terminal.hpp"
 #include "reports/tables/csv.hpp"
-#include "reports/text/terminal.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -34,7 +34,7 @@ namespace {
 using compare::Channel;
 
 struct SolveRequest {
-    compare::Gait gait;
+    compare::SolverSettings solver;
     Detail detail = Detail::required;
     std::vector<std::string> channels;  // names, or patterns with *; none: all
     std::string rates;                  // CSV of the derivatives, by the series; empty: none
@@ -42,23 +42,26 @@ struct SolveRequest {
 };
 
 // Writes the derivatives in a separate file: positions and angles per unit of the parameter.
-void write_rates(const Model& model, const std::vector<Channel>& asked, const SolveRequest& request) {
+void write_rates(const Model& model, const std::vector<Channel>& asked,
+                 const SolveRequest& request) {
     std::vector<Channel> channels;
     std::ranges::copy_if(asked, std::back_inserter(channels), &Channel::kinematic);
     if (channels.empty())
-        throw std::invalid_argument("--rates: of positions and angles only, and --channels has none");
+        throw std::invalid_argument(
+            "--rates: of positions and angles only, and --channels has none");
     FileToBe csv(request.rates, rates_file);
     csv.add(rates_header(channels));
-    const auto& [leg, how, refine, every, account] = request.gait;
+    const auto& [leg, how, refine, every, error_bound] = request.solver;
     for (const auto& branch : model.branches)
-        for (const auto& way : compare::ways_of(model, branch, how.steps)) {
-            const auto path = recursive::series::follow(way.model, way.branch,
-                                                        std::get<recursive::Series>(how.method.kind));
+        for (const auto& way : compare::sides_of(model, branch, how.steps)) {
+            const auto path = recursive::series::follow(
+                way.model, way.branch, std::get<recursive::Series>(how.method.kind));
             for (const double a : compare::asked_for({way}, every)) {
                 const auto place = recursive::series::find(path, a);
                 if (!place) break;
-                csv.add(rates_row(way.name, compare::unit_of(branch.unit), a,
-                                  compare::channel_rates(way.model, channels, way.branch, path, *place)));
+                csv.add(rates_row(
+                    way.name, compare::unit_of(branch.unit), a,
+                    compare::channel_rates(way.model, channels, way.branch, path, *place)));
             }
         }
     csv.finish();
@@ -66,7 +69,8 @@ void write_rates(const Model& model, const std::vector<Channel>& asked, const So
 
 // The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
 // without a match, with the nearest name.
-std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<std::string>& patterns) {
+std::vector<Channel> chosen(const std::vector<Channel>& all,
+                            const std::vector<std::string>& patterns) {
     if (patterns.empty()) return all;
     std::vector<Channel> list;
     std::vector<std::string> names;
@@ -74,14 +78,15 @@ std::vector<Channel> chosen(const std::vector<Channel>& all, const std::vector<s
     for (const auto& pattern : patterns) {
         bool fits = false;
         for (const auto& channel : all) {
-            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0) continue;
+            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0)
+                continue;
             fits = true;
             if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
         }
         if (!fits)
-            throw std::invalid_argument(fmt::format("--channels: no output is called {}{}",
-                                                    reader::quote(pattern),
-                                                    reader::did_you_mean(pattern, names, "outputs")));
+            throw std::invalid_argument(
+                fmt::format("--channels: no output is called {}{}", reader::quote(pattern),
+                            reader::did_you_mean(pattern, names, "outputs")));
     }
     return list;
 }
@@ -102,7 +107,7 @@ std::vector<Channel> asked_for(const Model& model, const std::vector<std::string
 // output; the document contains every point, so all are stored for it.
 int solve(const std::string& file, const Settings& settings, const SolveRequest& request,
           const Delivery& delivery) {
-    const auto& [leg, how, refine, every, account] = request.gait;
+    const auto& [leg, how, refine, every, error_bound] = request.solver;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     if (!request.states.empty()) check_may_write(request.states, states_file);
@@ -121,29 +126,33 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     std::optional<FileToBe> states;
     bool has_states = false;
     if (!request.states.empty()) states.emplace(request.states, states_file);
-    const auto write = [&](const std::string& lines) { csv ? csv->add(lines) : delivery.say(lines); };
+    const auto write = [&](const std::string& lines) {
+        csv ? csv->add(lines) : delivery.say(lines);
+    };
     std::vector<compare::Walked> kept;  // only for the document
     write(curves_header(channels));
     int code = fine;
-    const std::string who = leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
+    const std::string who =
+        leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
     const auto promise = leg == compare::Leg::recursive
                              ? compare::promised(how.method, recursive::diagnose(model).length)
                              : std::nullopt;
-    compare::Gait gait = request.gait;
-    gait.account = account || promise;
+    compare::SolverSettings solver = request.solver;
+    solver.error_bound = error_bound || promise;
     for (const auto& branch : model.branches) {
-        compare::BranchAccount said{promise};
+        compare::BranchErrorBounds said{promise};
         if (csv) progress(branch.name);
-        const auto ways = compare::ways_of(model, branch, how.steps);
+        const auto ways = compare::sides_of(model, branch, how.steps);
         compare::Analyses analyses;
         compare::Walked whole;
         whole.curve.unit = compare::unit_of(branch.unit);
         const EquilibriumPath path = compare::walk(
-            ways, gait,
+            ways, solver,
             [&](const Equilibrium& state) {
-                if (gait.account) add(said, state);
+                if (solver.error_bound) add(said, state);
                 if (states) states->add(state_line(model, branch.name, state)), has_states = true;
-                return compare::row_of(model, channels, ways.front(), request.gait, state, analyses);
+                return compare::row_of(model, channels, ways.front(), request.solver, state,
+                                       analyses);
             },
             [&](const compare::Row& row) {
                 if (delivery.as_json) {
@@ -157,16 +166,17 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
-        for (const auto& line : told(said, branch.unit)) complain("{}: {}: {}\n", who, branch.name, line);
+        for (const auto& line : told(said, branch.unit))
+            print_error("{}: {}: {}\n", who, branch.name, line);
         if (path.outcome == Outcome::converged) continue;
-        complain("{}: {}: {}\n", who, name(path.outcome), path.detail);
+        print_error("{}: {}: {}\n", who, name(path.outcome), path.detail);
         code = could_not_judge;
     }
     if (csv) csv->finish();
     if (has_states)
         states->finish();
     else if (states)
-        complain("{}: not written: no state was reached\n", request.states);
+        print_error("{}: not written: no state was reached\n", request.states);
     if (delivery.as_json) {
         nlohmann::ordered_json part =
             scene_document(loaded.scene, read_whole(file), model, recursive::diagnose(model));
@@ -189,12 +199,13 @@ std::vector<std::string> solvers() {
 // The request with its leg, and for the recursion with its options.
 SolveRequest with_solver(SolveRequest request, RecursionRequest recursion_request,
                          const std::string& solver) {
-    const auto leg = std::ranges::find(compare::legs, solver, [](auto l) { return std::string(name(l)); });
+    const auto leg =
+        std::ranges::find(compare::legs, solver, [](auto l) { return std::string(name(l)); });
     if (leg == compare::legs.end()) recursion_request.method = solver;
-    request.gait.recursion = recursion(recursion_request);
-    request.gait.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
+    request.solver.recursion = recursion(recursion_request);
+    request.solver.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
     if (!request.rates.empty() &&
-        !std::holds_alternative<recursive::Series>(request.gait.recursion.method.kind))
+        !std::holds_alternative<recursive::Series>(request.solver.recursion.method.kind))
         throw std::invalid_argument("--rates: only with --method series");
     return request;
 }
@@ -216,10 +227,12 @@ Command solve_command() {
     options.insert(
         options.end(),
         {{"--method", Text{&given->method, one_of(solvers())},
-          "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive or "
+          "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive "
+          "or "
           "series; equilibrium; energy"},
-         {"--account", Flag{&given->request.gait.account},
-          "say where the stiffness that is left will be gone, as the points announce it; adaptive and "
+         {"--account", Flag{&given->request.solver.error_bound},
+          "say where the stiffness that is left will be gone, as the points announce it; adaptive "
+          "and "
           "series always do, and whether they keep what they promise"},
          {"--arc-length", Flag{&given->recursion.arc_length},
           "series: follow the path by arc length, through limit points"},
@@ -229,8 +242,9 @@ Command solve_command() {
           "write the poses of the bodies as well, as JSON lines, to this file"},
          {"--channels", TextList{&given->request.channels, TextList::Form::commas},
           "only these outputs, in this order: NAME,... as in the CSV's head, * for any letters"},
-         every_option(given->request.gait.every),
-         {"-o,--output", Text{&given->output, a_file("*.csv")}, "write the CSV to this file instead"}});
+         every_option(given->request.solver.every),
+         {"-o,--output", Text{&given->output, a_file("*.csv")},
+          "write the CSV to this file instead"}});
     return {"solve", "Solve a scene one way and print the curves as CSV", std::move(options),
             [given](const std::string& line) {
                 SolveRequest request = with_solver(given->request, given->recursion, given->method);

@@ -8,20 +8,20 @@
 #include <memory>
 #include <stdexcept>
 
-#include "compare/stress.hpp"
-#include "compare/trim.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reports/command/command.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/stress/stress.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/load_scene.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/command/templates.hpp"
 #include "reports/document/document.hpp"
 #include "reports/extremes/extremes.hpp"
 #include "reports/files/folder.hpp"
+#include "reports/files/terminal.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/stress_tables.hpp"
-#include "reports/text/terminal.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -60,16 +60,18 @@ int stress(const Request& request, const Delivery& delivery) {
                                     load_scene(file, request.settings).scene, compare::sweeps()));
     }
     if (request.scenes.empty()) {
-        if (!request.settings.empty()) throw std::invalid_argument("stress: --set changes a scene; give one");
+        if (!request.settings.empty())
+            throw std::invalid_argument("stress: --set changes a scene; give one");
         trials = built_in();
     }
     const compare::Survival survival = compare::stress(trials, {.progress = progress});
     progress("");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    delivery.say(stress_text(survival) +
-                 fmt::format("{:.0f} s, {:.0f} s of processor time; the dearest trial: {}, {}, {:.0f} s\n",
-                             elapsed.count(), survival.seconds, survival.dearest.scene,
-                             survival.dearest.variant, survival.dearest.seconds));
+    delivery.say(
+        stress_text(survival) +
+        fmt::format("{:.0f} s, {:.0f} s of processor time; the dearest trial: {}, {}, {:.0f} s\n",
+                    elapsed.count(), survival.seconds, survival.dearest.scene,
+                    survival.dearest.variant, survival.dearest.seconds));
     if (delivery.wants_document()) {
         nlohmann::ordered_json document = {{"schema", stress_schema},
                                            {"reproduce", delivery.command},
@@ -80,7 +82,7 @@ int stress(const Request& request, const Delivery& delivery) {
                                            {"cells.csv", csv(cell_table(survival))}});
             const std::string written =
                 fmt::format("Written: {0}/stress.json, {0}/cells.csv\n", delivery.folder);
-            delivery.as_json ? complain(written) : print(written);
+            delivery.as_json ? print_error(written) : print(written);
         }
         if (delivery.as_json) print_document(document);
     }
@@ -93,17 +95,19 @@ int stress(const Request& request, const Delivery& delivery) {
 
 Command stress_command() {
     const auto request = std::make_shared<Request>();
-    return {"stress",
-            "Scenes at their extremes, by every leg and method: right, an honest outcome, or wrong",
-            {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
-              "scene files (YAML); none: all built-in ones, and some that are extreme by their making"},
-             set_option(request->settings),
-             output_option(request->folder, "folder for stress.json and cells.csv"),
-             json_option(request->as_json)},
-            [request](const std::string& line) {
-                return stress(*request,
-                              {.folder = request->folder, .as_json = request->as_json, .command = line});
-            }};
+    return {
+        "stress",
+        "Scenes at their extremes, by every leg and method: right, an honest outcome, or wrong",
+        {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+          "scene files (YAML); none: all built-in ones, and some that are extreme by their making"},
+         set_option(request->settings),
+         output_option(request->folder, "folder for stress.json and cells.csv"),
+         json_option(request->as_json)},
+        [request](const std::string& line) {
+            return stress(
+                *request,
+                {.folder = request->folder, .as_json = request->as_json, .command = line});
+        }};
 }
 
 }  // namespace elastocheck::reports

@@ -7,35 +7,35 @@
 #include <memory>
 #include <optional>
 
-#include "compare/compare.hpp"
-#include "compare/formulations.hpp"
-#include "compare/order_study.hpp"
-#include "compare/precision.hpp"
-#include "compare/study.hpp"
-#include "compare/trade.hpp"
-#include "recursive/diagnosis.hpp"
-#include "recursive/solve.hpp"
-#include "reports/command/candidate_options.hpp"
-#include "reports/command/command.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/studies/formulations.hpp"
+#include "compare/studies/order_study.hpp"
+#include "compare/studies/precision.hpp"
+#include "compare/studies/study.hpp"
+#include "compare/studies/work_precision.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
-#include "reports/command/exit_code.hpp"
-#include "reports/command/limits.hpp"
-#include "reports/command/load_scene.hpp"
-#include "reports/command/recursion_options.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/candidate_options.hpp"
+#include "reports/command/options/limits.hpp"
+#include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/recursion_options.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
+#include "reports/document/inspection.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
+#include "reports/files/terminal.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
-#include "reports/tables/formulation_tables.hpp"
-#include "reports/tables/inspection.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/order_tables.hpp"
-#include "reports/tables/precision_tables.hpp"
-#include "reports/tables/study_tables.hpp"
-#include "reports/tables/trade_tables.hpp"
-#include "reports/text/terminal.hpp"
+#include "reports/tables/studies/formulation_tables.hpp"
+#include "reports/tables/studies/order_tables.hpp"
+#include "reports/tables/studies/precision_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
+#include "reports/tables/studies/work_precision_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -52,8 +52,8 @@ struct CompareRequest {
 };
 
 json document_of(const LoadedScene& loaded, const std::string& file) {
-    json part =
-        scene_document(loaded.scene, read_whole(file), loaded.model, recursive::diagnose(loaded.model));
+    json part = scene_document(loaded.scene, read_whole(file), loaded.model,
+                               recursive::diagnose(loaded.model));
     if (loaded.trim) add_trim(part, *loaded.trim);
     return part;
 }
@@ -69,8 +69,9 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
 
 // Error and cost of a candidate's command at several numbers of steps. Where a run could not be
 // judged, its row states this and the reason is appended to `reasons`.
-compare::Table price_of(const CandidateRequest& request, const std::string& file, const LoadedScene& loaded,
-                        const compare::Tolerance& tolerance, std::vector<std::string>& reasons) {
+compare::Table price_of(const CandidateRequest& request, const std::string& file,
+                        const LoadedScene& loaded, const compare::Tolerance& tolerance,
+                        std::vector<std::string>& reasons) {
     std::vector<CandidateRun> runs;
     compare::Comparison comparison;
     for (const int steps : {10, 40, 160, 640}) {
@@ -89,25 +90,26 @@ compare::Table price_of(const CandidateRequest& request, const std::string& file
     progress("");
     for (const auto& run : runs)
         if (run.judgement.verdict == compare::Grade::not_judged)
-            reasons.push_back(fmt::format("the candidate with {} steps could not be judged: {}", run.steps,
-                                          run.judgement.reasons.front()));
+            reasons.push_back(fmt::format("the candidate with {} steps could not be judged: {}",
+                                          run.steps, run.judgement.reasons.front()));
     return candidate_trade_table(runs, comparison);
 }
 
 // Levels of a candidate: files with their numbers of steps, or a run of its command for each
 // number.
-compare::Study study_of(const CandidateRequest& request, const std::string& file, const LoadedScene& loaded,
-                        const std::vector<int>& steps) {
+compare::Study study_of(const CandidateRequest& request, const std::string& file,
+                        const LoadedScene& loaded, const std::vector<int>& steps) {
     for (const auto& text : request.files)
         if (text.find('=') == text.npos)
-            throw std::invalid_argument(
-                fmt::format("--candidate {}: how many steps it has is missing; allowed: 75={}", text, text));
+            throw std::invalid_argument(fmt::format(
+                "--candidate {}: how many steps it has is missing; allowed: 75={}", text, text));
     if (!request.files.empty() && !request.command.empty())
         throw std::invalid_argument("converge: --candidate or --candidate-command, one of the two");
     const compare::Comparison outline = compare::outline(loaded.model);
-    const ColumnMap map = request.map.empty()
-                              ? ColumnMap{}
-                              : read_column_map(read_whole(request.map, largest_baseline), request.map);
+    const ColumnMap map =
+        request.map.empty()
+            ? ColumnMap{}
+            : read_column_map(read_whole(request.map, largest_baseline), request.map);
     std::vector<compare::CandidateLevel> levels;
     std::string name;
     auto outputs = outputs_of(request, file, steps);
@@ -120,9 +122,10 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
         };
         try {
             if (output.failed.empty())
-                levels.push_back({output.steps, read_candidate(output.content, output.file, output.name,
-                                                               loaded.scene, loaded.model, outline, map)
-                                                    .points});
+                levels.push_back(
+                    {output.steps, read_candidate(output.content, output.file, output.name,
+                                                  loaded.scene, loaded.model, outline, map)
+                                       .points});
             else
                 refuse(output.failed);
         } catch (const SheetError& error) {
@@ -171,7 +174,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     const compare::Comparison comparison = compare::compare(model, options);
     std::optional<compare::FormulationStudy> study;
     if (request.formulations)
-        study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every, progress);
+        study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every,
+                                           progress);
     progress("");
     delivery.say(tables(model, comparison));
     if (study) delivery.say(formulation_text(*study, comparison));
@@ -182,18 +186,21 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     for (const auto& output :
          outputs_of(request.candidate, file,
                     {request.recursion.steps > 0 ? request.recursion.steps : steps_of(model)})) {
-        candidates.push_back(judged(output, request.candidate, loaded, comparison, tolerance, asked));
+        candidates.push_back(
+            judged(output, request.candidate, loaded, comparison, tolerance, asked));
         delivery.say("\n" + candidate_text(candidates.back(), comparison));
     }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
-        std::vector<NamedContent> files{{"forces.csv", csv(force_table(element_values(model, comparison)))}};
+        std::vector<NamedContent> files{
+            {"forces.csv", csv(force_table(element_values(model, comparison)))}};
         auto reasons = reasons_of(comparison);
         if (study) {
             add_formulations(part, *study, comparison);
             files.push_back({"formulations.csv", csv(formulation_table(*study, comparison))});
-            for (const auto& reason : study->inconclusive) reasons.push_back("formulations: " + reason);
+            for (const auto& reason : study->inconclusive)
+                reasons.push_back("formulations: " + reason);
         }
         add_verdict(part, comparison.compared, reasons);
         part["judgement"] = judgement_json(judgement);
@@ -209,11 +216,14 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
         delivery.say(sentence(candidate, comparison) + "\n");
         judged_all = judged_all && candidate.verdict != compare::Grade::not_judged;
     }
-    return judged_all && comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
+    return judged_all && comparison.conclusive() && (!study || study->conclusive())
+               ? fine
+               : could_not_judge;
 }
 
-int converge(const std::string& file, const Settings& settings, const std::vector<std::string>& names,
-             const std::vector<int>& steps, const CandidateRequest& candidate, const Delivery& delivery) {
+int converge(const std::string& file, const Settings& settings,
+             const std::vector<std::string>& names, const std::vector<int>& steps,
+             const CandidateRequest& candidate, const Delivery& delivery) {
     check(candidate, settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
@@ -261,7 +271,8 @@ int converge(const std::string& file, const Settings& settings, const std::vecto
             files.push_back({"candidate_step_errors.csv", csv(step_table(*of_candidate))});
             std::ranges::copy(of_candidate->inconclusive, std::back_inserter(reasons));
         }
-        if (!conclusive && reasons.empty()) reasons.emplace_back("no order of the series gave a number");
+        if (!conclusive && reasons.empty())
+            reasons.emplace_back("no order of the series gave a number");
         add_verdict(part, 0, reasons);
         deliver(delivery, std::move(part), std::move(files));
     }
@@ -281,7 +292,8 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     options.tolerance = compare::parse_tolerance(tolerance, compare::Asks::shares_too);
     options.progress = progress;
     const compare::Trade trade = compare::trade(model, options);
-    const compare::PrecisionStudy precision = compare::precision_study(model, {.progress = progress});
+    const compare::PrecisionStudy precision =
+        compare::precision_study(model, {.progress = progress});
     progress("");
     delivery.say(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
     std::optional<compare::Table> of_candidate;
@@ -295,9 +307,11 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
         if (of_candidate) part["candidate_trade"] = table_json(*of_candidate);
-        add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0, reasons);
+        add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
+                    reasons);
         deliver(delivery, std::move(part),
-                {{"trade.csv", csv(trade_table(trade))}, {"precision.csv", csv(precision_table(precision))}});
+                {{"trade.csv", csv(trade_table(trade))},
+                 {"precision.csv", csv(precision_table(precision))}});
     }
     return trade.recommendation && reasons.empty() ? fine : could_not_judge;
 }
@@ -327,11 +341,12 @@ Command inspect_command() {
     options.push_back({"--verbose", Flag{&given->verbose},
                        "long lists whole, and the size of the matrix, its order and its fill-in"});
     options.push_back(keep_all_option(given->keep_all));
-    return {"inspect", "Show how a scene is understood: bodies, coordinates, constraints, idle modes",
+    return {"inspect",
+            "Show how a scene is understood: bodies, coordinates, constraints, idle modes",
             std::move(options), [given](const std::string& line) {
                 return inspect(given->scene, given->settings,
-                               given->keep_all ? Detail::everything : Detail::required, given->verbose,
-                               given->delivery(line));
+                               given->keep_all ? Detail::everything : Detail::required,
+                               given->verbose, given->delivery(line));
             }};
 }
 
@@ -349,20 +364,20 @@ Command compare_command() {
     options.push_back(
         {"--formulations", Flag{&given->request.formulations},
          "how much the outputs depend on the formulation of the bushings, in which tools differ"});
-    options.push_back(
-        {"--within", Text{&given->request.within},
-         "accuracy that the verdict asks for: mm, deg, N, Nm, and % of the extent of forces, moments "
-         "and rates (default: 0.01mm,0.001deg,1%)"});
+    options.push_back({"--within", Text{&given->request.within},
+                       "accuracy that the verdict asks for: mm, deg, N, Nm, and % of the extent of "
+                       "forces, moments "
+                       "and rates (default: 0.01mm,0.001deg,1%)"});
     add_recursion_options(options, given->recursion);
-    options.push_back(
-        {"--method", Text{&given->recursion.method, one_of(methods)},
-         "of the recursion: published (default), closed, balanced, tangent, chord, midpoint, adaptive "
-         "or series"});
+    options.push_back({"--method", Text{&given->recursion.method, one_of(methods)},
+                       "of the recursion: published (default), closed, balanced, tangent, chord, "
+                       "midpoint, adaptive "
+                       "or series"});
     options.push_back(every_option(given->request.every));
     options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
     add_candidate_options(options, given->request.candidate);
-    return {"compare", "Solve a scene all three ways and show how far apart they are", std::move(options),
-            [given](const std::string& line) {
+    return {"compare", "Solve a scene all three ways and show how far apart they are",
+            std::move(options), [given](const std::string& line) {
                 CompareRequest request = given->request;
                 request.recursion = recursion(given->recursion);
                 request.detail = given->keep_all ? Detail::everything : Detail::required;
@@ -379,19 +394,23 @@ Command converge_command() {
     const auto given = std::make_shared<Given>();
     std::vector<std::string> known{"all"};
     for (const auto& method : recursive::methods)
-        if (!std::holds_alternative<recursive::Adaptive>(method.kind)) known.emplace_back(method.name);
+        if (!std::holds_alternative<recursive::Adaptive>(method.kind))
+            known.emplace_back(method.name);
     std::vector<Option> options = given->options();
-    options.push_back({"--method", TextList{&given->methods, TextList::Form::commas, one_of(known)},
-                       "published (default), closed, balanced, tangent, chord, midpoint, series, or all"});
-    options.push_back({"--steps", IntegerList{&given->steps, 1, most_steps},
-                       "step counts per branch, at least five, increasing (default: 75,150,...,2400)"});
+    options.push_back(
+        {"--method", TextList{&given->methods, TextList::Form::commas, one_of(known)},
+         "published (default), closed, balanced, tangent, chord, midpoint, series, or all"});
+    options.push_back(
+        {"--steps", IntegerList{&given->steps, 1, most_steps},
+         "step counts per branch, at least five, increasing (default: 75,150,...,2400)"});
     options.push_back(output_option(
-        given->folder, "folder for result.json, convergence.csv, step_errors.csv and attribution.csv"));
+        given->folder,
+        "folder for result.json, convergence.csv, step_errors.csv and attribution.csv"));
     add_candidate_options(options, given->candidate);
     return {"converge", "Split the recursion's error into steps, formulation and reference",
             std::move(options), [given](const std::string& line) {
-                return converge(given->scene, given->settings, given->methods, given->steps, given->candidate,
-                                given->delivery(line));
+                return converge(given->scene, given->settings, given->methods, given->steps,
+                                given->candidate, given->delivery(line));
             }};
 }
 
@@ -402,11 +421,13 @@ Command trade_command() {
     };
     const auto given = std::make_shared<Given>();
     std::vector<Option> options = given->options();
+    options.push_back({"--tolerance", Text{&given->tolerance},
+                       "accuracy asked for (default: 0.01mm,0.001deg,1%)"});
     options.push_back(
-        {"--tolerance", Text{&given->tolerance}, "accuracy asked for (default: 0.01mm,0.001deg,1%)"});
-    options.push_back(output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
+        output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
     add_candidate_options(options, given->candidate);
-    return {"trade", "What accuracy costs: every method against both references, and a recommendation",
+    return {"trade",
+            "What accuracy costs: every method against both references, and a recommendation",
             std::move(options), [given](const std::string& line) {
                 return trade(given->scene, given->settings, given->tolerance, given->candidate,
                              given->delivery(line));

@@ -1,6 +1,6 @@
 #include "reports/document/candidate.hpp"
 
-#include "compare/readings.hpp"
+#include "compare/outputs/readings.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -17,9 +17,13 @@ json reading_json(const compare::CandidateReading& reading, const CandidateJudge
     for (std::size_t c = 0; c < reading.columns.size(); ++c) {
         const auto& d = reading.columns[c];
         if (d.compared == 0) continue;
-        channels[comparison.channels[j.columns[c].channel].name] = {
-            {"max", d.max},     {"signed_max", d.signed_max}, {"at", d.at}, {"end", d.end}, {"rms", d.rms},
-            {"range", d.range}, {"compared", d.compared}};
+        channels[comparison.channels[j.columns[c].channel].name] = {{"max", d.max},
+                                                                    {"signed_max", d.signed_max},
+                                                                    {"at", d.at},
+                                                                    {"end", d.end},
+                                                                    {"rms", d.rms},
+                                                                    {"range", d.range},
+                                                                    {"compared", d.compared}};
     }
     result["channels"] = channels;
     return result;
@@ -36,15 +40,21 @@ json points_json(const compare::CandidateBranch& branch, const CandidateJudgemen
         if (channel.main || static_cast<int>(j.columns[c].channel) == branch.abscissa)
             outputs[channel.name] = reading.candidate[c];
     }
-    return {{"over", by_parameter ? "parameter" : "abscissa"}, {"at", reading.at}, {"outputs", outputs}};
+    return {{"over", by_parameter ? "parameter" : "abscissa"},
+            {"at", reading.at},
+            {"outputs", outputs}};
 }
 
 json residuals_json(const std::vector<Residuals>& list) {
-    json force = json::array(), moment = json::array(), length = json::array(), direction = json::array();
+    json force = json::array(), moment = json::array(), length = json::array(),
+         direction = json::array();
     for (const auto& r : list)
         force.push_back(r.force), moment.push_back(r.moment), length.push_back(1e3 * r.length),
             direction.push_back(r.direction);
-    return {{"force_N", force}, {"moment_Nm", moment}, {"constraint_mm", length}, {"direction", direction}};
+    return {{"force_N", force},
+            {"moment_Nm", moment},
+            {"constraint_mm", length},
+            {"direction", direction}};
 }
 
 }  // namespace
@@ -53,20 +63,22 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
                     const std::string& sentence) {
     json worst = json::array();
     for (const auto& w : j.worst)
-        worst.push_back({{"channel", w.channel},
-                         {"branch", w.branch},
-                         {"unit", symbol(w.unit)},
-                         {"reading", w.kind == compare::ReadingKind::equal_parameter ? "at_equal_parameter"
-                                                                                     : "at_equal_abscissa"},
-                         {"max", w.max},
-                         {"at", w.at},
-                         {"range", w.range},
-                         {"tolerance", w.limit}});
+        worst.push_back(
+            {{"channel", w.channel},
+             {"branch", w.branch},
+             {"unit", symbol(w.unit)},
+             {"reading", w.kind == compare::ReadingKind::equal_parameter ? "at_equal_parameter"
+                                                                         : "at_equal_abscissa"},
+             {"max", w.max},
+             {"at", w.at},
+             {"range", w.range},
+             {"tolerance", w.limit}});
     json channels = json::array();
     for (std::size_t c = 0; c < j.columns.size(); ++c) {
         const auto& channel = comparison.channels[j.columns[c].channel];
-        channels.push_back(
-            {{"name", channel.name}, {"unit", symbol(channel.unit)}, {"judged", bool(j.judged[c])}});
+        channels.push_back({{"name", channel.name},
+                            {"unit", symbol(channel.unit)},
+                            {"judged", bool(j.judged[c])}});
     }
     json branches = json::array();
     for (const auto& branch : j.branches)
@@ -76,9 +88,10 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
              {"points", branch.points},
              {"from", branch.from},
              {"to", branch.to},
-             {"abscissa", branch.abscissa < 0
-                              ? json(nullptr)
-                              : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
+             {"abscissa",
+              branch.abscissa < 0
+                  ? json(nullptr)
+                  : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
              {"at_equal_parameter", reading_json(branch.equal_parameter, j, comparison)},
              {"at_equal_abscissa", reading_json(branch.equal_abscissa, j, comparison)},
              {"curve", points_json(branch, j, comparison)}});

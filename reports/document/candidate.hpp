@@ -3,12 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compare/candidate.hpp"
+#include "compare/candidate/candidate.hpp"
 
 namespace elastocheck::reports {
 
 // Entry of the list "candidates" of a scene; format in reports/README.md.
 nlohmann::ordered_json candidate_json(const compare::CandidateJudgement& judgement,
-                                      const compare::Comparison& comparison, const std::string& sentence);
+                                      const compare::Comparison& comparison,
+                                      const std::string& sentence);
 
 }  // namespace elastocheck::reports

@@ -12,11 +12,11 @@
 #include <optional>
 #include <set>
 
-#include "compare/elements.hpp"
-#include "models/reader/cursor.hpp"
-#include "models/reader/words.hpp"
-#include "reports/document/json.hpp"
+#include "compare/comparison/elements.hpp"
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "reports/files/limits.hpp"
+#include "reports/json/json.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -65,18 +65,27 @@ std::string allowed_units(Unit unit) {
 }
 
 // A number; infinite for a cell such as NaN; NaN for an empty cell.
-double number_or_none(std::string_view cell, const std::string& file, int line, const std::string& column) {
+double number_or_none(std::string_view cell, const std::string& file, int line,
+                      const std::string& column) {
     if (cell.empty()) return nan;
     double value = 0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error == std::errc{} && end == cell.data() + cell.size() && !std::isfinite(value)) return INFINITY;
+    if (error == std::errc{} && end == cell.data() + cell.size() && !std::isfinite(value))
+        return INFINITY;
     return number_in(cell, file, line, column);
 }
 
 // ---- Meaning of a column.
 
 struct Meaning {
-    enum class Kind { output, parameter, parameter_unit, branch, leg, nothing } kind = Kind::nothing;
+    enum class Kind {
+        output,
+        parameter,
+        parameter_unit,
+        branch,
+        leg,
+        nothing
+    } kind = Kind::nothing;
     std::string name;  // in the file
     std::size_t channel = 0;
     bool change = false;
@@ -114,14 +123,16 @@ std::optional<Meaning> parameter_of(std::string_view name) {
     for (const std::string_view word : {"parameter", "load"}) {
         if (!name.starts_with(word)) continue;
         std::string_view rest = name.substr(word.size());
-        if (rest.empty()) return Meaning{.kind = Kind::parameter, .name = std::string(name), .unit = {}};
+        if (rest.empty())
+            return Meaning{.kind = Kind::parameter, .name = std::string(name), .unit = {}};
         if (rest.starts_with(" [") && rest.ends_with("]"))
             rest = rest.substr(2, rest.size() - 3);
         else if (rest.starts_with("_"))
             rest.remove_prefix(1);
         for (const auto& w : written)
             if (rest == w.symbol)
-                return Meaning{.kind = Kind::parameter, .name = std::string(name), .unit = std::string(rest)};
+                return Meaning{
+                    .kind = Kind::parameter, .name = std::string(name), .unit = std::string(rest)};
     }
     return std::nullopt;
 }
@@ -133,7 +144,8 @@ std::vector<std::string> known_columns(const compare::Comparison& all) {
     return names;
 }
 
-Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map, const compare::Comparison& all) {
+Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
+               const compare::Comparison& all) {
     const auto wrong = [&](const char* field, const std::string& what) {
         reader::fail(map.file, entry.line, fmt::format("columns.{}.{}", entry.theirs, field), what);
     };
@@ -144,7 +156,8 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map, const compar
         meaning.kind = Kind::parameter;
         meaning.unit = entry.unit;
         meaning.factor = entry.sign, meaning.offset = entry.offset;
-        if (!entry.unit.empty() && std::ranges::find(written, entry.unit, &Written::symbol) == written.end())
+        if (!entry.unit.empty() &&
+            std::ranges::find(written, entry.unit, &Written::symbol) == written.end())
             wrong("unit", fmt::format("{} is no unit; allowed: mm, m, deg, rad, N, kN, Nm, ...",
                                       reader::quote(entry.unit)));
     } else {
@@ -169,9 +182,11 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map, const compar
     return meaning;
 }
 
-std::string branch_named(std::string_view cell, const compare::Comparison& all, const ColumnMap& map,
-                         const std::string& file, int line, const std::string& column) {
-    const auto own = std::ranges::find(map.branches, cell, &std::pair<std::string, std::string>::first);
+std::string branch_named(std::string_view cell, const compare::Comparison& all,
+                         const ColumnMap& map, const std::string& file, int line,
+                         const std::string& column) {
+    const auto own =
+        std::ranges::find(map.branches, cell, &std::pair<std::string, std::string>::first);
     const std::string name = own == map.branches.end() ? std::string(cell) : own->second;
     std::vector<std::string> branches;
     for (const auto& branch : all.branches) branches.push_back(branch.branch);
@@ -197,7 +212,8 @@ struct Table {
 };
 
 Table read_table(std::string_view csv, const std::string& file, const Model& model,
-                 const compare::Comparison& all, const ColumnMap& map, std::vector<std::string>& notes) {
+                 const compare::Comparison& all, const ColumnMap& map,
+                 std::vector<std::string>& notes) {
     Table table;
     std::vector<std::string> passed_over;
     const auto head = [&](const Cells& cells, int line) {
@@ -205,7 +221,8 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
         for (const auto cell : cells) {
             const std::string name(cell);
             if (std::ranges::find(table.columns, name, &Meaning::name) != table.columns.end())
-                fail_at(file, line, fmt::format("column {} stands there twice", reader::quote(name)));
+                fail_at(file, line,
+                        fmt::format("column {} stands there twice", reader::quote(name)));
             const auto entry = std::ranges::find(map.columns, name, &ColumnMap::Entry::theirs);
             std::optional<Meaning> meaning;
             if (entry != map.columns.end())
@@ -221,7 +238,8 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
             if (!meaning) meaning = output_of(name, all);
             if (!meaning) {
                 const auto own = name.substr(0, name.find(" ["));
-                const bool of_element = compare::find_channel(compare::element_channels(model), own) >= 0;
+                const bool of_element =
+                    compare::find_channel(compare::element_channels(model), own) >= 0;
                 if (map.file.empty() && !of_element)
                     fail_at(file, line,
                             fmt::format("unknown column {}{}", reader::quote(name),
@@ -232,9 +250,11 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
             table.columns.push_back(*meaning);
         }
         for (const auto& entry : map.columns)
-            if (std::ranges::find(table.columns, entry.theirs, &Meaning::name) == table.columns.end())
+            if (std::ranges::find(table.columns, entry.theirs, &Meaning::name) ==
+                table.columns.end())
                 fail_at(file, line,
-                        fmt::format("no column {}, which {} maps", reader::quote(entry.theirs), map.file));
+                        fmt::format("no column {}, which {} maps", reader::quote(entry.theirs),
+                                    map.file));
         table.values.resize(table.columns.size());
     };
     read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {
@@ -243,15 +263,17 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
             const Meaning& meaning = table.columns[c];
             switch (meaning.kind) {
                 case Kind::branch:
-                    table.branch.push_back(branch_named(cells[c], all, map, file, line, meaning.name));
+                    table.branch.push_back(
+                        branch_named(cells[c], all, map, file, line, meaning.name));
                     break;
                 case Kind::parameter_unit: table.unit.emplace_back(cells[c]); break;
                 case Kind::leg: table.legs.emplace(cells[c]); break;
                 case Kind::nothing: break;
                 case Kind::parameter:
                 case Kind::output:
-                    table.values[c].push_back(
-                        number_or_none(cells[c], file, line, meaning.name) * meaning.factor + meaning.offset);
+                    table.values[c].push_back(number_or_none(cells[c], file, line, meaning.name) *
+                                                  meaning.factor +
+                                              meaning.offset);
                     if (std::isinf(table.values[c].back())) table.values[c].back() = INFINITY;
                     break;
             }
@@ -285,17 +307,18 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
         for (std::size_t k = 0; k < n; ++k) {
             if (std::isnan(table.values[c][k])) continue;
             if (table.branch.empty() && all.branches.empty()) break;
-            const Unit unit =
-                table.branch.empty() ? all.branches.front().unit : unit_of_branch(table.branch[k], all);
+            const Unit unit = table.branch.empty() ? all.branches.front().unit
+                                                   : unit_of_branch(table.branch[k], all);
             const std::string& written_in =
                 meaning.unit.empty() && !table.unit.empty() ? table.unit[k] : meaning.unit;
             const auto factor = factor_of(written_in, unit);
             if (!factor)
                 fail_at(file, table.lines[k],
-                        fmt::format("{}: {} is no unit of what branch '{}' goes by; allowed: {}",
-                                    meaning.name, reader::quote(written_in),
-                                    table.branch.empty() ? all.branches.front().branch : table.branch[k],
-                                    allowed_units(unit)));
+                        fmt::format(
+                            "{}: {} is no unit of what branch '{}' goes by; allowed: {}",
+                            meaning.name, reader::quote(written_in),
+                            table.branch.empty() ? all.branches.front().branch : table.branch[k],
+                            allowed_units(unit)));
             if (!std::isnan(points.a[k]))
                 fail_at(file, table.lines[k],
                         fmt::format("{}: another column says where this point is", meaning.name));
@@ -306,20 +329,23 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
         for (const auto& branch : all.branches)
             if (branch.unit != all.branches.front().unit)
                 fail_at(file, 1,
-                        "a column 'branch' has to say where a point belongs: branches go by different units");
+                        "a column 'branch' has to say where a point belongs: branches go by "
+                        "different units");
     for (std::size_t c = 0; c < table.columns.size(); ++c)
         if (table.columns[c].kind == Kind::output) {
             const auto& channel = all.channels[table.columns[c].channel];
-            if (std::ranges::find(points.columns, table.columns[c].channel, &compare::PointColumn::channel) !=
-                points.columns.end())
+            if (std::ranges::find(points.columns, table.columns[c].channel,
+                                  &compare::PointColumn::channel) != points.columns.end())
                 fail_at(file, 1, fmt::format("two columns are {}", channel.name));
-            points.columns.push_back({table.columns[c].channel, table.columns[c].change, table.values[c]});
+            points.columns.push_back(
+                {table.columns[c].channel, table.columns[c].change, table.values[c]});
             if (!points.abscissa && !points.columns.back().change && is_travel(channel))
                 points.abscissa = table.columns[c].channel, points.at = table.values[c];
         }
     if (points.a.empty() && !points.abscissa) {
         std::vector<std::string> places{"parameter", "load_N", "travel_mm"};
-        fail_at(file, 1, "no column says where a point is" + reader::did_you_mean("", places, "allowed"));
+        fail_at(file, 1,
+                "no column says where a point is" + reader::did_you_mean("", places, "allowed"));
     }
     if (points.columns.empty())
         fail_at(file, 1,
@@ -374,10 +400,12 @@ struct Bodies {
         pose.p.coeffs().setConstant(nan);
         return {model.bodies.size(), pose};
     }
-    void check_all_said(const compare::CandidateState& state, const std::string& file, int line) const {
+    void check_all_said(const compare::CandidateState& state, const std::string& file,
+                        int line) const {
         for (std::size_t b = 0; b < node.size(); ++b)
             if (!node[b] && std::isnan(state.poses[b].r.x()))
-                fail_at(file, line, fmt::format("bodies: body '{}' is missing", model.bodies[b].name));
+                fail_at(file, line,
+                        fmt::format("bodies: body '{}' is missing", model.bodies[b].name));
     }
 };
 
@@ -391,9 +419,10 @@ void put(Pose& pose, const Eigen::Vector3d& r, const Eigen::Vector4d& wxyz, cons
         return;
     }
     if (const double length = pose.p.norm(); !(std::abs(length - 1) <= unit_length))
-        fail_at(file, line,
-                fmt::format("{}: its length is {:.9g}; allowed: a unit quaternion w, x, y, z, to 1e-6", what,
-                            length));
+        fail_at(
+            file, line,
+            fmt::format("{}: its length is {:.9g}; allowed: a unit quaternion w, x, y, z, to 1e-6",
+                        what, length));
     pose.p.normalize();
 }
 
@@ -403,8 +432,8 @@ double entry(const json& value, const std::string& what, const std::string& file
     return value.get<double>();
 }
 
-const json& field(const json& object, const char* key, const std::string& what, const std::string& file,
-                  int line) {
+const json& field(const json& object, const char* key, const std::string& what,
+                  const std::string& file, int line) {
     const auto found = object.find(key);
     if (found == object.end()) fail_at(file, line, fmt::format("{}: missing", what));
     return *found;
@@ -422,19 +451,22 @@ std::vector<compare::CandidateState> states_of_json(std::string_view text, const
         rest = end == rest.npos ? std::string_view{} : rest.substr(end + 1);
         if (one.find_first_not_of(" \t\r") == one.npos) continue;
         if (states.size() == most_measured)
-            fail_at(file, line, fmt::format("more states than {}, the most that are read", most_measured));
+            fail_at(file, line,
+                    fmt::format("more states than {}, the most that are read", most_measured));
         json object;
         try {
             object = parse_json(one);
         } catch (const JsonError& error) {
             fail_at(file, line, error.what());
         }
-        if (!object.is_object()) fail_at(file, line, "expected an object with branch, load and bodies");
+        if (!object.is_object())
+            fail_at(file, line, "expected an object with branch, load and bodies");
         for (const auto& [key, value] : object.items())
             if (key != "branch" && key != "load" && key != "bodies")
                 fail_at(file, line,
-                        fmt::format("unknown field {}{}", reader::quote(key),
-                                    reader::did_you_mean(key, {"branch", "load", "bodies"}, "allowed")));
+                        fmt::format(
+                            "unknown field {}{}", reader::quote(key),
+                            reader::did_you_mean(key, {"branch", "load", "bodies"}, "allowed")));
         const json& branch = field(object, "branch", "branch", file, line);
         if (!branch.is_string()) fail_at(file, line, "branch: expected a name");
         compare::CandidateState state;
@@ -442,22 +474,26 @@ std::vector<compare::CandidateState> states_of_json(std::string_view text, const
         state.load = entry(field(object, "load", "load", file, line), "load", file, line);
         state.poses = bodies.nowhere();
         const json& list = field(object, "bodies", "bodies", file, line);
-        if (!list.is_object()) fail_at(file, line, "bodies: expected an object, each body under its name");
+        if (!list.is_object())
+            fail_at(file, line, "bodies: expected an object, each body under its name");
         for (const auto& [name, pose] : list.items()) {
             const std::string path = "bodies." + reader::shown(name);
-            if (!pose.is_object()) fail_at(file, line, path + ": expected position and orientation");
+            if (!pose.is_object())
+                fail_at(file, line, path + ": expected position and orientation");
             const json &at = field(pose, "position", path + ".position", file, line),
                        &turned = field(pose, "orientation", path + ".orientation", file, line);
             if (!at.is_array() || at.size() != 3)
                 fail_at(file, line, path + ".position: expected a list of 3 numbers [m]");
             if (!turned.is_array() || turned.size() != 4)
-                fail_at(file, line, path + ".orientation: expected a list of 4 numbers, w, x, y, z");
+                fail_at(file, line,
+                        path + ".orientation: expected a list of 4 numbers, w, x, y, z");
             Eigen::Vector3d r;
             Eigen::Vector4d wxyz;
             for (int k = 0; k < 3; ++k)
                 r[k] = entry(at[static_cast<std::size_t>(k)], path + ".position", file, line);
             for (int k = 0; k < 4; ++k)
-                wxyz[k] = entry(turned[static_cast<std::size_t>(k)], path + ".orientation", file, line);
+                wxyz[k] =
+                    entry(turned[static_cast<std::size_t>(k)], path + ".orientation", file, line);
             Pose read;
             put(read, r, wxyz, path + ".orientation", file, line);
             if (const int b = bodies.find(name, file, line); b >= 0)
@@ -516,7 +552,8 @@ std::vector<compare::CandidateState> states_of_table(std::string_view csv, const
             of = pose;
         }
     });
-    for (std::size_t k = 0; k < states.size(); ++k) bodies.check_all_said(states[k], file, lines[k]);
+    for (std::size_t k = 0; k < states.size(); ++k)
+        bodies.check_all_said(states[k], file, lines[k]);
     return states;
 }
 
@@ -540,8 +577,9 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
             of.fail("expected a map of their names, found " + of.found());
         std::vector<std::pair<std::string, reader::Cursor>> list;
         for (std::size_t k = 0; k < of.value->items.size(); ++k)
-            list.emplace_back(of.value->keys[k],
-                              of.at(of.value->items[k], of.path + "." + reader::shown(of.value->keys[k])));
+            list.emplace_back(
+                of.value->keys[k],
+                of.at(of.value->items[k], of.path + "." + reader::shown(of.value->keys[k])));
         return list;
     };
     for (const auto& [name, at] : entries(top.require("columns"))) {
@@ -568,9 +606,10 @@ bool holds_states(std::string_view content) {
     bool body = false, qw = false;
     try {
         read_sheet(
-            content.substr(0, content.find('\n', content.find_first_not_of(" \t\r\n") == content.npos
-                                                     ? 0
-                                                     : content.find_first_not_of(" \t\r\n"))),
+            content.substr(0,
+                           content.find('\n', content.find_first_not_of(" \t\r\n") == content.npos
+                                                  ? 0
+                                                  : content.find_first_not_of(" \t\r\n"))),
             "", 0,
             [&](const Cells& cells, int) {
                 body = std::ranges::find(cells, "body") != cells.end();
@@ -582,18 +621,20 @@ bool holds_states(std::string_view content) {
     return body && qw;
 }
 
-compare::Candidate read_candidate(std::string_view content, const std::string& file, std::string name,
-                                  const Scene& scene, const Model& model,
+compare::Candidate read_candidate(std::string_view content, const std::string& file,
+                                  std::string name, const Scene& scene, const Model& model,
                                   const compare::Comparison& comparison, const ColumnMap& map) {
     compare::Candidate candidate;
     if (holds_states(content)) {
         Bodies bodies{scene, model, nodes_of(model), {}};
-        const auto states = begins_as_json(content) ? states_of_json(content, file, bodies, comparison, map)
-                                                    : states_of_table(content, file, bodies, comparison, map);
+        const auto states = begins_as_json(content)
+                                ? states_of_json(content, file, bodies, comparison, map)
+                                : states_of_table(content, file, bodies, comparison, map);
         candidate = compare::candidate_of(model, comparison, name, states);
         if (!bodies.passed_over.empty())
-            candidate.notes.push_back("bodies that are not solved for, and are passed over: " +
-                                      reader::listed({bodies.passed_over.begin(), bodies.passed_over.end()}));
+            candidate.notes.push_back(
+                "bodies that are not solved for, and are passed over: " +
+                reader::listed({bodies.passed_over.begin(), bodies.passed_over.end()}));
     } else {
         candidate = from_table(content, file, model, comparison, map);
     }

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "compare/candidate.hpp"
-#include "models/scene.hpp"
-#include "reports/files/sheet.hpp"
+#include "compare/candidate/candidate.hpp"
+#include "elastocheck/scene.hpp"
+#include "reports/files/csv_table.hpp"
 
 namespace elastocheck::reports {
 
@@ -36,8 +36,8 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file);
 bool holds_states(std::string_view content);
 
 // Throws SheetError "file:line: ...".
-compare::Candidate read_candidate(std::string_view content, const std::string& file, std::string name,
-                                  const Scene& scene, const Model& model,
+compare::Candidate read_candidate(std::string_view content, const std::string& file,
+                                  std::string name, const Scene& scene, const Model& model,
                                   const compare::Comparison& comparison, const ColumnMap& map = {});
 
 // The states of a path in that format, one line per state; `load` in SI.

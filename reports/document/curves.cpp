@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "reports/document/field.hpp"
+#include "reports/json/json_cursor.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/text/escape.hpp"
 
@@ -21,15 +21,18 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
                 const auto a = curve["a"].numbers();
                 const std::string unit = for_csv(branch["unit"].text());
                 const std::string whose = for_csv(scene["name"].text()) + "," +
-                                          for_csv(branch["name"].text()) + "," + for_csv(leg["leg"].text());
+                                          for_csv(branch["name"].text()) + "," +
+                                          for_csv(leg["leg"].text());
                 for (const auto& channel : scene["channels"].items()) {
                     const std::string name = channel["name"].text();
                     const std::string what = for_csv(name) + "," + for_csv(channel["unit"].text());
                     const auto values = columns[name].numbers();
-                    if (values.size() != a.size()) columns[name].fail("not as many numbers as parameters");
+                    if (values.size() != a.size())
+                        columns[name].fail("not as many numbers as parameters");
                     for (std::size_t k = 0; k < values.size(); ++k)
-                        csv += fmt::format("{},{:.17g},{},{},{}\n", whose, a[k], unit, what,
-                                           std::isnan(values[k]) ? "" : fmt::format("{:.17g}", values[k]));
+                        csv += fmt::format(
+                            "{},{:.17g},{},{},{}\n", whose, a[k], unit, what,
+                            std::isnan(values[k]) ? "" : fmt::format("{:.17g}", values[k]));
                 }
             }
     }

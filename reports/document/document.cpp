@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare/findings.hpp"
+#include "compare/studies/findings.hpp"
 #include "models/overloaded.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/tables/elements.hpp"
@@ -17,8 +17,8 @@ using compare::Leg;
 
 json model_json(const Model& model, const recursive::Diagnosis& d) {
     const recursive::Conditioning condition = recursive::conditioning(model, d);
-    json bodies = json::array(), joints = json::array(), elements = json::array(), idle = json::array(),
-         redundant = json::array(), left_out = json::array();
+    json bodies = json::array(), joints = json::array(), elements = json::array(),
+         idle = json::array(), redundant = json::array(), omitted = json::array();
     for (const auto& body : model.bodies) bodies.push_back(body.name);
     for (const auto& joint : model.joints) joints.push_back(joint.name);
     for (const auto& elastic : model.elastics) elements.push_back(elastic.name);
@@ -26,7 +26,7 @@ json model_json(const Model& model, const recursive::Diagnosis& d) {
     for (const auto& r : d.redundant)
         redundant.push_back(
             {{"joint", model.joints[static_cast<std::size_t>(r.joint)].name}, {"rows", r.rows}});
-    for (const auto& o : model.left_out) left_out.push_back({{"what", o.what}, {"why", o.why}});
+    for (const auto& o : model.omitted) omitted.push_back({{"what", o.what}, {"why", o.why}});
     return {{"bodies", bodies},
             {"joints", joints},
             {"elements", elements},
@@ -37,7 +37,7 @@ json model_json(const Model& model, const recursive::Diagnosis& d) {
             {"degrees_of_freedom", d.degrees_of_freedom()},
             {"idle_modes", idle},
             {"redundant", redundant},
-            {"left_out", left_out},
+            {"left_out", omitted},
             {"imbalance_N", d.imbalance},
             {"condition_equilibrated", condition.equilibrated},
             {"condition_raw", condition.raw}};
@@ -172,8 +172,8 @@ json profiles_json(const compare::Comparison& all, const compare::BranchComparis
              profile_json(compare::profile_at_equal_parameter(all.channels, truth, recursion))},
             {"at_equal_abscissa",
              profile_json(compare::profile_at_equal_abscissa(all.channels, truth, recursion, by))},
-            {"references",
-             profile_json(compare::profile_at_equal_parameter(all.channels, truth, curve(branch.second)))}};
+            {"references", profile_json(compare::profile_at_equal_parameter(
+                               all.channels, truth, curve(branch.second)))}};
 }
 
 json worst_json(const std::optional<compare::Worst>& worst) {
@@ -249,10 +249,11 @@ json witness_json(const compare::BranchComparison& branch) {
 std::string driven_name(const Model& model, const Driven& what) {
     const auto element = [&](int k) { return model.elastics[static_cast<std::size_t>(k)].name; };
     return std::visit(
-        overloaded{[](const Load& load) { return load.name; },
-                   [&](const Motion& m) { return model.joints[static_cast<std::size_t>(m.joint)].name; },
-                   [&](const FreeLength& f) { return "free length of " + element(f.elastic); },
-                   [&](const Preload& p) { return "preload of " + element(p.elastic); }},
+        overloaded{
+            [](const Load& load) { return load.name; },
+            [&](const Motion& m) { return model.joints[static_cast<std::size_t>(m.joint)].name; },
+            [&](const FreeLength& f) { return "free length of " + element(f.elastic); },
+            [&](const Preload& p) { return "preload of " + element(p.elastic); }},
         what);
 }
 
@@ -278,12 +279,15 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         const auto& branch = comparison.branches[b];
         json legs = json::array();
         for (const auto& run : branch.runs) legs.push_back(run_json(run, comparison.channels));
-        const auto pair = [&](const compare::Pair& p) { return pair_json(p, comparison, branch.determined); };
+        const auto pair = [&](const compare::Pair& p) {
+            return pair_json(p, comparison, branch.determined);
+        };
         json one = branch_json(model, model.branches[b]);
         one.update(
-            {{"abscissa", branch.abscissa < 0
-                              ? json(nullptr)
-                              : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
+            {{"abscissa",
+              branch.abscissa < 0
+                  ? json(nullptr)
+                  : json(comparison.channels[static_cast<std::size_t>(branch.abscissa)].name)},
              {"legs", legs},
              {"deviation", pair(branch.deviation)},
              {"cross_check", pair(branch.cross_check)},
@@ -309,34 +313,38 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 
-void add_curves(json& scene_document, const Model& model, const std::vector<compare::Channel>& channels,
-                compare::Leg leg, const std::string& method, const std::vector<compare::Walked>& branches) {
+void add_curves(json& scene_document, const Model& model,
+                const std::vector<compare::Channel>& channels, compare::Leg leg,
+                const std::string& method, const std::vector<compare::Walked>& branches) {
     std::vector<std::string> reasons;
     json list = json::array();
     int numbers = 0;
     for (std::size_t b = 0; b < branches.size(); ++b) {
         const compare::Walked& walked = branches[b];
         json one = branch_json(model, model.branches[b]);
-        one["legs"] = json::array({{{"leg", name(leg)},
-                                    {"method", method},
-                                    {"outcome", elastocheck::name(walked.outcome)},
-                                    {"detail", walked.detail},
-                                    {"counts", counts_json(walked.counts)},
-                                    {"curve", curve_json(walked.curve, walked.constraint_error, channels)}}});
+        one["legs"] =
+            json::array({{{"leg", name(leg)},
+                          {"method", method},
+                          {"outcome", elastocheck::name(walked.outcome)},
+                          {"detail", walked.detail},
+                          {"counts", counts_json(walked.counts)},
+                          {"curve", curve_json(walked.curve, walked.constraint_error, channels)}}});
         list.push_back(std::move(one));
         numbers += static_cast<int>(walked.curve.a.size() * channels.size());
         if (walked.outcome != Outcome::converged)
-            reasons.push_back(model.branches[b].name + ": " + elastocheck::name(walked.outcome) + ": " +
-                              walked.detail);
+            reasons.push_back(model.branches[b].name + ": " + elastocheck::name(walked.outcome) +
+                              ": " + walked.detail);
     }
     scene_document["channels"] = channels_json(channels);
     scene_document["branches"] = list;
-    scene_document["verdict"] = {{"conclusive", reasons.empty()}, {"numbers", numbers}, {"reasons", reasons}};
+    scene_document["verdict"] = {
+        {"conclusive", reasons.empty()}, {"numbers", numbers}, {"reasons", reasons}};
 }
 
 void add_inspection(json& scene_document, const Scene& scene, const Model& model) {
     const auto channels = compare::channels(model);
-    json bodies = json::array(), list = json::array(), branches = json::array(), numbers = json::array();
+    json bodies = json::array(), list = json::array(), branches = json::array(),
+         numbers = json::array();
     for (const auto& body : model.bodies) {
         const Eigen::Vector3d mm = 1e3 * body.design.r;
         bodies.push_back({{"name", body.name}, {"origin_mm", {mm.x(), mm.y(), mm.z()}}});
@@ -364,7 +372,8 @@ void add_inspection(json& scene_document, const Scene& scene, const Model& model
 void add_trim(json& scene_document, const compare::TrimRecord& trim) {
     json adjusted = json::array(), conditions = json::array();
     for (const auto& a : trim.adjusted)
-        adjusted.push_back({{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
+        adjusted.push_back(
+            {{"name", a.name}, {"unit", symbol(a.unit)}, {"by", a.by}, {"makes", a.makes}});
     for (const auto& c : trim.conditions)
         conditions.push_back({{"name", c.name},
                               {"unit", symbol(c.unit)},
@@ -391,12 +400,13 @@ void add_formulations(json& scene_document, const compare::FormulationStudy& stu
                                       {"inconclusive", study.inconclusive}};
 }
 
-void add_gap(json& scene_document, const compare::Comparison& comparison, const compare::Study& study) {
+void add_gap(json& scene_document, const compare::Comparison& comparison,
+             const compare::Study& study) {
     const auto part = compare::gap_part(comparison, study, "published");
     if (!part) return;
-    scene_document["findings"]["gap"] = {{"branch", part->branch},       {"channel", part->channel},
-                                         {"deviation", part->deviation}, {"gap", part->gap},
-                                         {"band", part->band},           {"role", name_of(part->role)}};
+    scene_document["findings"]["gap"] = {
+        {"branch", part->branch}, {"channel", part->channel}, {"deviation", part->deviation},
+        {"gap", part->gap},       {"band", part->band},       {"role", name_of(part->role)}};
 }
 
 std::vector<std::string> reasons_of(const compare::Comparison& comparison) {
@@ -408,9 +418,11 @@ std::vector<std::string> reasons_of(const compare::Comparison& comparison) {
     return reasons;
 }
 
-void add_verdict(json& scene_document, int numbers_compared, const std::vector<std::string>& reasons) {
-    scene_document["verdict"] = {
-        {"conclusive", reasons.empty()}, {"numbers_compared", numbers_compared}, {"reasons", reasons}};
+void add_verdict(json& scene_document, int numbers_compared,
+                 const std::vector<std::string>& reasons) {
+    scene_document["verdict"] = {{"conclusive", reasons.empty()},
+                                 {"numbers_compared", numbers_compared},
+                                 {"reasons", reasons}};
 }
 
 }  // namespace elastocheck::reports

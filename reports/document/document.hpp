@@ -4,13 +4,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/compare.hpp"
-#include "compare/formulations.hpp"
-#include "compare/study.hpp"
-#include "compare/trim.hpp"
-#include "models/scene.hpp"
-#include "recursive/diagnosis.hpp"
-#include "reports/document/provenance.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/studies/formulations.hpp"
+#include "compare/studies/study.hpp"
+#include "elastocheck/scene.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
 
@@ -27,8 +27,8 @@ nlohmann::ordered_json document(const std::string& reproduce, const Provenance& 
 
 // A scene in the document: name, source, hash, compiled model. The functions below add the results,
 // each under its own key; a part that was not requested is absent.
-nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input, const Model& model,
-                                      const recursive::Diagnosis& diagnosis);
+nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input,
+                                      const Model& model, const recursive::Diagnosis& diagnosis);
 
 // "channels" and "branches": every point of every leg, deviations, certificates; "findings",
 // "rate_errors": key figures; "forces": of elements and links at the ends of the branches;
@@ -39,8 +39,8 @@ void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, 
 // "channels", "branches" and the "verdict" of `solve`: every point of one leg, without a
 // comparison.
 void add_curves(nlohmann::ordered_json& scene_document, const Model& model,
-                const std::vector<compare::Channel>& channels, compare::Leg leg, const std::string& method,
-                const std::vector<compare::Walked>& branches);
+                const std::vector<compare::Channel>& channels, compare::Leg leg,
+                const std::string& method, const std::vector<compare::Walked>& branches);
 
 // "channels" and "inspection": bodies, elements, branches and their settled states, the numbers of
 // the file.
@@ -50,7 +50,8 @@ void add_inspection(nlohmann::ordered_json& scene_document, const Scene& scene, 
 void add_trim(nlohmann::ordered_json& scene_document, const compare::TrimRecord& trim);
 
 // "formulations": table of the spread of the outputs over bushing formulations.
-void add_formulations(nlohmann::ordered_json& scene_document, const compare::FormulationStudy& study,
+void add_formulations(nlohmann::ordered_json& scene_document,
+                      const compare::FormulationStudy& study,
                       const compare::Comparison& comparison);
 
 // "findings.gap": share of the formulation gap in the deviation of the published method; needs both

@@ -42,7 +42,8 @@ struct Sketch {
     // joint or element.
     std::size_t add(const Point& point, const std::string& otherwise) {
         for (std::size_t k = 0; k < points.size(); ++k)
-            if (points[k].body == point.body && (points[k].s_local - point.s_local).norm() < same) return k;
+            if (points[k].body == point.body && (points[k].s_local - point.s_local).norm() < same)
+                return k;
         std::string name = otherwise;
         bool known = false;
         const Vector3d position = at(point, design());
@@ -81,7 +82,9 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
     // one back.
     std::vector<std::size_t> sorted(points.size()), hull;
     for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = k;
-    std::ranges::sort(sorted, {}, [&](std::size_t k) { return std::pair{flat(k).x(), flat(k).y()}; });
+    std::ranges::sort(sorted, {}, [&](std::size_t k) {
+        return std::pair{flat(k).x(), flat(k).y()};
+    });
     const auto left_turn = [&](std::size_t a, std::size_t b, std::size_t c) {
         const Eigen::Vector2d ab = flat(b) - flat(a), bc = flat(c) - flat(b);
         return ab.x() * bc.y() - ab.y() * bc.x() > 0;
@@ -100,7 +103,8 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
 }
 
 // Minimum spanning tree (Prim 1957): joins each point to the nearest joined one.
-void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine, std::size_t root) {
+void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine,
+          std::size_t root) {
     std::vector<std::size_t> joined{root};
     std::erase(mine, root);
     while (!mine.empty()) {
@@ -108,7 +112,8 @@ void tree(Sketch& sketch, const std::string& name, std::vector<std::size_t> mine
         double least = std::numeric_limits<double>::infinity();
         for (const auto k : mine)
             for (const auto l : joined)
-                if (const double d = (sketch.points[k].s_local - sketch.points[l].s_local).norm(); d < least)
+                if (const double d = (sketch.points[k].s_local - sketch.points[l].s_local).norm();
+                    d < least)
                     least = d, nearest = {k, l};
         sketch.link("body", name, nearest.second, nearest.first);
         joined.push_back(nearest.first);
@@ -156,39 +161,40 @@ struct Symbol {
 };
 
 std::vector<Symbol> symbols_of(const JointKind& kind) {
-    return std::visit(overloaded{[](const Spherical& j) {
-                                     return std::vector<Symbol>{{"spherical", j.i}};
-                                 },
-                                 [](const Revolute& j) {
-                                     return std::vector<Symbol>{{"revolute", j.i, j.axis_i}};
-                                 },
-                                 [](const Universal& j) {
-                                     return std::vector<Symbol>{{"universal", j.i}};
-                                 },
-                                 [](const Cylindrical& j) {
-                                     return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
-                                 },
-                                 [](const Translational& j) {
-                                     return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
-                                 },
-                                 [](const Planar& j) {
-                                     return std::vector<Symbol>{{"plane", j.i}};
-                                 },
-                                 [](const Fixed& j) {
-                                     return std::vector<Symbol>{{"fixed", j.i}};
-                                 },
-                                 [](const Distance& j) {
-                                     return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}};
-                                 },
-                                 [](const InPlane& j) {
-                                     return std::vector<Symbol>{{"plane", j.i}};
-                                 },
-                                 [](const InLine& j) {
-                                     return std::vector<Symbol>{{"sliding", j.i, j.axis_j}};
-                                 },
-                                 // direction constraints have no position
-                                 [](const auto&) { return std::vector<Symbol>{}; }},
-                      kind);
+    return std::visit(
+        overloaded{[](const Spherical& j) {
+                       return std::vector<Symbol>{{"spherical", j.i}};
+                   },
+                   [](const Revolute& j) {
+                       return std::vector<Symbol>{{"revolute", j.i, j.axis_i}};
+                   },
+                   [](const Universal& j) {
+                       return std::vector<Symbol>{{"universal", j.i}};
+                   },
+                   [](const Cylindrical& j) {
+                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
+                   },
+                   [](const Translational& j) {
+                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
+                   },
+                   [](const Planar& j) {
+                       return std::vector<Symbol>{{"plane", j.i}};
+                   },
+                   [](const Fixed& j) {
+                       return std::vector<Symbol>{{"fixed", j.i}};
+                   },
+                   [](const Distance& j) {
+                       return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}};
+                   },
+                   [](const InPlane& j) {
+                       return std::vector<Symbol>{{"plane", j.i}};
+                   },
+                   [](const InLine& j) {
+                       return std::vector<Symbol>{{"sliding", j.i, j.axis_j}};
+                   },
+                   // direction constraints have no position
+                   [](const auto&) { return std::vector<Symbol>{}; }},
+        kind);
 }
 
 bool is_segment(const Elastic& elastic) { return elastic.written_as == WrittenAs::beam; }
@@ -216,7 +222,8 @@ json symbols_json(const Scene& scene) {
         const bool moved = std::ranges::any_of(scene.branches, [&](const Branch& branch) {
             return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
                 const auto* motion = std::get_if<Motion>(&driver.what);
-                return driver.rate != 0 && motion != nullptr && motion->joint == static_cast<int>(k);
+                return driver.rate != 0 && motion != nullptr &&
+                       motion->joint == static_cast<int>(k);
             });
         });
         // The driver of a joint is a plane constraint on one of its points; under a wheel it is a
@@ -225,16 +232,16 @@ json symbols_json(const Scene& scene) {
             const bool jack = std::ranges::any_of(
                 scene.wheels, [&](const Wheel& wheel) { return wheel.body == plane->i.body; });
             if (moved && !jack) put("drive", joint.name, place(plane->i), turned(plane->normal_j));
-            if (moved || joint.only_where_driven) continue;
+            if (moved || joint.active_only_where_driven) continue;
         }
-        if (joint.only_where_driven) continue;
+        if (joint.active_only_where_driven) continue;
         for (const auto& symbol : symbols_of(joint.kind))
             put(symbol.kind, joint.name, place(symbol.at),
                 symbol.axis ? std::optional(turned(*symbol.axis)) : std::nullopt);
     }
     for (const auto& elastic : scene.elastics) {
         const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-        if (bushing == nullptr || elastic.only_where_driven || is_segment(elastic)) continue;
+        if (bushing == nullptr || elastic.active_only_where_driven || is_segment(elastic)) continue;
         put("bushing", elastic.name, place({bushing->i.body, bushing->i.s_local}), std::nullopt);
     }
     return list;
@@ -242,7 +249,8 @@ json symbols_json(const Scene& scene) {
 
 // Consecutive segments of a beam: its nodes lie between their middles, and beyond the first and the
 // last middle the beam continues by the same distance.
-void draw_beam(Sketch& sketch, const std::string& name, const std::vector<const Bushing*>& segments) {
+void draw_beam(Sketch& sketch, const std::string& name,
+               const std::vector<const Bushing*>& segments) {
     std::vector<Point> line;
     const auto end = [&](const Marker& middle, const Marker& other) {
         // the node of `other`'s body is symmetric to this end about the middle
@@ -301,7 +309,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     json bushings = json::array(), faces = json::array(), wheels = json::array();
     for (const auto& constraint : model.constraints) {
         const ModelJoint& joint = model.joints[static_cast<std::size_t>(constraint.joint)];
-        if (joint.only_where_driven) continue;  // a jack is not part of the suspension
+        if (joint.active_only_where_driven) continue;  // a jack is not part of the suspension
         std::visit(overloaded{[&](const CoincidentPoints& c) {
                                   sketch.add(c.i, joint.name), sketch.add(c.j, joint.name);
                               },
@@ -316,25 +324,27 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     }
     std::vector<std::pair<std::string, std::vector<const Bushing*>>> beams;
     for (const auto& elastic : model.elastics)
-        std::visit(
-            overloaded{[&](const AxialSpring& e) {
-                           const auto i = sketch.add(e.i, elastic.name), j = sketch.add(e.j, elastic.name);
-                           const bool stop = elastic.written_as == WrittenAs::stop;
-                           sketch.link(stop ? "stop" : "spring", elastic.name, i, j);
-                       },
-                       [&](const Bushing& e) {
-                           if (elastic.only_where_driven) return;  // a tyre
-                           if (is_segment(elastic)) {
-                               const std::string beam = elastic.name.substr(0, elastic.name.rfind('.'));
-                               if (beams.empty() || beams.back().first != beam) beams.push_back({beam, {}});
-                               beams.back().second.push_back(&e);
-                               return;
-                           }
-                           const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
-                           const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
-                           bushings.push_back(e.i.body == ground ? j : i);
-                       }},
-            elastic.kind);
+        std::visit(overloaded{[&](const AxialSpring& e) {
+                                  const auto i = sketch.add(e.i, elastic.name),
+                                             j = sketch.add(e.j, elastic.name);
+                                  const bool stop = elastic.written_as == WrittenAs::stop;
+                                  sketch.link(stop ? "stop" : "spring", elastic.name, i, j);
+                              },
+                              [&](const Bushing& e) {
+                                  if (elastic.active_only_where_driven) return;  // a tyre
+                                  if (is_segment(elastic)) {
+                                      const std::string beam =
+                                          elastic.name.substr(0, elastic.name.rfind('.'));
+                                      if (beams.empty() || beams.back().first != beam)
+                                          beams.push_back({beam, {}});
+                                      beams.back().second.push_back(&e);
+                                      return;
+                                  }
+                                  const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
+                                  const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
+                                  bushings.push_back(e.i.body == ground ? j : i);
+                              }},
+                   elastic.kind);
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
     for (const auto& damper : model.dampers) {
         const auto i = sketch.add(damper.i, damper.name);
@@ -369,7 +379,8 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         const BodyId body = sketch.points[k].body;
         points.push_back(
             {{"name", sketch.names[k]},
-             {"body", body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name},
+             {"body",
+              body == ground ? "ground" : model.bodies[static_cast<std::size_t>(body)].name},
              {"hardpoint", sketch.hard[k]},
              {"design_mm", millimetres(sketch.at(sketch.points[k], design))}});
     }

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compare/compare.hpp"
-#include "models/model.hpp"
-#include "models/scene.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/model.hpp"
+#include "elastocheck/scene.hpp"
 
 namespace elastocheck::reports {
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "compare/compare.hpp"
-#include "models/model.hpp"
-#include "reports/files/sheet.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/model.hpp"
+#include "reports/files/csv_table.hpp"
 
 namespace elastocheck::reports {
 
@@ -37,8 +37,9 @@ std::pair<std::string, std::string> parse_load_case(std::string_view text);
 //   OUTPUT_change_UNIT             ...: relative to the design position
 //   branch, or column of `cases`   its branch; needed only where several branches go the same way
 // A point is compared only with the branch on which it was measured. Throws MeasurementError.
-void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv, const std::string& file,
-                     const Model& model, const compare::Comparison& comparison, const LoadCases& cases = {});
+void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv,
+                     const std::string& file, const Model& model,
+                     const compare::Comparison& comparison, const LoadCases& cases = {});
 
 // Number of compared values over all readings and outputs.
 int compared_with_measurement(const nlohmann::ordered_json& scene_document);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "elastocheck/read_scene.hpp"
 #include "extremes_embedded.hpp"  // generated: name and text of every scene of models/extremes
-#include "models/reader/scene_file.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -41,8 +41,10 @@ const std::vector<Extreme>& table() {
         {"links_in_a_plane",
          {{"50 mm out of it", {setting("points.a_in.z", 50), setting("points.b_in.z", 2 * 50)}},
           {"1 mm out of it", {setting("points.a_in.z", 1), setting("points.b_in.z", 2 * 1)}},
-          {"1e-3 mm out of it", {setting("points.a_in.z", 1e-3), setting("points.b_in.z", 2 * 1e-3)}},
-          {"1e-6 mm out of it", {setting("points.a_in.z", 1e-6), setting("points.b_in.z", 2 * 1e-6)}},
+          {"1e-3 mm out of it",
+           {setting("points.a_in.z", 1e-3), setting("points.b_in.z", 2 * 1e-3)}},
+          {"1e-6 mm out of it",
+           {setting("points.a_in.z", 1e-6), setting("points.b_in.z", 2 * 1e-6)}},
           {"in the plane", {setting("points.a_in.z", 0), setting("points.b_in.z", 0)}}}},
         {"collinear_arm",
          {{"lever 300 mm", {setting("points.ball.y", 300)}},
@@ -66,7 +68,8 @@ const std::vector<Extreme>& table() {
            {setting("springs.coil.curve.table.7.2", 500.001),
             setting("springs.coil.curve.table.3.2", -500.001)}},
           {"flat",
-           {setting("springs.coil.curve.table.7.2", 500), setting("springs.coil.curve.table.3.2", -500)}},
+           {setting("springs.coil.curve.table.7.2", 500),
+            setting("springs.coil.curve.table.3.2", -500)}},
           {"steep within 1e-3 mm",
            {setting("springs.coil.curve.table.9.1", 30.001),
             setting("springs.coil.curve.table.1.1", -30.001)}},
@@ -93,7 +96,8 @@ const std::vector<Extreme>& table() {
 std::vector<compare::Trial> extremes() {
     std::vector<compare::Trial> trials;
     for (const auto& extreme : table()) {
-        const auto* file = std::ranges::find(embedded_extremes, extreme.scene, &Embedded_extremes::name);
+        const auto* file =
+            std::ranges::find(embedded_extremes, extreme.scene, &Embedded_extremes::name);
         if (file == std::end(embedded_extremes)) throw std::logic_error("no scene of this name");
         for (const auto& value : extreme.values)
             trials.push_back({extreme.scene,

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "compare/stress.hpp"
+#include "compare/stress/stress.hpp"
 
 namespace elastocheck::reports {
 

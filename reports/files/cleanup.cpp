@@ -31,7 +31,8 @@ void hand_over(int signal) {
 
 void wait_and_clean_up(int arriving, const std::vector<int>& handled) {
     int signal = 0;
-    while (::read(arriving, &signal, sizeof signal) != static_cast<ssize_t>(sizeof signal)) continue;
+    while (::read(arriving, &signal, sizeof signal) != static_cast<ssize_t>(sizeof signal))
+        continue;
     for (const int one : handled) std::signal(one, SIG_DFL);
     registry().mutex.lock();  // never unlocked
     for (const auto& work : registry().cleanups | std::views::reverse) try {
@@ -47,7 +48,8 @@ void clean_up_on_signals() {
     std::vector<int> handled;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         struct sigaction now {};
-        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) handled.push_back(signal);
+        if (::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL)
+            handled.push_back(signal);
     }
     int ends[2];
     // without a pipe, signals end the process immediately
@@ -71,6 +73,8 @@ CleanupOnSignal::~CleanupOnSignal() {
     registry().cleanups.erase(at_);
 }
 
-std::unique_lock<std::recursive_mutex> no_cleanup_now() { return std::unique_lock(registry().mutex); }
+std::unique_lock<std::recursive_mutex> no_cleanup_now() {
+    return std::unique_lock(registry().mutex);
+}
 
 }  // namespace elastocheck::reports

@@ -87,13 +87,13 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
         return;
     }
     if (!S_ISREG(entry.st_mode))
-        throw FileError(
-            fmt::format("{}: is {}; only regular files are written", file.string(), sort_of(entry)));
+        throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
+                                    sort_of(entry)));
     if (!begins_as(file, kind))
-        throw FileError(
-            fmt::format("{}: is there, and is no {} that elastocheck wrote; choose another name, or "
-                        "remove it",
-                        file.string(), kind.name));
+        throw FileError(fmt::format(
+            "{}: is there, and is no {} that elastocheck wrote; choose another name, or "
+            "remove it",
+            file.string(), kind.name));
 }
 
 namespace {
@@ -129,9 +129,9 @@ void remove_abandoned(const fs::path& file) {
         // Checks the inode: the owner may have renamed the file and created another one of this
         // name since it was opened.
         struct stat now {};
-        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) && ::flock(left, LOCK_EX | LOCK_NB) == 0 &&
-            ::lstat(at->path().c_str(), &now) == 0 && now.st_ino == entry.st_ino &&
-            now.st_dev == entry.st_dev)
+        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) &&
+            ::flock(left, LOCK_EX | LOCK_NB) == 0 && ::lstat(at->path().c_str(), &now) == 0 &&
+            now.st_ino == entry.st_ino && now.st_dev == entry.st_dev)
             ::unlink(at->path().c_str());
         ::close(left);
     }
@@ -143,17 +143,20 @@ FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(st
     std::error_code failed;
     if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
     if (failed)
-        throw FileError(fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
+        throw FileError(
+            fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
     remove_abandoned(file_);
     temporary_ = file_;
     const auto lock = no_cleanup_now();
     for (int k = 0; out_ < 0; ++k) {
-        temporary_.replace_filename(fmt::format("{}{}-{}.tmp", temporary_prefix(file_), ::getpid(), k));
+        temporary_.replace_filename(
+            fmt::format("{}{}-{}.tmp", temporary_prefix(file_), ::getpid(), k));
         out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (out_ < 0 && errno != EEXIST) cannot(file_, "written");
         // Another run may have removed it as abandoned before it was locked.
-        if (out_ >= 0 && (::flock(out_, LOCK_EX | LOCK_NB) == 0 ? !is_there(out_) : errno == EWOULDBLOCK))
+        if (out_ >= 0 &&
+            (::flock(out_, LOCK_EX | LOCK_NB) == 0 ? !is_there(out_) : errno == EWOULDBLOCK))
             ::close(std::exchange(out_, -1));
     }
     cleanup_.emplace([path = temporary_](int) { ::unlink(path.c_str()); });
@@ -190,7 +193,8 @@ void FileToBe::finish() {
     int error = errno;
     if (good) {
         // A file that appeared meanwhile is replaced only if it was made by this program as well.
-        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(), RENAME_NOREPLACE) == 0;
+        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(),
+                           RENAME_NOREPLACE) == 0;
         // EINVAL: not supported by the file system
         if (!good && (errno == EEXIST || errno == EINVAL)) {
             try {
@@ -220,8 +224,8 @@ void append(const fs::path& file, std::string_view content) {
     struct stat entry {};
     if (::fstat(out, &entry) != 0 || !S_ISREG(entry.st_mode)) {
         ::close(out);
-        throw FileError(
-            fmt::format("{}: is {}; only regular files are written", file.string(), sort_of(entry)));
+        throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
+                                    sort_of(entry)));
     }
     if (!write_and_close(out, content)) cannot(file, "appended to");
 }
@@ -231,8 +235,10 @@ void fill(const fs::path& file, std::string_view content) {
     std::error_code failed;
     fs::create_directories(file.parent_path(), failed);
     if (failed)
-        throw FileError(fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
-    const int out = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+        throw FileError(
+            fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
+    const int out =
+        ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (out < 0 || !write_and_close(out, content)) cannot(file, "written");
 }
 
@@ -254,8 +260,9 @@ std::string read_whole(const fs::path& file, std::size_t largest) {
         if (good) text.append(buffer, static_cast<std::size_t>(count));
         if (text.size() <= largest) continue;
         ::close(in);
-        throw FileError(fmt::format("{}: cannot be read: it is larger than {} MiB; no file of its kind is",
-                                    file.string(), largest >> 20U));
+        throw FileError(
+            fmt::format("{}: cannot be read: it is larger than {} MiB; no file of its kind is",
+                        file.string(), largest >> 20U));
     }
     const int error = errno;
     ::close(in);

@@ -15,7 +15,7 @@
 #include <sstream>
 #include <utility>
 
-#include "reports/document/provenance.hpp"
+#include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -57,7 +57,8 @@ std::set<std::string> listed_in(const fs::path& folder) {
 }
 
 bool is_ours(const fs::path& folder, const std::string& file, const std::set<std::string>& listed) {
-    return fs::is_regular_file(fs::symlink_status(folder / file)) && listed.contains(line_of(folder, file));
+    return fs::is_regular_file(fs::symlink_status(folder / file)) &&
+           listed.contains(line_of(folder, file));
 }
 
 // Subfolders at any depth, the deepest first.
@@ -66,7 +67,8 @@ std::vector<std::string> folders_in(const fs::path& folder) {
     for (const auto& entry : fs::recursive_directory_iterator(folder))
         if (entry.is_directory() && !entry.is_symlink())
             folders.push_back(entry.path().lexically_relative(folder).generic_string());
-    std::ranges::sort(folders, std::ranges::greater{}, [](const auto& name) { return name.size(); });
+    std::ranges::sort(folders, std::ranges::greater{},
+                      [](const auto& name) { return name.size(); });
     return folders;
 }
 
@@ -84,16 +86,17 @@ void check_all_ours(const fs::path& folder) {
     for (const auto& inner : folders_in(folder))
         if (!is_ours(inner, listed))
             fail(folder / inner,
-                 "is no part of a report, and replacing the folder would lose it; choose another folder");
+                 "is no part of a report, and replacing the folder would lose it; choose another "
+                 "folder");
     for (const auto& file : files) {
         if (is_ours(folder, file, listed) || (file == manifest && !listed.empty())) continue;
-        const bool changed =
-            std::ranges::any_of(listed, [&](const auto& line) { return line.ends_with("  " + file); });
-        fail(folder / file,
-             changed
-                 ? "was changed since elastocheck wrote it, and replacing the folder would lose that; choose "
-                   "another folder, or remove this one"
-                 : "is no part of a report, and replacing the folder would lose it; choose another folder");
+        const bool changed = std::ranges::any_of(
+            listed, [&](const auto& line) { return line.ends_with("  " + file); });
+        fail(folder / file, changed ? "was changed since elastocheck wrote it, and replacing the "
+                                      "folder would lose that; choose "
+                                      "another folder, or remove this one"
+                                    : "is no part of a report, and replacing the folder would lose "
+                                      "it; choose another folder");
     }
 }
 
@@ -156,8 +159,8 @@ int lock_folder(const fs::path& folder) {
 void remove_abandoned(const fs::path& target) {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(target.parent_path(), ignored)) {
-        if (!entry.path().filename().string().starts_with(staging_prefix(target)) || entry.is_symlink() ||
-            !entry.is_directory())
+        if (!entry.path().filename().string().starts_with(staging_prefix(target)) ||
+            entry.is_symlink() || !entry.is_directory())
             continue;
         const int lock = lock_folder(entry.path());
         if (lock < 0) continue;
@@ -184,9 +187,11 @@ fs::path resolved(const fs::path& folder) {
     fs::path target = fs::weakly_canonical(fs::absolute(folder), failed);
     if (failed) fail(folder, failed.message());
     if (!target.has_filename()) target = target.parent_path();
-    if (!target.has_filename()) fail(folder, "is the root of a file system; choose a folder below it");
+    if (!target.has_filename())
+        fail(folder, "is the root of a file system; choose a folder below it");
     const auto status = fs::status(target, failed);
-    if (fs::is_symlink(fs::symlink_status(target, failed)) && status.type() == fs::file_type::not_found)
+    if (fs::is_symlink(fs::symlink_status(target, failed)) &&
+        status.type() == fs::file_type::not_found)
         fail(folder, "is a symbolic link that leads nowhere");
     if (status.type() == fs::file_type::not_found) return target;
     if (status.type() == fs::file_type::none) fail(folder, failed.message());
@@ -252,10 +257,12 @@ void Staging::publish() {
         staging_.clear();
     } else if (errno == EEXIST) {
         check_ours(target_);  // repeated: a file may have been added meanwhile
-        if (::renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
-            fail(target_, fmt::format("cannot be replaced in one step ({}); remove it or choose another "
-                                      "folder",
-                                      std::strerror(errno)));
+        if (::renameat2(AT_FDCWD, staging_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) !=
+            0)
+            fail(target_,
+                 fmt::format("cannot be replaced in one step ({}); remove it or choose another "
+                             "folder",
+                             std::strerror(errno)));
     } else {
         fail(target_, fmt::format("cannot be written: {}", std::strerror(errno)));
     }

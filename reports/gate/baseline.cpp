@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "reports/document/json.hpp"
+#include "reports/json/json.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -36,13 +36,15 @@ struct Field {
 }
 
 // Requires exactly these fields of an object, and optionally `more`.
-void expect_fields(const Field& in, std::initializer_list<const char*> names, std::string_view more = "") {
+void expect_fields(const Field& in, std::initializer_list<const char*> names,
+                   std::string_view more = "") {
     if (!in.value.is_object()) refuse(in, "is not an object");
     for (const char* name : names)
         if (!in.value.contains(name)) refuse(in, fmt::format("'{}' is missing", name));
     for (const auto& [name, unused] : in.value.items()) {
         if (name == more) continue;
-        if (std::ranges::find(names, name) == names.end()) refuse(in, fmt::format("'{}' is not known", name));
+        if (std::ranges::find(names, name) == names.end())
+            refuse(in, fmt::format("'{}' is not known", name));
     }
 }
 
@@ -69,7 +71,8 @@ std::string paragraphs(const Field& field) {
     auto text = field.value.get<std::string>();
     std::string one_line = text;
     std::ranges::replace(one_line, '\n', ' ');
-    if (const std::string wrong = flaw(one_line); !wrong.empty()) refuse(field, "is not text: " + wrong);
+    if (const std::string wrong = flaw(one_line); !wrong.empty())
+        refuse(field, "is not text: " + wrong);
     return text;
 }
 
@@ -95,7 +98,8 @@ auto named(const Field& field, const Kinds& kinds) {
 }
 
 Provenance provenance_of(const Field& field) {
-    expect_fields(field, {"elastocheck", "commit", "dirty", "compiler", "flags", "cpu", "libraries"});
+    expect_fields(field,
+                  {"elastocheck", "commit", "dirty", "compiler", "flags", "cpu", "libraries"});
     Provenance p;
     p.version = text(at(field, "elastocheck"));
     p.commit = text(at(field, "commit"));
@@ -107,7 +111,8 @@ Provenance provenance_of(const Field& field) {
     const Field libraries = at(field, "libraries");
     if (!libraries.value.is_object()) refuse(libraries, "is not an object");
     for (const auto& [name, version] : libraries.value.items()) {
-        if (const std::string wrong = flaw(name); !wrong.empty()) refuse(libraries, "a name: " + wrong);
+        if (const std::string wrong = flaw(name); !wrong.empty())
+            refuse(libraries, "a name: " + wrong);
         p.libraries.push_back({name, text({version, libraries.path + "." + name})});
     }
     return p;
@@ -148,7 +153,8 @@ compare::Limit limit_of(const Field& field) {
     expect_fields(field, {"of", "channel", "max"});
     constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
                                     Quantity::deviation_at_equal_abscissa};
-    return {named(at(field, "of"), deviations), text(at(field, "channel")), number(at(field, "max"))};
+    return {named(at(field, "of"), deviations), text(at(field, "channel")),
+            number(at(field, "max"))};
 }
 
 // ["points.tie_rod_inner.z", -0.055, "m"]
@@ -167,14 +173,16 @@ std::string one_a_line(const std::vector<json>& entries) {
 
 BaselineFile parse(const json& whole) {
     const Field top{whole, ""};
-    if (!whole.is_object() || !whole.contains("schema")) refuse(top, "has no schema: it is not a baseline");
+    if (!whole.is_object() || !whole.contains("schema"))
+        refuse(top, "has no schema: it is not a baseline");
     if (const std::string schema = text(at(top, "schema")); schema != baseline_schema)
         refuse(at(top, "schema"),
-               fmt::format("'{}' cannot be read by this version, which needs '{}'; accept anew", schema,
-                           baseline_schema));
-    expect_fields(top,
-                  {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"},
-                  "numbers");
+               fmt::format("'{}' cannot be read by this version, which needs '{}'; accept anew",
+                           schema, baseline_schema));
+    expect_fields(
+        top,
+        {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"},
+        "numbers");
     BaselineFile file;
     const Field scene = at(top, "scene");
     expect_fields(scene, {"file", "name", "input_hash"});
@@ -184,7 +192,8 @@ BaselineFile parse(const json& whole) {
     if (whole.contains("numbers")) {
         file.numbers.emplace();
         for (const auto& entry : array(at(top, "numbers")))
-            file.numbers->push_back(number_of({entry, fmt::format("numbers[{}]", file.numbers->size())}));
+            file.numbers->push_back(
+                number_of({entry, fmt::format("numbers[{}]", file.numbers->size())}));
     }
     expect_fields(at(top, "accepted"), {"reason"});
     file.baseline.reason = paragraphs(at(at(top, "accepted"), "reason"));
@@ -227,9 +236,11 @@ std::string baseline_text(const BaselineFile& file) {
     const compare::Baseline& b = file.baseline;
     std::vector<json> limits, numbers, branches, series;
     if (file.numbers)
-        for (const auto& n : *file.numbers) numbers.push_back(json::array({n.path, n.value, n.unit}));
+        for (const auto& n : *file.numbers)
+            numbers.push_back(json::array({n.path, n.value, n.unit}));
     for (const auto& limit : b.limits)
-        limits.push_back({{"of", name(limit.deviation)}, {"channel", limit.channel}, {"max", limit.max}});
+        limits.push_back(
+            {{"of", name(limit.deviation)}, {"channel", limit.channel}, {"max", limit.max}});
     for (const auto& branch : b.accepted.branches)
         branches.push_back({{"name", branch.name}, {"unit", branch.unit}, {"parameter", branch.a}});
     for (const auto& s : b.accepted.series)
@@ -242,18 +253,21 @@ std::string baseline_text(const BaselineFile& file) {
         return fmt::format(" \"{}\": {},\n", key, value.dump());
     };
     std::string text = "{\n" + line("schema", baseline_schema);
-    text += line("scene",
-                 {{"file", file.scene_file}, {"name", b.accepted.scene}, {"input_hash", file.input_hash}});
+    text += line(
+        "scene",
+        {{"file", file.scene_file}, {"name", b.accepted.scene}, {"input_hash", file.input_hash}});
     text += line("accepted", {{"reason", b.reason}});
     text += line("provenance", provenance_json(file.provenance));
     text += " \"tolerances\": {";
     for (const char* separator = "\n"; const auto& [kind, tolerances] : b.tolerances) {
-        text += fmt::format("{}  \"{}\": {}", separator, name(kind), tolerances_json(tolerances).dump());
+        text += fmt::format("{}  \"{}\": {}", separator, name(kind),
+                            tolerances_json(tolerances).dump());
         separator = ",\n";
     }
     text += "\n },\n \"limits\": " + one_a_line(limits);
     if (file.numbers) text += ",\n \"numbers\": " + one_a_line(numbers);
-    text += ",\n \"branches\": " + one_a_line(branches) + ",\n \"series\": " + one_a_line(series) + "\n}\n";
+    text += ",\n \"branches\": " + one_a_line(branches) + ",\n \"series\": " + one_a_line(series) +
+            "\n}\n";
     return text;
 }
 
@@ -264,16 +278,19 @@ BaselineFile parse_baseline(std::string_view text, const std::string& file_name)
     } catch (const BaselineError& error) {
         throw BaselineError(fmt::format("{}: {}", file_name, error.what()));
     } catch (const JsonError& error) {
-        throw BaselineError(fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
+        throw BaselineError(
+            fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
     } catch (const json::exception& error) {
-        throw BaselineError(fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
+        throw BaselineError(
+            fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
     }
 }
 
 BuildDistance distance(const Provenance& was, const Provenance& is) {
     std::string differs;
     const auto look_at = [&](const std::string& what, const std::string& a, const std::string& b) {
-        if (a != b) differs += fmt::format("{}{}: {}, now {}", differs.empty() ? "" : "; ", what, a, b);
+        if (a != b)
+            differs += fmt::format("{}{}: {}, now {}", differs.empty() ? "" : "; ", what, a, b);
     };
     look_at("compiler", was.compiler, is.compiler);
     look_at("flags", was.flags, is.flags);
@@ -294,7 +311,8 @@ std::string not_committed(const std::filesystem::path& file) {
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
     const std::string git = "git -c safe.directory='*' -C " + for_shell(folder) + " ";
     const std::string leaf = file.filename().string();
-    const std::string committed = first_line(git + "rev-parse --verify -q " + for_shell("HEAD:./" + leaf));
+    const std::string committed =
+        first_line(git + "rev-parse --verify -q " + for_shell("HEAD:./" + leaf));
     if (committed.empty()) return "it is not committed to a git repository";
     if (committed != first_line(git + "hash-object -- " + for_shell(leaf)))
         return "it differs from what is committed";

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/gate.hpp"
-#include "models/scene.hpp"
-#include "reports/document/provenance.hpp"
+#include "compare/gate/gate.hpp"
+#include "elastocheck/scene.hpp"
+#include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "reports/document/document.hpp"
-#include "reports/page/templates.hpp"
+#include "reports/files/templates.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -102,7 +102,8 @@ std::string headline(const GatedScene& scene) {
     if (verdict.offences.empty())
         line += fmt::format("{} numbers compared, none out of tolerance", verdict.compared);
     else
-        line += fmt::format("{} of {} numbers out of tolerance", verdict.offences.size(), verdict.compared);
+        line += fmt::format("{} of {} numbers out of tolerance", verdict.offences.size(),
+                            verdict.compared);
     if (verdict.compared > 0) line += ", " + class_of(scene);
     return line;
 }
@@ -140,9 +141,11 @@ struct Test {
 std::vector<Test> tests_of(const GatedScene& scene) {
     std::vector<Test> tests{{&scene, "can be judged", {}, !scene.verdict.reasons.empty()}};
     const auto test = [&](const std::string& branch) -> Test& {
-        const auto found = std::find_if(tests.begin() + 1, tests.end(),
-                                        [&](const Test& t) { return t.name == "branch " + branch; });
-        return found != tests.end() ? *found : tests.emplace_back(Test{&scene, "branch " + branch, {}});
+        const auto found = std::find_if(tests.begin() + 1, tests.end(), [&](const Test& t) {
+            return t.name == "branch " + branch;
+        });
+        return found != tests.end() ? *found
+                                    : tests.emplace_back(Test{&scene, "branch " + branch, {}});
     };
     for (const auto& s : scene.accepted.series) (void)test(s.branch);
     for (const auto& o : scene.verdict.offences) test(o.branch).failed.push_back(&o);
@@ -168,7 +171,8 @@ std::string lines(const std::vector<std::string>& all, std::size_t most) {
     return text;
 }
 
-void add_message(pugi::xml_node test, const char* kind, std::string_view message, const std::string& text) {
+void add_message(pugi::xml_node test, const char* kind, std::string_view message,
+                 const std::string& text) {
     auto node = test.append_child(kind);
     node.append_attribute("message") = for_xml(beginning(message, line_length)).c_str();
     node.text() = for_xml(text).c_str();
@@ -187,7 +191,8 @@ void add_test(pugi::xml_node suite, const Test& test, std::size_t most_lines) {
                     headline(*test.scene) + "\n" + lines(reasons, most_lines) + changed);
     if (test.failed.empty()) return;
     std::vector<std::string> stories;
-    for (const auto& worst : worst_of_each_channel(test.scene, test.failed)) stories.push_back(told(worst));
+    for (const auto& worst : worst_of_each_channel(test.scene, test.failed))
+        stories.push_back(told(worst));
     add_message(node, "failure", stories.front(), lines(stories, most_lines) + changed);
 }
 
@@ -210,7 +215,8 @@ std::string junit_of(const std::vector<Test>& tests, std::size_t most, std::size
         Suite& suite = place->second;
         if (is_new) {
             suite.node = root.append_child("testsuite");
-            suite.node.append_attribute("name") = for_xml(beginning(test.scene->file, line_length)).c_str();
+            suite.node.append_attribute("name") =
+                for_xml(beginning(test.scene->file, line_length)).c_str();
         }
         add_test(suite.node, test, most_lines);
         ++suite.tests;
@@ -223,17 +229,18 @@ std::string junit_of(const std::vector<Test>& tests, std::size_t most, std::size
         suite.node.append_attribute("errors") = suite.errors;
     }
     if (tests.size() > most) {
-        const auto left = std::ranges::count_if(tests.begin() + static_cast<std::ptrdiff_t>(most),
-                                                tests.end(), [](const Test& t) { return !t.passed(); });
+        const auto left =
+            std::ranges::count_if(tests.begin() + static_cast<std::ptrdiff_t>(most), tests.end(),
+                                  [](const Test& t) { return !t.passed(); });
         auto suite = root.append_child("testsuite");
         suite.append_attribute("name") = "left out";
         suite.append_attribute("tests") = 0;
-        suite.append_child("system-out").text() =
-            fmt::format(
-                "{} more tests, {} of them failed, are left out to keep this file small; elastocheck "
-                "gate --json has them all",
-                tests.size() - most, left)
-                .c_str();
+        suite.append_child("system-out").text() = fmt::format(
+                                                      "{} more tests, {} of them failed, are left "
+                                                      "out to keep this file small; elastocheck "
+                                                      "gate --json has them all",
+                                                      tests.size() - most, left)
+                                                      .c_str();
     }
     std::ostringstream out;
     document.save(out, " ");
@@ -262,11 +269,13 @@ std::string story(const Offence& o) {
     std::string line = fmt::format("branch '{}', {}: {}", o.branch, name(o.quantity), o.channel);
     if (o.a) line += fmt::format(" at {:g} {}", *o.a, o.a_unit);
     if (o.of_limit)
-        return line + fmt::format(": {:.6g} {} is over its limit of {:g} {}", o.is, o.unit, o.was, o.unit);
-    line += fmt::format(": accepted {:.10g} {}, measured {:.10g} {}, difference {:+.3g}", o.was, o.unit, o.is,
-                        o.unit, o.difference());
-    line += o.tolerance > 0 ? fmt::format(", {:.3g} times the tolerance of {:.3g}", o.share(), o.tolerance)
-                            : ", and nothing is tolerated";
+        return line +
+               fmt::format(": {:.6g} {} is over its limit of {:g} {}", o.is, o.unit, o.was, o.unit);
+    line += fmt::format(": accepted {:.10g} {}, measured {:.10g} {}, difference {:+.3g}", o.was,
+                        o.unit, o.is, o.unit, o.difference());
+    line += o.tolerance > 0
+                ? fmt::format(", {:.3g} times the tolerance of {:.3g}", o.share(), o.tolerance)
+                : ", and nothing is tolerated";
     return line + fmt::format(", {:.3g} times what an engineer notices", o.noticed());
 }
 
@@ -286,18 +295,19 @@ std::string gate_table(const GatedScene& scene) {
     for (std::size_t k = 0; k < std::min(scene.changed.size(), rows_in_table); ++k)
         out += fmt::format("  changed: {}\n", story(scene.changed[k]));
     if (scene.changed.size() > rows_in_table)
-        out += fmt::format("  ... and {} more numbers of the scene\n", scene.changed.size() - rows_in_table);
+        out += fmt::format("  ... and {} more numbers of the scene\n",
+                           scene.changed.size() - rows_in_table);
     const auto worst = worst_of_each_channel({&scene});
     if (!worst.empty())
-        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>10} {:>8}\n", "branch",
-                           "what", "channel", "at", "accepted", "measured", "difference", "noticeable",
-                           "tolerances", "numbers");
+        out += fmt::format("  {:10} {:32} {:28} {:>8} {:>16} {:>16} {:>12} {:>10} {:>10} {:>8}\n",
+                           "branch", "what", "channel", "at", "accepted", "measured", "difference",
+                           "noticeable", "tolerances", "numbers");
     for (std::size_t k = 0; k < std::min(worst.size(), rows_in_table); ++k) {
         const Offence& o = *worst[k].offence;
-        out +=
-            fmt::format("  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10} {:>10.3g} {:>8}\n",
-                        o.branch, what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was, o.is,
-                        o.difference(), times_noticeable(o), o.share(), worst[k].numbers);
+        out += fmt::format(
+            "  {:10} {:32} {:28} {:>8} {:>16.10g} {:>16.10g} {:>+12.3g} {:>10} {:>10.3g} {:>8}\n",
+            o.branch, what(o), fmt::format("{} [{}]", o.channel, o.unit), where(o), o.was, o.is,
+            o.difference(), times_noticeable(o), o.share(), worst[k].numbers);
     }
     if (worst.size() > rows_in_table)
         out += fmt::format("  ... and {} more channels\n", worst.size() - rows_in_table);
@@ -336,8 +346,10 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
                                {"was", number(change.was)},
                                {"is", number(change.is)}});
         for (const auto& o : scene.verdict.offences) {
-            json one = {
-                {"branch", o.branch}, {"of", name(o.quantity)}, {"channel", o.channel}, {"unit", o.unit}};
+            json one = {{"branch", o.branch},
+                        {"of", name(o.quantity)},
+                        {"channel", o.channel},
+                        {"unit", o.unit}};
             if (o.a) one["at"] = {{"value", *o.a}, {"unit", o.a_unit}};
             one["measured"] = o.is;
             one[o.of_limit ? "limit" : "accepted"] = o.was;
@@ -367,8 +379,10 @@ std::string junit(const std::vector<GatedScene>& scenes) {
     for (const auto& scene : scenes)
         for (auto& test : tests_of(scene)) tests.push_back(std::move(test));
     for (const std::size_t most_lines : {50, 10, 3, 1})
-        if (std::string xml = junit_of(tests, tests.size(), most_lines); xml.size() < most_junit) return xml;
-    std::stable_partition(tests.begin(), tests.end(), [](const Test& test) { return !test.passed(); });
+        if (std::string xml = junit_of(tests, tests.size(), most_lines); xml.size() < most_junit)
+            return xml;
+    std::stable_partition(tests.begin(), tests.end(),
+                          [](const Test& test) { return !test.passed(); });
     std::size_t most = tests.size();
     for (;; most /= 2)
         if (std::string xml = junit_of(tests, most, 1); xml.size() < most_junit) return xml;
@@ -434,7 +448,8 @@ std::string annotations(const std::vector<GatedScene>& scenes) {
         if (++count <= annotations_in_all)
             out += annotation(
                 *worst.scene, "elastocheck gate: out of tolerance",
-                told(worst) + (changed.empty() ? "" : "; changed in the scene: " + story(changed.front())) +
+                told(worst) +
+                    (changed.empty() ? "" : "; changed in the scene: " + story(changed.front())) +
                     (changed.size() > 1 ? fmt::format(" and {} more", changed.size() - 1) : ""));
     }
     for (const auto& scene : scenes)

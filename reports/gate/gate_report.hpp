@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/changes.hpp"
-#include "compare/gate.hpp"
-#include "reports/document/provenance.hpp"
+#include "compare/comparison/changes.hpp"
+#include "compare/gate/gate.hpp"
+#include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
 
@@ -21,7 +21,7 @@ struct GatedScene {
     std::string differs;                   // build differences that exclude the class same-build
     std::vector<compare::Change> changed;  // numbers of the scene changed since the acceptance
     std::vector<std::string> notes;        // remarks that do not affect the verdict
-    bool bad_input = false;                // the scene could not be read; verdict.reasons has the reason
+    bool bad_input = false;  // the scene could not be read; verdict.reasons has the reason
     compare::Verdict verdict;
 };
 
@@ -37,7 +37,8 @@ std::string story(const compare::Change& change);
 
 // Complete results for programs: {schema, provenance, verdict, exit_code, compared, scenes}.
 inline constexpr const char* gate_schema = "elastocheck/gate/1";
-nlohmann::ordered_json gate_document(const std::vector<GatedScene>& scenes, const Provenance& provenance);
+nlohmann::ordered_json gate_document(const std::vector<GatedScene>& scenes,
+                                     const Provenance& provenance);
 
 std::string gate_table(const GatedScene& scene);                     // for a terminal
 std::string gate_conclusion(const std::vector<GatedScene>& scenes);  // its last line

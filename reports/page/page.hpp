@@ -27,7 +27,19 @@ struct Table {
 enum Colour { ink, vermilion, blue, green, purple, ochre, slate, pink, sky, faint };
 
 struct Series {
-    enum class Style { line, wide, dashed, thin, points, rings, line_points, bars, heavy, hair, face };
+    enum class Style {
+        line,
+        wide,
+        dashed,
+        thin,
+        points,
+        rings,
+        line_points,
+        bars,
+        heavy,
+        hair,
+        face
+    };
     std::string title{};  // empty: not in the legend
     Style style = Style::line;
     Colour colour = ink;

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "reports/files/files.hpp"
+#include "reports/files/templates.hpp"
 #include "reports/page/gnuplot.hpp"
-#include "reports/page/labels.hpp"
-#include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
+#include "reports/text/labels.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -32,13 +32,16 @@ const char* style_of(Series::Style style) {
         case Series::Style::bars: return "boxxyerror fillstyle solid 1 noborder";
         case Series::Style::heavy: return "lines linewidth 3.2";
         case Series::Style::hair: return "lines linewidth 0.9";
-        case Series::Style::face: return "filledcurves closed fillstyle transparent solid 0.18 noborder";
+        case Series::Style::face:
+            return "filledcurves closed fillstyle transparent solid 0.18 noborder";
     }
     return "lines";
 }
 
 json range_of(double low, double high) {
-    const auto end = [](double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "*"; };
+    const auto end = [](double value) {
+        return std::isfinite(value) ? fmt::format("{:.9g}", value) : "*";
+    };
     return fmt::format("{}:{}", end(low), end(high));
 }
 
@@ -49,7 +52,8 @@ std::string decades(const Figure& figure, std::size_t axis, double low, double h
         for (const auto& row : series.rows)
             if (row.size() > axis && row[axis] > 0 && std::isfinite(row[axis]))
                 least = std::min(least, row[axis]), most = std::max(most, row[axis]);
-    const double span = most > least ? std::ceil(std::log10(most)) - std::floor(std::log10(least)) : 1;
+    const double span =
+        most > least ? std::ceil(std::log10(most)) - std::floor(std::log10(least)) : 1;
     return fmt::format("{:g}", std::pow(10, std::clamp(std::ceil(span / 7), 1.0, 6.0)));
 }
 
@@ -96,35 +100,36 @@ json script_data(const Figure& figure, const std::string& name) {
         ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", plain}});
         widest = std::max(widest, text_width(text, 11));
     }
-    return {{"name", name},
-            {"title", figure.title},
-            {"width", std::lround(wide)},
-            {"height", std::lround(high)},
-            {"width_in", fmt::format("{:.2f}", wide / 96)},
-            {"height_in", fmt::format("{:.2f}", high / 96)},
-            {"sheet", sheet},
-            {"words", words},
-            {"x", figure.x},
-            {"y", figure.y},
-            {"log_x", figure.log_x},
-            {"log_y", figure.log_y},
-            {"x_decades", decades(figure, 0, NAN, NAN)},
-            {"y_decades", decades(figure, 1, figure.y_low, figure.y_high)},
-            {"equal_axes", figure.equal_axes},
-            {"key_lines", std::max(6L, static_cast<long>(entries) + 1)},
-            {"reversed_x", figure.reversed_x},
-            {"reversed_y", figure.reversed_y},
-            {"y_range", range_of(figure.y_low, figure.y_high)},
-            {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
-            {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
-            {"ticks", ticks},
-            {"left", ticks.empty() ? json(nullptr)
-                                   : json(fmt::format("{:.4f}", std::min(0.5, (widest + 16) / wide)))},
-            {"series", series},
-            {"bands", bands},
-            {"ink", palette[ink].light},
-            {"slate", palette[slate].light},
-            {"faint", palette[faint].light}};
+    return {
+        {"name", name},
+        {"title", figure.title},
+        {"width", std::lround(wide)},
+        {"height", std::lround(high)},
+        {"width_in", fmt::format("{:.2f}", wide / 96)},
+        {"height_in", fmt::format("{:.2f}", high / 96)},
+        {"sheet", sheet},
+        {"words", words},
+        {"x", figure.x},
+        {"y", figure.y},
+        {"log_x", figure.log_x},
+        {"log_y", figure.log_y},
+        {"x_decades", decades(figure, 0, NAN, NAN)},
+        {"y_decades", decades(figure, 1, figure.y_low, figure.y_high)},
+        {"equal_axes", figure.equal_axes},
+        {"key_lines", std::max(6L, static_cast<long>(entries) + 1)},
+        {"reversed_x", figure.reversed_x},
+        {"reversed_y", figure.reversed_y},
+        {"y_range", range_of(figure.y_low, figure.y_high)},
+        {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
+        {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
+        {"ticks", ticks},
+        {"left", ticks.empty() ? json(nullptr)
+                               : json(fmt::format("{:.4f}", std::min(0.5, (widest + 16) / wide)))},
+        {"series", series},
+        {"bands", bands},
+        {"ink", palette[ink].light},
+        {"slate", palette[slate].light},
+        {"faint", palette[faint].light}};
 }
 
 // One block per series, separated by two blank lines; one blank line at a gap.
@@ -151,7 +156,8 @@ std::string figure_data(const Figure& figure) {
 
 std::vector<NamedContent> sources(const Plot& plot) {
     return {{plot.name + ".csv", figure_data(*plot.figure)},
-            {plot.name + ".gp", render("figure.gp", script_data(*plot.figure, plot.name), Escape::gnuplot)}};
+            {plot.name + ".gp",
+             render("figure.gp", script_data(*plot.figure, plot.name), Escape::gnuplot)}};
 }
 
 std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder,
@@ -171,8 +177,8 @@ std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& f
     std::vector<Illustration> pictures;
     for (const auto& [figure, name] : plots) {
         const fs::path svg = figures / (name + ".svg");
-        pictures.push_back(illustrate(read_whole(svg), fmt::format("f{}", pictures.size() + 1), figure->title,
-                                      figure->description));
+        pictures.push_back(illustrate(read_whole(svg), fmt::format("f{}", pictures.size() + 1),
+                                      figure->title, figure->description));
         fill(svg, pictures.back().alone);
         if (!options.keep_source)
             for (const char* other : {".csv", ".gp"}) fs::remove(figures / (name + other));

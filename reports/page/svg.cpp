@@ -12,8 +12,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "reports/files/templates.hpp"
 #include "reports/page/gnuplot.hpp"
-#include "reports/page/templates.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -74,7 +74,8 @@ void keep_used_symbols(xml_node svg) {
                 again = definitions.remove_child(symbol) || again;
             symbol = next;
         }
-        if (definitions && !definitions.first_child()) definitions.parent().remove_child(definitions);
+        if (definitions && !definitions.first_child())
+            definitions.parent().remove_child(definitions);
     }
 }
 
@@ -105,7 +106,8 @@ std::string coarser(std::string_view text) {
 bool same_attributes(const xml_node& a, const xml_node& b) {
     auto x = a.first_attribute(), y = b.first_attribute();
     for (; x && y; x = x.next_attribute(), y = y.next_attribute())
-        if (std::strcmp(x.name(), y.name()) != 0 || std::strcmp(x.value(), y.value()) != 0) return false;
+        if (std::strcmp(x.name(), y.name()) != 0 || std::strcmp(x.value(), y.value()) != 0)
+            return false;
     return !x && !y;
 }
 
@@ -122,12 +124,14 @@ void shrink(xml_node root) {
     std::set<std::string> used;
     for_each(root, [&](xml_node node) { used.insert(node.attribute("xlink:href").value()); });
     for_each(root, [&](xml_node node) {
-        if (!used.contains(fmt::format("#{}", node.attribute("id").value()))) node.remove_attribute("id");
+        if (!used.contains(fmt::format("#{}", node.attribute("id").value())))
+            node.remove_attribute("id");
         for (const auto& [name, value] : usual)
             if (is(node, "g") && std::strcmp(node.attribute(name).value(), value) == 0)
                 node.remove_attribute(name);
         for (const char* name : {"d", "points", "transform"})
-            if (auto attribute = node.attribute(name)) attribute = coarser(attribute.value()).c_str();
+            if (auto attribute = node.attribute(name))
+                attribute = coarser(attribute.value()).c_str();
     });
     for (const auto& [name, value] : usual) root.append_attribute(name) = value;
     for_each(root, [](xml_node node) {
@@ -153,7 +157,8 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
                         const std::string& description) {
     pugi::xml_document document;
     if (!document.load_string(svg.c_str()) || !document.child("svg"))
-        throw PlotError(fmt::format("gnuplot wrote no whole SVG of figure {}; is the disk full?", id));
+        throw PlotError(
+            fmt::format("gnuplot wrote no whole SVG of figure {}; is the disk full?", id));
     xml_node root = document.child("svg");
     for_each(root, [](xml_node node) {
         if (is(node, "title") || is(node, "desc")) node.parent().remove_child(node);
@@ -177,7 +182,8 @@ Illustration illustrate(const std::string& svg, const std::string& id, const std
     shrink(root);
     const std::string title_id = id + "-title", description_id = id + "-desc";
     root.append_attribute("role") = "img";
-    root.append_attribute("aria-labelledby") = fmt::format("{} {}", title_id, description_id).c_str();
+    root.append_attribute("aria-labelledby") =
+        fmt::format("{} {}", title_id, description_id).c_str();
     xml_node about = root.prepend_child("desc");
     about.append_attribute("id") = description_id.c_str();
     about.text() = for_xml(description).c_str();

@@ -7,8 +7,8 @@
 #include <functional>
 #include <numbers>
 
-#include "reports/page/labels.hpp"
-#include "reports/page/symbols.hpp"
+#include "reports/text/labels.hpp"
+#include "reports/text/symbols.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -58,8 +58,8 @@ std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Whee
         constexpr int corners = 60;
         for (int k = 0; k <= corners; ++k) {
             const double angle = 2 * std::numbers::pi * k / corners;
-            edge.push_back(
-                along(along(along(centre, side * radius, e), std::cos(angle), arm), std::sin(angle), other));
+            edge.push_back(along(along(along(centre, side * radius, e), std::cos(angle), arm),
+                                 std::sin(angle), other));
         }
         edges.push_back(edge);
     }
@@ -109,7 +109,8 @@ struct Board {
         if (!rows.empty()) rows.emplace_back();
         for (const auto& p : stroke) rows.push_back({x + p.x / scale, y + p.y / scale});
         if (in_the_way)
-            for (std::size_t k = 1; k < stroke.size(); ++k) paper.lines.push_back({stroke[k - 1], stroke[k]});
+            for (std::size_t k = 1; k < stroke.size(); ++k)
+                paper.lines.push_back({stroke[k - 1], stroke[k]});
     }
     void strokes(const Strokes& all, Series::Style style, Colour colour, bool in_the_way = true) {
         for (const auto& one : all) stroke(one, style, colour, in_the_way);
@@ -117,7 +118,8 @@ struct Board {
     // Text from its left end, vertically centred.
     Box word(Spot at, const std::string& text, Colour colour) {
         words.push_back({x + at.x / scale, y + at.y / scale, text, colour});
-        const Box box{at.x, at.y - line_height / 2, at.x + text_width(text, letter), at.y + line_height / 2};
+        const Box box{at.x, at.y - line_height / 2, at.x + text_width(text, letter),
+                      at.y + line_height / 2};
         paper.taken.push_back(box);
         return box;
     }
@@ -170,19 +172,21 @@ std::vector<Entry> entries(const Suspension& s) {
     std::vector<Entry> list;
     const auto symbol = [&](const char* kind, const char* text) {
         if (std::ranges::any_of(s.symbols, [&](const auto& one) { return one.kind == kind; }))
-            list.push_back({text, [kind](Board& board, Spot at) {
-                                const Spot mm{board.x + at.x / board.scale, board.y + at.y / board.scale};
-                                Place place = along({0, 0, 0}, mm.x, board.plane.right);
-                                place = along(place, mm.y, board.plane.up);
-                                draw_symbol(board, {kind, place, board.plane.right});
-                            }});
-    };
-    const auto link = [&](const char* kind, const char* text, auto&& strokes, Style style, Colour colour) {
-        if (std::ranges::any_of(s.links, [&](const auto& one) { return one.kind == kind; }))
             list.push_back(
-                {text, [=](Board& board, Spot at) {
-                     board.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style, colour, false);
+                {text, [kind](Board& board, Spot at) {
+                     const Spot mm{board.x + at.x / board.scale, board.y + at.y / board.scale};
+                     Place place = along({0, 0, 0}, mm.x, board.plane.right);
+                     place = along(place, mm.y, board.plane.up);
+                     draw_symbol(board, {kind, place, board.plane.right});
                  }});
+    };
+    const auto link = [&](const char* kind, const char* text, auto&& strokes, Style style,
+                          Colour colour) {
+        if (std::ranges::any_of(s.links, [&](const auto& one) { return one.kind == kind; }))
+            list.push_back({text, [=](Board& board, Spot at) {
+                                board.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style,
+                                              colour, false);
+                            }});
     };
     symbol("spherical", "ball joint");
     symbol("bushing", "bushing");
@@ -209,10 +213,10 @@ std::vector<Entry> entries(const Suspension& s) {
                             board.strokes(hatching({at.x, at.y + 6}), Style::hair, slate, false);
                         }});
     if (std::ranges::any_of(s.symbols, [](const auto& one) { return one.kind == "drive"; }))
-        list.push_back(
-            {"driven", [](Board& board, Spot at) {
-                 board.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true), Style::line, purple, false);
-             }});
+        list.push_back({"driven", [](Board& board, Spot at) {
+                            board.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true),
+                                          Style::line, purple, false);
+                        }});
     for (std::size_t m = 0; m < s.moved.size(); ++m)
         list.push_back({s.moved[m].title, [m](Board& board, Spot at) {
                             board.strokes({{{at.x - 10, at.y}, {at.x + 10, at.y}}}, Style::thin,
@@ -256,7 +260,8 @@ void draw_legend(Board& board, const std::vector<Entry>& list, double width) {
 void draw_axes(Board& board, double bottom, double width) {
     using Style = Series::Style;
     constexpr double length = 24;
-    const std::pair<const char*, Place> axes[] = {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}};
+    const std::pair<const char*, Place> axes[] = {
+        {"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}};
     double left = 0, low = 0;
     for (const auto& [name, axis] : axes) {
         left = std::min(left, length * dot(board.plane.right, axis));
@@ -266,7 +271,8 @@ void draw_axes(Board& board, double bottom, double width) {
     for (const auto& [name, axis] : axes) {
         const Spot u{dot(board.plane.right, axis), dot(board.plane.up, axis)};
         if (std::hypot(u.x, u.y) < 0.15) continue;
-        board.strokes(arrow(origin, {origin.x + length * u.x, origin.y + length * u.y}), Style::thin, slate);
+        board.strokes(arrow(origin, {origin.x + length * u.x, origin.y + length * u.y}),
+                      Style::thin, slate);
         const double far = length + 7;
         board.word({origin.x + far * u.x - 3, origin.y + far * u.y}, name, slate);
     }
@@ -278,9 +284,10 @@ void draw_axes(Board& board, double bottom, double width) {
             break;
         }
     const double px = bar * board.scale, y = bottom + 10, end = width - 10;
-    board.strokes(
-        {{{end - px, y}, {end, y}}, {{end - px, y - 3}, {end - px, y + 3}}, {{end, y - 3}, {end, y + 3}}},
-        Style::thin, slate);
+    board.strokes({{{end - px, y}, {end, y}},
+                   {{end - px, y - 3}, {end - px, y + 3}},
+                   {{end, y - 3}, {end, y + 3}}},
+                  Style::thin, slate);
     const std::string text = fmt::format("{:g} mm", bar);
     board.word({end - text_width(text, letter), y + 11}, text, slate);
 }
@@ -310,8 +317,9 @@ void draw_suspension(Board& board, const Suspension& s) {
         }
         for (const auto& link : s.links)
             if (link.kind != "spring" && link.kind != "stop" && link.kind != "damper")
-                board.stroke({board.on(s.moved[m].points[link.i]), board.on(s.moved[m].points[link.j])},
-                             Style::thin, colour);
+                board.stroke(
+                    {board.on(s.moved[m].points[link.i]), board.on(s.moved[m].points[link.j])},
+                    Style::thin, colour);
     }
     Stroke standing;  // one hatching for coincident points
     for (const auto& p : s.points) {
@@ -331,7 +339,8 @@ void draw_suspension(Board& board, const Suspension& s) {
     }
     const auto each = [&](std::string_view kind, auto&& draw) {
         for (const auto& link : s.links)
-            if (link.kind == kind) draw(board.on(s.points[link.i].at), board.on(s.points[link.j].at));
+            if (link.kind == kind)
+                draw(board.on(s.points[link.i].at), board.on(s.points[link.j].at));
     };
     each("spring", [&](Spot a, Spot b) { board.strokes(coil(a, b), Style::line, vermilion); });
     each("damper", [&](Spot a, Spot b) { board.strokes(damper(a, b), Style::line, ochre); });
@@ -400,8 +409,8 @@ View axonometric_view(bool right) {
     return {"view-axonometric",
             "The suspension",
             "from the front, above and the middle of the vehicle",
-            {std::cos(height) * std::cos(turn), (right ? 1 : -1) * std::cos(height) * std::sin(turn),
-             std::sin(height)}};
+            {std::cos(height) * std::cos(turn),
+             (right ? 1 : -1) * std::cos(height) * std::sin(turn), std::sin(height)}};
 }
 
 Frame large_frame(const Suspension& s) {
@@ -409,7 +418,8 @@ Frame large_frame(const Suspension& s) {
 }
 Frame small_frame(const Suspension& s) { return {s.wheels.size() > 1 ? 480 : 330, 0, false}; }
 
-std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& views, const Frame& frame) {
+std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& views,
+                               const Frame& frame) {
     const auto list = frame.legend ? entries(s) : std::vector<Entry>{};
     const auto where = seats(list, frame.width);
     const double legend = where.empty() ? 0 : strip * (where.back().line + 1);
@@ -417,15 +427,16 @@ std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& vie
     for (const auto& view : views) {
         const Extent e = extent(s, Plane(view.towards_viewer));
         scale = std::min(scale, (frame.width - 2 * margin) / e.width());
-        if (frame.height > 0) scale = std::min(scale, (frame.height - legend - 2 * margin) / e.height());
+        if (frame.height > 0)
+            scale = std::min(scale, (frame.height - legend - 2 * margin) / e.height());
     }
     std::vector<Figure> figures;
     for (const auto& view : views) {
         const Plane plane(view.towards_viewer);
         const Extent e = extent(s, plane);
-        const double height = frame.height > 0
-                                  ? frame.height
-                                  : std::max(std::ceil(e.height() * scale + 2 * margin + legend), 170.0);
+        const double height =
+            frame.height > 0 ? frame.height
+                             : std::max(std::ceil(e.height() * scale + 2 * margin + legend), 170.0);
         const double x = (e.left + e.right) / 2 - frame.width / scale / 2,
                      y = (e.bottom + e.top) / 2 - (height + legend) / scale / 2;
         Board board{plane, x, y, scale};

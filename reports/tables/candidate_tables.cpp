@@ -6,11 +6,11 @@
 #include <cmath>
 #include <iterator>
 
-#include "compare/readings.hpp"
-#include "reports/page/numbers.hpp"
+#include "compare/outputs/readings.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -36,7 +36,9 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
         const auto& branch =
             *std::ranges::find(comparison.branches, w.branch, &compare::BranchComparison::branch);
         const std::string by =
-            branch.abscissa < 0 ? "" : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
+            branch.abscissa < 0
+                ? ""
+                : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
         const bool parameter = w.kind == compare::ReadingKind::equal_parameter;
         const bool hardly = w.max > w.limit && w.max < 1.1 * w.limit;  // shown with more digits
         const std::string size = std::isnan(w.max) ? "a number that is none"
@@ -47,14 +49,16 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
             "{}{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size,
             w.extent > 0 ? fmt::format(", {} of its extent", percent(w.max / w.extent)) : "",
             spaced(w.channel), w.branch,
-            parameter ? compare::parameter_reading(symbol(branch.unit)) : compare::abscissa_reading(by));
+            parameter ? compare::parameter_reading(symbol(branch.unit))
+                      : compare::abscissa_reading(by));
     }
     return text;
 }
 
 std::string joined(const std::vector<std::string>& list, std::size_t most) {
     std::string text;
-    for (std::size_t k = 0; k < list.size() && k < most; ++k) text += (k == 0 ? "" : "; ") + list[k];
+    for (std::size_t k = 0; k < list.size() && k < most; ++k)
+        text += (k == 0 ? "" : "; ") + list[k];
     if (list.size() > most) text += fmt::format("; and {} more", list.size() - most);
     return text;
 }
@@ -68,7 +72,8 @@ void leftover_line(const compare::Leftover& left, std::string& text) {
         double force = 0, moment = 0, length = 0, direction = 0, at = left.a.front();
         for (std::size_t k = 0; k < of.size(); ++k) {
             if (compare::worse(of[k].force, force) != force) at = left.a[k];
-            force = compare::worse(of[k].force, force), moment = compare::worse(of[k].moment, moment);
+            force = compare::worse(of[k].force, force),
+            moment = compare::worse(of[k].moment, moment);
             length = compare::worse(of[k].length, length),
             direction = compare::worse(of[k].direction, direction);
         }
@@ -76,14 +81,16 @@ void leftover_line(const compare::Leftover& left, std::string& text) {
             return std::isnan(x) ? std::string("-") : fmt::format("{:.1e}", x);
         };
         text += fmt::format(
-            "  its states in the {} leg's equations: force {} N{}, moment {} N·m, constraints {} mm, {}\n",
+            "  its states in the {} leg's equations: force {} N{}, moment {} N·m, constraints {} "
+            "mm, {}\n",
             who, number(force),
-            std::isnan(force) ? "" : fmt::format(" (at {:.6g} {})", at, symbol(left.unit)), number(moment),
-            number(1e3 * length), number(direction));
+            std::isnan(force) ? "" : fmt::format(" (at {:.6g} {})", at, symbol(left.unit)),
+            number(moment), number(1e3 * length), number(direction));
     };
     line("equilibrium", left.truth);
     line(name(left.second), left.by_second);
-    if (!left.why_not.empty()) text += fmt::format("  some of its states are not judged: {}\n", left.why_not);
+    if (!left.why_not.empty())
+        text += fmt::format("  some of its states are not judged: {}\n", left.why_not);
 }
 
 // Largest imbalance of the states in the equilibrium leg [N], [N·m]; 0 without states; NaN is
@@ -103,42 +110,47 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
     std::string partly =
         j.not_given.empty() ? "" : fmt::format(" It does not give {}.", joined(j.not_given, 3));
     if (j.outside > 0)
-        partly += fmt::format(" {} of its points {} where the full solution does not come.", j.outside,
-                              j.outside == 1 ? "lies" : "lie");
+        partly += fmt::format(" {} of its points {} where the full solution does not come.",
+                              j.outside, j.outside == 1 ? "lies" : "lie");
     // Forces are judged where they have a tolerance; a state out of balance is reported in any
     // case.
     constexpr double balanced = 1e-2;  // [N], [N·m]: imbalance of poses accurate to the last digit
     const auto [force, moment] = imbalance(j);
     const bool in_balance = !(force > balanced) && !(moment > balanced);
     if (!in_balance)
-        partly +=
-            fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.", force, moment);
+        partly += fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.",
+                              force, moment);
     if (j.others == 0 && j.has_forces) partly += " No force or moment was compared.";
     const std::string hints = j.said.empty() ? "" : fmt::format(" {}.", joined(j.said, 4));
     switch (j.verdict) {
         case Grade::not_judged:
-            return fmt::format(
-                "Not judged: {}{}.{}", j.reasons.front(),
-                j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "",
-                hints);
+            return fmt::format("Not judged: {}{}.{}", j.reasons.front(),
+                               j.reasons.size() > 1
+                                   ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)
+                                   : "",
+                               hints);
         case Grade::pass:
             if (in_balance && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
                     return w.max < (w.extent > 0 ? 1e-6 * w.extent : 1e-9);
                 }))
                 return fmt::format(
-                    "Pass: {} is the full solution{}, within the arithmetic; the tolerance is {}.{}", who,
-                    j.not_given.empty() ? "" : " where it says something", tolerance_of(j), partly);
-            return fmt::format("Pass: {} is within {} of the full solution{}, off by at most {}.{}", who,
-                               tolerance_of(j),
+                    "Pass: {} is the full solution{}, within the arithmetic; the tolerance is "
+                    "{}.{}",
+                    who, j.not_given.empty() ? "" : " where it says something", tolerance_of(j),
+                    partly);
+            return fmt::format("Pass: {} is within {} of the full solution{}, off by at most {}.{}",
+                               who, tolerance_of(j),
                                j.not_given.empty() ? " everywhere" : " where it says something",
                                worst_of(j, comparison), partly);
         case Grade::fail:
-            if (!j.said.empty() &&
-                std::ranges::all_of(j.worst, [](const CandidateWorst& w) { return w.max <= w.limit; }))
+            if (!j.said.empty() && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
+                    return w.max <= w.limit;
+                }))
                 return fmt::format("Fail: {} is no solution: {}. The tolerance is {}.{}", who,
                                    joined(j.said, 4), tolerance_of(j), partly);
-            return fmt::format("Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}",
-                               who, worst_of(j, comparison), tolerance_of(j), hints, partly);
+            return fmt::format(
+                "Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}", who,
+                worst_of(j, comparison), tolerance_of(j), hints, partly);
     }
     return {};
 }
@@ -166,10 +178,11 @@ compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
                 double& side = channel.unit == Unit::deg ? worst.deg : worst.mm;
                 side = std::isnan(side) ? d.max : compare::worse(d.max, side);
             }
-        table.rows.push_back({static_cast<double>(run.steps), worst.mm, worst.deg,
-                              std::string(compare::name(run.judgement.verdict)), run.seconds, run.cpu,
-                              run.seconds / run.leg_seconds,
-                              run.judgement.reasons.empty() ? std::string() : run.judgement.reasons.front()});
+        table.rows.push_back(
+            {static_cast<double>(run.steps), worst.mm, worst.deg,
+             std::string(compare::name(run.judgement.verdict)), run.seconds, run.cpu,
+             run.seconds / run.leg_seconds,
+             run.judgement.reasons.empty() ? std::string() : run.judgement.reasons.front()});
     }
     return table;
 }
@@ -196,15 +209,18 @@ std::string candidate_text(const CandidateJudgement& j, const compare::Compariso
                            symbol(branch.unit));
         fmt::format_to(out, "\n\n");
         const compare::Channel* by =
-            branch.abscissa < 0 ? nullptr : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
+            branch.abscissa < 0 ? nullptr
+                                : &comparison.channels[static_cast<std::size_t>(branch.abscissa)];
         const CandidateReading &load = branch.equal_parameter, &travel = branch.equal_abscissa;
         const std::string by_load = compare::parameter_reading(symbol(branch.unit)),
                           by_travel = compare::abscissa_reading(by == nullptr ? "" : by->name);
         if (!load.columns.empty() || !travel.columns.empty()) {
-            fmt::format_to(out, "  {:<30}{:>11}   {:<36}   {}\n", "the candidate's", "", by_load, by_travel);
-            fmt::format_to(out, "  {:<30}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}\n", "deviation",
-                           "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share", "max",
-                           fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share");
+            fmt::format_to(out, "  {:<30}{:>11}   {:<36}   {}\n", "the candidate's", "", by_load,
+                           by_travel);
+            fmt::format_to(
+                out, "  {:<30}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}\n", "deviation",
+                "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share", "max",
+                fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share");
             int hidden = 0;
             for (std::size_t c = 0; c < j.columns.size(); ++c) {
                 const auto& channel = comparison.channels[j.columns[c].channel];
@@ -222,15 +238,16 @@ std::string candidate_text(const CandidateJudgement& j, const compare::Compariso
                     ++hidden;
                     continue;
                 }
-                fmt::format_to(
-                    out, "  {:<30}{:>11.5g}   {}   {}\n",
-                    fmt::format("{} [{}]{}", channel.name, symbol(channel.unit), j.judged[c] ? "" : " *"),
-                    some.columns[c].range, cells(load), cells(travel));
+                fmt::format_to(out, "  {:<30}{:>11.5g}   {}   {}\n",
+                               fmt::format("{} [{}]{}", channel.name, symbol(channel.unit),
+                                           j.judged[c] ? "" : " *"),
+                               some.columns[c].range, cells(load), cells(travel));
             }
             text = text.substr(0, text.find_last_not_of(" \n") + 1) + "\n";
             if (std::ranges::find(j.judged, false) != j.judged.end())
-                fmt::format_to(out, "  * not judged: no main output, or no tolerance in its unit{}\n",
-                               hidden > 0 ? fmt::format("; {} more are off by less than 1e-6", hidden) : "");
+                fmt::format_to(
+                    out, "  * not judged: no main output, or no tolerance in its unit{}\n",
+                    hidden > 0 ? fmt::format("; {} more are off by less than 1e-6", hidden) : "");
         }
         for (const auto& [reading, how] : {std::pair{&load, &by_load}, {&travel, &by_travel}}) {
             if (!reading->not_compared.empty())

@@ -33,10 +33,13 @@ const std::vector<Shown> certify_columns{{"solver"},
 
 std::string what_is_proved(const compare::CertifyStudy& study) {
     return fmt::format(
-        "Proved: by interval arithmetic, that the model's equations of balance and constraint, with the "
+        "Proved: by interval arithmetic, that the model's equations of balance and constraint, "
+        "with the "
         "numbers stored "
-        "for it taken as exact, have a solution within {} of the solver's point, and no other as near as "
-        "\"alone within\" with idle motions and the sharing of redundant joints as there. Excluded: that "
+        "for it taken as exact, have a solution within {} of the solver's point, and no other as "
+        "near as "
+        "\"alone within\" with idle motions and the sharing of redundant joints as there. "
+        "Excluded: that "
         "they have none there. A proved curve has no gap between the points. Not "
         "proved: that "
         "the equations are the suspension's, or its numbers right.",
@@ -48,19 +51,23 @@ std::string sentence(const compare::CertifyStudy& study) {
     if (study.excluded()) {
         int excluded = 0;
         for (const auto& way : study.ways) excluded += way.tally.excluded;
-        return fmt::format("Wrong: {} of {} points are provably no equilibrium to {}; {} are proved to be.",
-                           excluded, points, claim(study.tolerance), proved);
+        return fmt::format(
+            "Wrong: {} of {} points are provably no equilibrium to {}; {} are proved to be.",
+            excluded, points, claim(study.tolerance), proved);
     }
     if (study.conclusive())
-        return fmt::format("Proved: all {} points are equilibria to {}.", points, claim(study.tolerance));
+        return fmt::format("Proved: all {} points are equilibria to {}.", points,
+                           claim(study.tolerance));
     if (points == 0) return "Not proved: no point was found.";
     if (proved == points)
         return fmt::format(
-            "Not all is proved: {} that were found {} to {}, and some was not found, or not judged.",
+            "Not all is proved: {} that were found {} to {}, and some was not found, or not "
+            "judged.",
             points == 1 ? "the one point" : fmt::format("all {} points", points),
             points == 1 ? "is an equilibrium" : "are equilibria", claim(study.tolerance));
-    return fmt::format("Not all is proved: {} of {} points are equilibria to {}, the others are open.",
-                       proved, points, claim(study.tolerance));
+    return fmt::format(
+        "Not all is proved: {} of {} points are equilibria to {}, the others are open.", proved,
+        points, claim(study.tolerance));
 }
 
 std::string certify_text(const compare::CertifyStudy& study) {
@@ -75,22 +82,26 @@ std::string certify_text(const compare::CertifyStudy& study) {
             if (way.branch != branch) continue;
             const char* unit = symbol(way.unit);
             if (way.curve && way.curve->answer == compare::Answer::proved)
-                fmt::format_to(out, "  one curve of equilibria is proved from {:.10g} to {:.10g} {}{}\n",
-                               in_unit(way.unit) * way.curve->from + 0.0, in_unit(way.unit) * way.curve->to,
-                               unit, way.curve->corners > 0 ? ", over corners of laws" : "");
+                fmt::format_to(
+                    out, "  one curve of equilibria is proved from {:.10g} to {:.10g} {}{}\n",
+                    in_unit(way.unit) * way.curve->from + 0.0, in_unit(way.unit) * way.curve->to,
+                    unit, way.curve->corners > 0 ? ", over corners of laws" : "");
             if (way.limit && way.limit->answer == compare::Answer::proved)
                 fmt::format_to(out, "  a limit point is proved, between {:.16g} and {:.16g} {}\n",
-                               in_unit(way.unit) * way.limit->from, in_unit(way.unit) * way.limit->to, unit);
-            for (const std::string& what : {way.detail, way.tally.not_proved,
-                                            way.curve && way.curve->answer != compare::Answer::proved
-                                                ? "the curve: " + way.curve->detail
-                                                : std::string(),
-                                            way.limit && way.limit->answer != compare::Answer::proved
-                                                ? "the limit point: " + way.limit->detail
-                                                : std::string()})
+                               in_unit(way.unit) * way.limit->from,
+                               in_unit(way.unit) * way.limit->to, unit);
+            for (const std::string& what :
+                 {way.detail, way.tally.not_proved,
+                  way.curve && way.curve->answer != compare::Answer::proved
+                      ? "the curve: " + way.curve->detail
+                      : std::string(),
+                  way.limit && way.limit->answer != compare::Answer::proved
+                      ? "the limit point: " + way.limit->detail
+                      : std::string()})
                 if (!what.empty()) fmt::format_to(out, "  {}: {}\n", way.solver, what);
             // The theorems of the other solvers' points hold about the same motions.
-            if (!way.tally.theorem.empty() && !said) fmt::format_to(out, "  {}\n", way.tally.theorem);
+            if (!way.tally.theorem.empty() && !said)
+                fmt::format_to(out, "  {}\n", way.tally.theorem);
             said = said || !way.tally.theorem.empty();
         }
         all += '\n';

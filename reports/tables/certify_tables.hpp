@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/certify.hpp"
+#include "compare/proofs/certify.hpp"
 #include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "compare/findings.hpp"
-#include "compare/readings.hpp"
+#include "compare/outputs/readings.hpp"
+#include "compare/studies/findings.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -35,7 +35,8 @@ std::string value_or_zero(double value) {
 }
 
 // Displayed channels: every main one, and the worst force and moment component of each joint.
-std::vector<std::size_t> shown(const compare::Comparison& all, const compare::BranchComparison& branch,
+std::vector<std::size_t> shown(const compare::Comparison& all,
+                               const compare::BranchComparison& branch,
                                const compare::Reading& reading) {
     std::vector<std::size_t> rows;
     for (std::size_t c = 0; c < all.channels.size(); ++c)
@@ -51,8 +52,9 @@ std::vector<std::size_t> shown(const compare::Comparison& all, const compare::Br
             rows.push_back(c);
         }
     }
-    std::erase_if(rows,
-                  [&](std::size_t c) { return !all.channels[c].main && reading.channels[c].max < 1e-6; });
+    std::erase_if(rows, [&](std::size_t c) {
+        return !all.channels[c].main && reading.channels[c].max < 1e-6;
+    });
     return rows;
 }
 
@@ -73,14 +75,14 @@ void deviation_table(const compare::Comparison& all, const compare::BranchCompar
     fmt::format_to(out, "  {:<24}{:>11}   {:<36}   {:<36}   {}\n", "the recursion's", "",
                    compare::parameter_reading(symbol(branch.unit)), by_abscissa, "the references'");
     fmt::format_to(out, "  {:<24}{:>11}   {:>9}{:>9}{:>9}{:>9}   {:>9}{:>9}{:>9}{:>9}   {:>11}\n",
-                   "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms", "share",
-                   "max", fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)), "rms", "share",
-                   "uncertainty");
+                   "deviation", "range", "max", fmt::format("at {}", symbol(branch.unit)), "rms",
+                   "share", "max", fmt::format("at {}", by == nullptr ? "" : symbol(by->unit)),
+                   "rms", "share", "uncertainty");
     for (const std::size_t c : shown(all, branch, load)) {
         const auto& d = load.channels[c];
         fmt::format_to(out, "  {:<24}{:>11.5g}   {}   ",
-                       fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)), d.range,
-                       deviation_cells(d));
+                       fmt::format("{} [{}]", all.channels[c].name, symbol(all.channels[c].unit)),
+                       d.range, deviation_cells(d));
         if (travel.channels.empty()) {
             fmt::format_to(out, "{:<36}", "-");
         } else {
@@ -104,19 +106,21 @@ std::string solver_of(const compare::LegRun& run) {
 
 void legs_table(const compare::BranchComparison& branch, std::string& text) {
     const auto out = std::back_inserter(text);
-    fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10}   {}\n", "leg", "outcome", "points",
-                   "factor.", "iter.", "eval.", "ms",
+    fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10}   {}\n", "leg", "outcome",
+                   "points", "factor.", "iter.", "eval.", "ms",
                    "its states in the others' equations: force N, moment N·m, constraint mm");
     for (const auto& run : branch.runs) {
         fmt::format_to(out, "  {:<13}{:<18}{:>8}{:>9}{:>9}{:>9}{:>10.1f}   ", solver_of(run),
-                       elastocheck::name(run.outcome), run.curve.a.size(), run.counts.factorisations,
-                       run.counts.iterations, run.counts.evaluations, 1e3 * run.seconds);
+                       elastocheck::name(run.outcome), run.curve.a.size(),
+                       run.counts.factorisations, run.counts.iterations, run.counts.evaluations,
+                       1e3 * run.seconds);
         for (const Leg by : compare::legs) {
             if (by == run.leg) continue;
             const auto& r = run.judged[static_cast<std::size_t>(by)];
             if (run.curve.a.empty()) continue;  // no points to judge
             if (by == Leg::energy && branch.second != Leg::energy) continue;
-            fmt::format_to(out, "{}: {:.1e} {:.1e} {:.1e}   ", name(by), r.force, r.moment, 1e3 * r.length);
+            fmt::format_to(out, "{}: {:.1e} {:.1e} {:.1e}   ", name(by), r.force, r.moment,
+                           1e3 * r.length);
         }
         text.erase(text.find_last_not_of(' ') + 1);
         fmt::format_to(out, "\n");
@@ -124,7 +128,7 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
 }
 
 // Messages from the error bounds of the points: predicted singular points, exceeded tolerances.
-void accounts(const compare::BranchComparison& branch, std::string& text) {
+void error_bounds(const compare::BranchComparison& branch, std::string& text) {
     for (const auto& run : branch.runs)
         for (const auto& line : run.told) text += fmt::format("  {}: {}\n", solver_of(run), line);
 }
@@ -135,10 +139,11 @@ void proofs(const compare::BranchComparison& branch, std::string& text) {
     for (const auto& run : branch.runs) {
         const compare::Tally& t = run.proved;
         if (t.points == 0) continue;
-        line += fmt::format("{} {} {} of {}", line.empty() ? "  proved:" : ",", name(run.leg), t.proved,
-                            t.points);
+        line += fmt::format("{} {} {} of {}", line.empty() ? "  proved:" : ",", name(run.leg),
+                            t.proved, t.points);
         if (t.proved > 0) line += fmt::format(" within {:.1e} mm", 1e3 * t.error.length);
-        if (t.excluded > 0) line += fmt::format(" ({} provably off by more than 1e-6 mm or deg)", t.excluded);
+        if (t.excluded > 0)
+            line += fmt::format(" ({} provably off by more than 1e-6 mm or deg)", t.excluded);
     }
     if (!line.empty()) text += line + '\n';
     std::string before;
@@ -158,8 +163,9 @@ void rates(const std::vector<compare::RateError>& errors, const compare::BranchC
         const auto rate = [](double k, double off) {
             return fmt::format("{:.4g} N/mm ({} %)", k, signed_value(100 * off));
         };
-        text += fmt::format("  wheel rate{} from 0 to {:g} {}: {}", e.wheel.empty() ? "" : " " + e.wheel,
-                            e.to, symbol(e.unit), rate(e.wheel_rate, e.off));
+        text += fmt::format("  wheel rate{} from 0 to {:g} {}: {}",
+                            e.wheel.empty() ? "" : " " + e.wheel, e.to, symbol(e.unit),
+                            rate(e.wheel_rate, e.off));
         if (std::isfinite(e.ride_rate)) text += "; ride rate: " + rate(e.ride_rate, e.ride_off);
         text += '\n';
     }
@@ -169,7 +175,8 @@ void rates(const std::vector<compare::RateError>& errors, const compare::BranchC
 std::string recursion_of(const compare::Comparison& comparison) {
     const std::string method =
         comparison.branches.empty() ? "" : comparison.branches.front().runs.front().method;
-    return method.empty() || method == "published" ? "eq. (29)" : fmt::format("the method '{}'", method);
+    return method.empty() || method == "published" ? "eq. (29)"
+                                                   : fmt::format("the method '{}'", method);
 }
 
 // The substitute of the energy leg, and where it is used.
@@ -184,14 +191,16 @@ std::string instead_of_energy(const compare::Comparison& comparison) {
 
 // The judging legs where the energy leg computes no states, and the reason.
 std::string not_asked(const compare::BranchComparison& branch) {
-    const std::string who = fmt::format("  the equilibrium leg and {} judge each other", name(branch.second));
+    const std::string who =
+        fmt::format("  the equilibrium leg and {} judge each other", name(branch.second));
     if (!energy_bears_witness(branch))
         return fmt::format("{}; no energy exists: {}\n", who, branch.not_asked);
     const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
     const compare::Bounds& b = branch.bounds;
     return fmt::format(
         "{}; {}\n  the energy leg is a witness: the equilibrium leg's states leave {:.2g} N, "
-        "{:.2g} N·m, {:.2g} mm in its equations, at most {:.2g} N, {:.2g} N·m, {:.2g} mm are allowed\n",
+        "{:.2g} N·m, {:.2g} mm in its equations, at most {:.2g} N, {:.2g} N·m, {:.2g} mm are "
+        "allowed\n",
         who, branch.not_asked, left.force, left.moment, 1e3 * left.length, b.residual_force,
         b.residual_moment, b.residual_length);
 }
@@ -199,22 +208,23 @@ std::string not_asked(const compare::BranchComparison& branch) {
 }  // namespace
 
 std::string deviation_cells(const compare::Deviation& d) {
-    return fmt::format("{:>9}{:>9.4g}{:>9}{:>9}", signed_value(d.signed_max), d.at, value_or_zero(d.rms),
-                       share(d.max, d.range));
+    return fmt::format("{:>9}{:>9.4g}{:>9}{:>9}", signed_value(d.signed_max), d.at,
+                       value_or_zero(d.rms), share(d.max, d.range));
 }
 
 std::string tables(const Model& model, const compare::Comparison& comparison) {
     std::string text;
     const auto out = std::back_inserter(text);
-    fmt::format_to(out,
-                   "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
-                   "the equilibrium leg;\n"
-                   "share: of the channel's range over the branch; uncertainty: the energy leg{} against the "
-                   "equilibrium leg;\n"
-                   "rates: of the reference, with the recursion's error.\n",
-                   model.name, coordinates(model), constraint_rows(model),
-                   coordinates(model) + constraint_rows(model), recursion_of(comparison),
-                   instead_of_energy(comparison));
+    fmt::format_to(
+        out,
+        "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
+        "the equilibrium leg;\n"
+        "share: of the channel's range over the branch; uncertainty: the energy leg{} against the "
+        "equilibrium leg;\n"
+        "rates: of the reference, with the recursion's error.\n",
+        model.name, coordinates(model), constraint_rows(model),
+        coordinates(model) + constraint_rows(model), recursion_of(comparison),
+        instead_of_energy(comparison));
     const auto errors = compare::rate_errors(model, comparison);
     for (std::size_t k = 0; k < comparison.branches.size(); ++k) {
         const auto& branch = comparison.branches[k];
@@ -224,14 +234,17 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\nbranch '{}': {:g} to {:g} {}", branch.branch, unit * definition.from,
                        unit * definition.to, symbol(branch.unit));
         if (branch.every > 1)
-            fmt::format_to(out, " in {} steps, compared after each {} of a way", branch.steps, branch.every);
+            fmt::format_to(out, " in {} steps, compared after each {} of a way", branch.steps,
+                           branch.every);
         else if (!steps.empty())
             fmt::format_to(out, " in {} steps", steps.size() - 1);
         if (!steps.empty()) {  // in the order of the parameter
             const auto [low, high] = std::ranges::minmax(steps);
-            const double length = unit * std::abs(definition.to - definition.from), rounding = 1e-9 * length;
+            const double length = unit * std::abs(definition.to - definition.from),
+                         rounding = 1e-9 * length;
             if (high - low < length - rounding)
-                fmt::format_to(out, ", reached from {:g} to {:g} {}", low, high, symbol(branch.unit));
+                fmt::format_to(out, ", reached from {:g} to {:g} {}", low, high,
+                               symbol(branch.unit));
         }
         const auto& reference = branch.runs[1].curve;
         if (branch.abscissa >= 0 && !branch.deviation.equal_abscissa.channels.empty()) {
@@ -240,8 +253,8 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
             const double from = rounded(reference.values.front()[c]),
                          to = rounded(reference.values.back()[c]);
             if (from != to)  // almost constant: no range
-                fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name, from, to,
-                               symbol(comparison.channels[c].unit));
+                fmt::format_to(out, ", {} {:.2f} to {:.2f} {}", comparison.channels[c].name, from,
+                               to, symbol(comparison.channels[c].unit));
         }
         fmt::format_to(out, "\n\n");
         deviation_table(comparison, branch, text);
@@ -249,9 +262,10 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\n");
         legs_table(branch, text);
         proofs(branch, text);
-        accounts(branch, text);
+        error_bounds(branch, text);
         if (!branch.not_asked.empty()) text += not_asked(branch);
-        fmt::format_to(out, "  the references have to agree: {}\n", compare::describe(branch.bounds));
+        fmt::format_to(out, "  the references have to agree: {}\n",
+                       compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())
             fmt::format_to(out, "  inconclusive: {}\n", reason);
     }

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "compare/compare.hpp"
-#include "models/model.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/model.hpp"
 
 namespace elastocheck::reports {
 

@@ -21,7 +21,8 @@ std::string numbers(const std::vector<double>& values) {
 std::string curves_header(const std::vector<compare::Channel>& channels) {
     std::string line = "branch,leg,parameter,unit";
     for (const auto& channel : channels)
-        line += fmt::format(",{}", for_csv(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
+        line +=
+            fmt::format(",{}", for_csv(fmt::format("{} [{}]", channel.name, symbol(channel.unit))));
     return line + "\n";
 }
 
@@ -34,14 +35,15 @@ std::string curves_row(const std::string& branch, compare::Leg leg, compare::Uni
 std::string rates_header(const std::vector<compare::Channel>& channels) {
     std::string line = "branch,parameter,parameter unit";
     for (const auto& channel : channels)
-        line += fmt::format(
-            ",{}", for_csv(fmt::format("{} [{} per parameter unit]", channel.name, symbol(channel.unit))));
+        line += fmt::format(",{}", for_csv(fmt::format("{} [{} per parameter unit]", channel.name,
+                                                       symbol(channel.unit))));
     return line + "\n";
 }
 
 std::string rates_row(const std::string& way, compare::Unit unit, double a,
                       const std::vector<double>& slopes) {
-    return fmt::format("{},{:.17g},{}{}\n", for_csv(way), in_unit(unit) * a, symbol(unit), numbers(slopes));
+    return fmt::format("{},{:.17g},{}{}\n", for_csv(way), in_unit(unit) * a, symbol(unit),
+                       numbers(slopes));
 }
 
 }  // namespace elastocheck::reports

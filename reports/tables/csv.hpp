@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/legs.hpp"
+#include "compare/comparison/legs.hpp"
 
 namespace elastocheck::reports {
 

@@ -25,7 +25,9 @@ struct Scale {
 };
 constexpr Scale lengths{1e-3, "mm", 1e3, "N/mm"}, angles{degree, "deg", 1 / degree, "N·m/deg"};
 
-std::string rate_words(double k, const Scale& s) { return fmt::format("{:.4g} {}", k / s.rate, s.rate_name); }
+std::string rate_words(double k, const Scale& s) {
+    return fmt::format("{:.4g} {}", k / s.rate, s.rate_name);
+}
 
 bool is_free(const std::array<double, 4>& piece) {
     return std::ranges::all_of(piece, [](double c) { return c == 0; });
@@ -43,11 +45,13 @@ std::string spring_words(const ScalarLaw& law) {
         overloaded{
             [](const LinearRate& u) { return "axial spring, " + rate_words(u.k, lengths); },
             [](const Curve& u) {
-                const bool open_short = is_free(u.pieces.front()), open_long = is_free(u.pieces.back());
+                const bool open_short = is_free(u.pieces.front()),
+                           open_long = is_free(u.pieces.back());
                 if (open_short == open_long) return "axial spring, " + range_words(u, lengths);
                 // End of the force-free side.
                 std::size_t n = 0;
-                while (n < u.knots.size() && is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
+                while (n < u.knots.size() &&
+                       is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
                     ++n;
                 const double touches = open_short ? u.knots[n - 1] : u.knots[u.knots.size() - n];
                 const auto& piece = open_short ? u.pieces[n] : u.pieces[u.knots.size() - n];
@@ -72,35 +76,38 @@ Resisted resisted(const SpatialLaw& law) {
     };
     std::visit(overloaded{[&](const LinearStiffness& u) {
                               for (std::size_t k = 0; k < 6; ++k)
-                                  if (!u.K.row(static_cast<Eigen::Index>(k)).isZero(0)) add(k, false);
+                                  if (!u.K.row(static_cast<Eigen::Index>(k)).isZero(0))
+                                      add(k, false);
                           },
                           [&](const PerAxis& u) {
                               for (std::size_t k = 0; k < 6; ++k)
-                                  std::visit(overloaded{[&](const LinearRate& l) {
-                                                            if (l.k != 0) add(k, false);
-                                                        },
-                                                        [&](const Curve& l) {
-                                                            if (!std::ranges::all_of(l.pieces, is_free))
-                                                                add(k, true);
-                                                        }},
-                                             u.axis[k]);
+                                  std::visit(
+                                      overloaded{[&](const LinearRate& l) {
+                                                     if (l.k != 0) add(k, false);
+                                                 },
+                                                 [&](const Curve& l) {
+                                                     if (!std::ranges::all_of(l.pieces, is_free))
+                                                         add(k, true);
+                                                 }},
+                                      u.axis[k]);
                           }},
                law);
     return found;
 }
 
 std::string law_words(const SpatialLaw& law, std::size_t k, const Scale& s) {
-    return std::visit(overloaded{[&](const LinearStiffness& u) {
-                                     const auto i = static_cast<Eigen::Index>(k);
-                                     return rate_words(u.K(i, i), s);
-                                 },
-                                 [&](const PerAxis& u) {
-                                     return std::visit(
-                                         overloaded{[&](const LinearRate& l) { return rate_words(l.k, s); },
-                                                    [&](const Curve& l) { return range_words(l, s); }},
-                                         u.axis[k]);
-                                 }},
-                      law);
+    return std::visit(
+        overloaded{[&](const LinearStiffness& u) {
+                       const auto i = static_cast<Eigen::Index>(k);
+                       return rate_words(u.K(i, i), s);
+                   },
+                   [&](const PerAxis& u) {
+                       return std::visit(
+                           overloaded{[&](const LinearRate& l) { return rate_words(l.k, s); },
+                                      [&](const Curve& l) { return range_words(l, s); }},
+                           u.axis[k]);
+                   }},
+        law);
 }
 
 std::string formulation_words(const Formulation& f) {
@@ -135,7 +142,7 @@ bool is_beam(const Elastic& elastic) {
 
 std::string bushing_words(const Written& written, const Elastic& elastic, const Bushing& bushing) {
     const Resisted axes = resisted(bushing.law);
-    if (elastic.only_where_driven && axes.all == std::vector<std::size_t>{2})
+    if (elastic.active_only_where_driven && axes.all == std::vector<std::size_t>{2})
         return fmt::format("tyre, {}, stands on the branches that drive its road",
                            law_words(bushing.law, 2, lengths));
     if (axes.all == std::vector<std::size_t>{5})
@@ -143,10 +150,12 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
     std::string text = is_beam(elastic) ? "beam" : "bushing";
     if (!is_beam(elastic)) {
         const auto as_written = written.find(elastic.name);
-        text += formulation_words(as_written != written.end() ? as_written->second : bushing.formulation);
+        text += formulation_words(as_written != written.end() ? as_written->second
+                                                              : bushing.formulation);
     }
     for (const std::size_t k : axes.curves)
-        text += fmt::format(", {}: {}", components[k], law_words(bushing.law, k, k < 3 ? lengths : angles));
+        text += fmt::format(", {}: {}", components[k],
+                            law_words(bushing.law, k, k < 3 ? lengths : angles));
     if (!bushing.undeformed.isZero(0)) text += ", undeformed elsewhere than drawn";
     return text;
 }
@@ -168,7 +177,11 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
         return b == ground ? std::string("ground") : model.bodies[static_cast<std::size_t>(b)].name;
     };
     const auto ends = [](const Elastic& elastic) {
-        return std::visit([](const auto& e) { return std::pair{e.i.body, e.j.body}; }, elastic.kind);
+        return std::visit(
+            [](const auto& e) {
+                return std::pair{e.i.body, e.j.body};
+            },
+            elastic.kind);
     };
     const Written written = written_formulations(scene);
     std::vector<ElementLine> lines;
@@ -184,17 +197,19 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
             ++last;
         if (last > k) {
             const Elastic& end = model.elastics[last];
-            lines.push_back(
-                {fmt::format("{} ... {}", elastic.name, last - k + static_cast<std::size_t>(number)),
-                 body(i) + " - " + body(ends(end).second), fmt::format("beam in {} segments", last - k + 1)});
+            lines.push_back({fmt::format("{} ... {}", elastic.name,
+                                         last - k + static_cast<std::size_t>(number)),
+                             body(i) + " - " + body(ends(end).second),
+                             fmt::format("beam in {} segments", last - k + 1)});
             k = last;
             continue;
         }
         lines.push_back(
             {elastic.name, body(i) + " - " + body(j),
-             std::visit(overloaded{[](const AxialSpring& e) { return spring_words(e.law); },
-                                   [&](const Bushing& e) { return bushing_words(written, elastic, e); }},
-                        elastic.kind)});
+             std::visit(
+                 overloaded{[](const AxialSpring& e) { return spring_words(e.law); },
+                            [&](const Bushing& e) { return bushing_words(written, elastic, e); }},
+                 elastic.kind)});
     }
     return lines;
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "models/model.hpp"
-#include "models/scene.hpp"
+#include "elastocheck/model.hpp"
+#include "elastocheck/scene.hpp"
 
 namespace elastocheck::reports {
 

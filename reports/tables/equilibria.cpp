@@ -24,20 +24,22 @@ double told(double value) { return std::isfinite(value) ? value : std::nan(""); 
 }  // namespace
 
 compare::Table equilibria_table(const AllEquilibria& all) {
-    compare::Table table{"equilibria",
-                         {{"number"},
-                          words("stability", "by the sign of the least stiffness"),
-                          {"away", "mm", "from that of the branch, or from where the branch ends"},
-                          {"turned", "deg", "likewise"},
-                          words("proof"),
-                          {"within", "mm", "the true equilibrium is as near as this, by proof"},
-                          {"alone within", "mm", "no other equilibrium is as near as this, by proof"},
-                          words("what it means")},
-                         {}};
+    compare::Table table{
+        "equilibria",
+        {{"number"},
+         words("stability", "by the sign of the least stiffness"),
+         {"away", "mm", "from that of the branch, or from where the branch ends"},
+         {"turned", "deg", "likewise"},
+         words("proof"),
+         {"within", "mm", "the true equilibrium is as near as this, by proof"},
+         {"alone within", "mm", "no other equilibrium is as near as this, by proof"},
+         words("what it means")},
+        {}};
     double number = 0;
     for (const auto& one : all.list)
-        table.rows.push_back({++number, one.stable ? "stable" : "unstable", 1e3 * one.length, deg * one.angle,
-                              name(one.proof.answer), told(1e3 * one.proof.error.length),
+        table.rows.push_back({++number, one.stable ? "stable" : "unstable", 1e3 * one.length,
+                              deg * one.angle, name(one.proof.answer),
+                              told(1e3 * one.proof.error.length),
                               told(1e3 * one.proof.unique.length), one.meaning});
     return table;
 }
@@ -64,11 +66,13 @@ std::string equilibria_text(const AllEquilibria& all) {
     for (const auto& one : all.list)
         if (one.proof.answer != reference::certificate::Answer::proved)
             fmt::format_to(out, "{}: {}\n", name(one.proof.answer), one.proof.detail);
-    fmt::format_to(out, "\n{} starts, deflated; that there are no others is not said\n", all.starts);
+    fmt::format_to(out, "\n{} starts, deflated; that there are no others is not said\n",
+                   all.starts);
     if (all.other_way_round > 0)
         fmt::format_to(out, "left out: {} with a joint put together the other way round\n",
                        all.other_way_round);
-    if (all.turned_over > 0) fmt::format_to(out, "left out: {} with a body turned over\n", all.turned_over);
+    if (all.turned_over > 0)
+        fmt::format_to(out, "left out: {} with a body turned over\n", all.turned_over);
     return text;
 }
 
@@ -78,8 +82,9 @@ json equilibria_json(const Model& model, const AllEquilibria& all) {
         json bodies = json::object();
         for (std::size_t b = 0; b < model.bodies.size(); ++b) {
             const Pose& pose = one.state.poses[b];
-            bodies[model.bodies[b].name] = {{"r", {1e3 * pose.r.x(), 1e3 * pose.r.y(), 1e3 * pose.r.z()}},
-                                            {"p", {pose.p.w(), pose.p.x(), pose.p.y(), pose.p.z()}}};
+            bodies[model.bodies[b].name] = {
+                {"r", {1e3 * pose.r.x(), 1e3 * pose.r.y(), 1e3 * pose.r.z()}},
+                {"p", {pose.p.w(), pose.p.x(), pose.p.y(), pose.p.z()}}};
         }
         poses.push_back(bodies);
     }

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/find_all.hpp"
-#include "compare/table.hpp"
+#include "compare/proofs/multiple_equilibria.hpp"
+#include "compare/tables/table.hpp"
 
 namespace elastocheck::reports {
 

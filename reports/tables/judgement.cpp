@@ -6,8 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
+#include "reports/page/common.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -36,7 +36,8 @@ std::string size(const Worst& worst, double limit) {
     if (worst.max > limit && worst.max < 1.1 * limit)
         return fmt::format("{:.6g} {}", worst.max, symbol(worst.unit));
     if (worst.max < nothing)
-        return worst.max > limit ? fmt::format("{:.1e} {}", worst.max, symbol(worst.unit)) : "nothing";
+        return worst.max > limit ? fmt::format("{:.1e} {}", worst.max, symbol(worst.unit))
+                                 : "nothing";
     return quantity(worst.max, symbol(worst.unit));
 }
 
@@ -47,12 +48,14 @@ std::string asked(const Assessment& j) {
 // "6.9 N, 7 % of its extent (rod.drive force, branch len)"
 std::string other_of(const Assessment& j) {
     const auto taken = [](const std::optional<Worst>& worst) {
-        return worst ? worst->max / (std::isfinite(worst->limit) ? worst->limit : worst->extent) : -1;
+        return worst ? worst->max / (std::isfinite(worst->limit) ? worst->limit : worst->extent)
+                     : -1;
     };
     const bool crosswise =
         !std::isnan(taken(j.other)) && !(taken(j.other_across) <= (1 + 1e-6) * taken(j.other));
     const auto& worst = crosswise ? j.other_across : j.other;
-    if (!worst || !(worst->max >= nothing_of_it * worst->extent || std::isnan(worst->max))) return "";
+    if (!worst || !(worst->max >= nothing_of_it * worst->extent || std::isnan(worst->max)))
+        return "";
     return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
                        percent(worst->max / worst->extent), spaced(worst->channel), worst->branch,
                        crosswise ? ", at equal position" : "");
@@ -62,14 +65,17 @@ std::string other_of(const Assessment& j) {
 // reading.
 std::string worst_of(const Assessment& j) {
     std::vector<std::string> parts;
-    for (const auto& [at, across, limit] : {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
-                                            std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
+    for (const auto& [at, across, limit] :
+         {std::tuple(&j.position, &j.position_across, j.tolerance.mm),
+          std::tuple(&j.angle, &j.angle_across, j.tolerance.deg)}) {
         const bool crosswise =
-            *across && (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (1 + 1e-6) * (*at)->max)));
+            *across &&
+            (!*at || (!std::isnan((*at)->max) && !((*across)->max <= (1 + 1e-6) * (*at)->max)));
         const auto& worst = crosswise ? *across : *at;
         if (!worst || (worst->max < nothing && worst->max <= limit)) continue;
-        parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit), spaced(worst->channel),
-                                    worst->branch, crosswise ? ", at equal position" : ""));
+        parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit),
+                                    spaced(worst->channel), worst->branch,
+                                    crosswise ? ", at equal position" : ""));
     }
     if (auto other = other_of(j); !other.empty()) parts.push_back(std::move(other));
     return parts.empty() ? "nothing" : enumerated(parts);
@@ -84,10 +90,11 @@ std::string rate_of(const Assessment& j) {
 
 // "; 84 outputs compared, 60 of them forces, moments and rates"
 std::string compared(const Assessment& j) {
-    const std::string others = j.others == 0
-                                   ? ", no force, moment or rate among them"
-                                   : fmt::format(", {} of them forces, moments and rates", j.others);
-    return fmt::format("{} {} compared{}", j.outputs, j.outputs == 1 ? "output" : "outputs", others);
+    const std::string others =
+        j.others == 0 ? ", no force, moment or rate among them"
+                      : fmt::format(", {} of them forces, moments and rates", j.others);
+    return fmt::format("{} {} compared{}", j.outputs, j.outputs == 1 ? "output" : "outputs",
+                       others);
 }
 
 json worst_json(const std::optional<Worst>& worst) {
@@ -111,7 +118,8 @@ std::string words(const compare::Tolerance& tolerance, bool others) {
     add(tolerance.newton, "N");
     add(tolerance.newton_metre, "N·m");
     if (others && std::isfinite(tolerance.share)) {
-        const bool force = std::isfinite(tolerance.newton), moment = std::isfinite(tolerance.newton_metre);
+        const bool force = std::isfinite(tolerance.newton),
+                   moment = std::isfinite(tolerance.newton_metre);
         parts.push_back(fmt::format("{} of the extent of {}", setting(100 * tolerance.share, "%"),
                                     force && moment ? "rates"
                                     : force         ? "moments and rates"
@@ -125,20 +133,24 @@ std::string sentence(const Assessment& j) {
     switch (j.verdict) {
         case Grade::not_judged: {
             const std::string more =
-                j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1) : "";
+                j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)
+                                     : "";
             return fmt::format("Not judged: {}{}. What is shown is no basis for a decision.",
-                               j.reasons.empty() ? "nothing was compared" : j.reasons.front(), more);
+                               j.reasons.empty() ? "nothing was compared" : j.reasons.front(),
+                               more);
         }
         case Grade::pass:
             if (j.exact)
-                return fmt::format("Pass: {} is exact here, within the arithmetic; the tolerance is {}; {}.",
-                                   subject(j), asked(j), compared(j));
+                return fmt::format(
+                    "Pass: {} is exact here, within the arithmetic; the tolerance is {}; {}.",
+                    subject(j), asked(j), compared(j));
             return fmt::format(
-                "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.", subject(j),
-                asked(j), worst_of(j), rate_of(j), compared(j));
+                "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.",
+                subject(j), asked(j), worst_of(j), rate_of(j), compared(j));
         case Grade::fail:
-            return fmt::format("Fail: {} is off from the full solution by up to {}{}. The tolerance is {}.",
-                               subject(j), worst_of(j), rate_of(j), asked(j));
+            return fmt::format(
+                "Fail: {} is off from the full solution by up to {}{}. The tolerance is {}.",
+                subject(j), worst_of(j), rate_of(j), asked(j));
     }
     return {};
 }
@@ -146,9 +158,12 @@ std::string sentence(const Assessment& j) {
 json judgement_json(const Assessment& j) {
     json rate = nullptr;
     if (j.wheel_rate)
-        rate = {{"branch", j.wheel_rate->branch}, {"wheel", j.wheel_rate->wheel},
-                {"to", j.wheel_rate->to},         {"unit", symbol(j.wheel_rate->unit)},
-                {"off", j.wheel_rate->off},       {"as_position_mm", compare::as_position(*j.wheel_rate)}};
+        rate = {{"branch", j.wheel_rate->branch},
+                {"wheel", j.wheel_rate->wheel},
+                {"to", j.wheel_rate->to},
+                {"unit", symbol(j.wheel_rate->unit)},
+                {"off", j.wheel_rate->off},
+                {"as_position_mm", compare::as_position(*j.wheel_rate)}};
     return {{"verdict", compare::name(j.verdict)},
             {"sentence", sentence(j)},
             {"method", j.method},

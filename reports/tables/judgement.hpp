@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/judgement.hpp"
+#include "compare/candidate/judgement.hpp"
 
 namespace elastocheck::reports {
 

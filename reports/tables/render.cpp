@@ -42,8 +42,8 @@ std::string written(double value, Digits digits) {
 
 // Characters, not bytes: most characters allowed in names are one column wide.
 std::size_t width(std::string_view text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace
@@ -57,8 +57,9 @@ std::string csv(const Table& table) {
     for (const auto& row : table.rows) {
         for (std::size_t c = 0; c < row.size(); ++c) {
             const auto* value = std::get_if<double>(&row[c]);
-            lines += fmt::format("{}{}", c > 0 ? "," : "",
-                                 value != nullptr ? exact(*value) : for_csv(std::get<std::string>(row[c])));
+            lines += fmt::format(
+                "{}{}", c > 0 ? "," : "",
+                value != nullptr ? exact(*value) : for_csv(std::get<std::string>(row[c])));
         }
         lines += "\n";
     }
@@ -72,7 +73,8 @@ json table_json(const Table& table) {
             {{"name", column.name}, {"unit", column.unit}, {"description", column.description}});
     for (const auto& row : table.rows) {
         json cells = json::array();
-        for (const auto& cell : row) std::visit([&](const auto& value) { cells.push_back(value); }, cell);
+        for (const auto& cell : row)
+            std::visit([&](const auto& value) { cells.push_back(value); }, cell);
         rows.push_back(std::move(cells));
     }
     return {{"columns", std::move(columns)}, {"rows", std::move(rows)}};

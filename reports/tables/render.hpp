@@ -1,4 +1,4 @@
-// Renders a study's table (compare/table.hpp) as CSV, JSON and text, and reads it back from JSON. A
+// Renders a study's table (compare/tables/table.hpp) as CSV, JSON and text, and reads it back from JSON. A
 // missing number is an empty cell, null, and a dash.
 #pragma once
 
@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/table.hpp"
-#include "reports/document/field.hpp"
+#include "compare/tables/table.hpp"
+#include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::reports {
 

@@ -60,7 +60,8 @@ Table only(const Table& table, const std::vector<std::string>& names) {
     for (const auto& name : names) {
         const std::size_t c = column(table, name);
         some.columns.push_back(table.columns[c]);
-        for (std::size_t r = 0; r < table.rows.size(); ++r) some.rows[r].push_back(table.rows[r][c]);
+        for (std::size_t r = 0; r < table.rows.size(); ++r)
+            some.rows[r].push_back(table.rows[r][c]);
     }
     return some;
 }
@@ -93,8 +94,9 @@ Table spread(const Table& table, std::string_view across, const std::vector<std:
             std::vector<Cell> fresh;
             for (const std::size_t c : keys) fresh.push_back(row[c]);
             for (std::size_t c = keys.size(); c < wide.columns.size(); ++c)
-                fresh.push_back(wide.columns[c].words ? Cell(std::string())
-                                                      : Cell(std::numeric_limits<double>::quiet_NaN()));
+                fresh.push_back(wide.columns[c].words
+                                    ? Cell(std::string())
+                                    : Cell(std::numeric_limits<double>::quiet_NaN()));
             wide.rows.push_back(std::move(fresh));
             into = wide.rows.end() - 1;
         }

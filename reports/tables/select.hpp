@@ -1,11 +1,11 @@
-// Rows and cells of a study's table (compare/table.hpp).
+// Rows and cells of a study's table (compare/tables/table.hpp).
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "compare/table.hpp"
+#include "compare/tables/table.hpp"
 
 namespace elastocheck::reports {
 

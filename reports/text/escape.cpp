@@ -19,14 +19,14 @@ struct Character {
         return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0x2028 || code == 0x2029;
     }
     bool turns_writing() const {
-        return code == 0x061C || code == 0x200E || code == 0x200F || (code >= 0x202A && code <= 0x202E) ||
-               (code >= 0x2066 && code <= 0x2069);
+        return code == 0x061C || code == 0x200E || code == 0x200F ||
+               (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
     }
     // Starts a spreadsheet formula at the beginning of a cell; the last four are the full-width
     // forms.
     bool begins_formula() const {
-        return code == '=' || code == '+' || code == '-' || code == '@' || code == 0xFF1D || code == 0xFF0B ||
-               code == 0xFF0D || code == 0xFF20;
+        return code == '=' || code == '+' || code == '-' || code == '@' || code == 0xFF1D ||
+               code == 0xFF0B || code == 0xFF0D || code == 0xFF20;
     }
     bool plain() const { return valid && !control() && !turns_writing(); }
 };
@@ -120,12 +120,14 @@ std::string for_markdown(std::string_view text) {
         if (!c.plain())
             return std::string(c.code == '\n' || c.code == '\r' || c.code == '\t' ? " " : stand_in);
         const auto at = static_cast<std::size_t>(c.bytes.data() - whole.data());
-        const bool list = (at == 0 && (c.code == '-' || c.code == '+' || c.code == '=') && ends(same) &&
-                           whole.size() > 1) ||
-                          (at == digits && at > 0 && (c.code == '.' || c.code == ')') && ends(at + 1));
+        const bool list =
+            (at == 0 && (c.code == '-' || c.code == '+' || c.code == '=') && ends(same) &&
+             whole.size() > 1) ||
+            (at == digits && at > 0 && (c.code == '.' || c.code == ')') && ends(at + 1));
         const bool link = (c.code == ':' && whole.substr(at).starts_with("://")) ||
                           (c.code == '.' && at >= 3 && whole.substr(at - 3, 3) == "www");
-        const bool markup = std::string_view("\\`*_[]<>#|~&$").find(c.bytes) != std::string_view::npos;
+        const bool markup =
+            std::string_view("\\`*_[]<>#|~&$").find(c.bytes) != std::string_view::npos;
         return fmt::format("{}{}", markup || list || link ? "\\" : "", c.bytes);
     });
 }

@@ -7,11 +7,11 @@
 
 #include <ctime>
 
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "reference/certificate/certificate.hpp"
 
 namespace {
@@ -26,8 +26,8 @@ double now() {
 }
 
 void raise(Extent& to, const Extent& by) {
-    to = {std::max(to.length, by.length), std::max(to.angle, by.angle), std::max(to.force, by.force),
-          std::max(to.moment, by.moment)};
+    to = {std::max(to.length, by.length), std::max(to.angle, by.angle),
+          std::max(to.force, by.force), std::max(to.moment, by.moment)};
 }
 
 struct Points {
@@ -40,12 +40,12 @@ struct Points {
 void table(const std::string& file, int count) {
     const Model model = compile(compare::trim(read_scene(file)).scene);
     for (const auto& branch : model.branches)
-        for (const auto& way : compare::ways_of(model, branch, count)) {
-            compare::Gait gait;
-            gait.leg = compare::Leg::equilibrium;
+        for (const auto& way : compare::sides_of(model, branch, count)) {
+            compare::SolverSettings solver;
+            solver.leg = compare::Leg::equilibrium;
             Points points;
             const double start = now();
-            const auto path = compare::walk(way, gait);
+            const auto path = compare::walk(way, solver);
             points.leg = now() - start;
             for (const auto& state : path.points) {
                 const double from = now();
@@ -61,12 +61,14 @@ void table(const std::string& file, int count) {
             const Tube tube = certify_branch(way.model, way.branch, path.points);
             const double seconds = now() - from;
             fmt::print(
-                "| {} | {} | {}/{} | {:.1e} mm, {:.1e} rad, {:.1e} N | {:.1e} mm | {:.2f} ms, {:.1f} x | {}, "
+                "| {} | {} | {}/{} | {:.1e} mm, {:.1e} rad, {:.1e} N | {:.1e} mm | {:.2f} ms, "
+                "{:.1f} x | {}, "
                 "{} "
                 "pieces, {:.1e} mm, {:.2f} s |\n",
-                model.name, way.name, points.proved, points.of, 1e3 * points.error.length, points.error.angle,
-                points.error.force, 1e3 * points.unique, 1e3 * points.proof / points.of,
-                points.proof / points.leg, name(tube.answer), tube.pieces, 1e3 * tube.width.length, seconds);
+                model.name, way.name, points.proved, points.of, 1e3 * points.error.length,
+                points.error.angle, points.error.force, 1e3 * points.unique,
+                1e3 * points.proof / points.of, points.proof / points.leg, name(tube.answer),
+                tube.pieces, 1e3 * tube.width.length, seconds);
             if (tube.answer != Answer::proved) fmt::print("    {}\n", tube.detail);
         }
 }
@@ -89,14 +91,16 @@ void arch(const std::string& file) {
         return at;
     };
     const LimitPoint limit = certify_limit_point(model, way, state(top, force(top)));
-    fmt::print("\narch: limit {}, {:.12f} ± {:.1e} N\n", name(limit.answer), (limit.from + limit.to) / 2,
-               (limit.to - limit.from) / 2);
+    fmt::print("\narch: limit {}, {:.12f} ± {:.1e} N\n", name(limit.answer),
+               (limit.from + limit.to) / 2, (limit.to - limit.from) / 2);
     for (double share = 1e-6; share > 1e-14; share /= 10) {
         const double load = force(top) * (1 - share);
         double low = top, high = h;
-        for (int n = 0; n < 200; ++n) (force((low + high) / 2) < load ? low : high) = (low + high) / 2;
+        for (int n = 0; n < 200; ++n)
+            (force((low + high) / 2) < load ? low : high) = (low + high) / 2;
         const Certificate c = certify(model, way, state(low, load), {.length = 1e-7});
-        fmt::print("  {:.0e} from it: {}, {:.1e} mm\n", share, name(c.answer), 1e3 * c.error.length);
+        fmt::print("  {:.0e} from it: {}, {:.1e} mm\n", share, name(c.answer),
+                   1e3 * c.error.length);
     }
 }
 
@@ -107,7 +111,8 @@ int main(int count, char** arguments) {
     std::vector<std::string> files(arguments + std::min(count, 2), arguments + count);
     if (files.empty()) files.push_back(ELASTOCHECK_SCENES "/mcpherson.yaml");
     fmt::print(
-        "| scene | branch | proved | within | alone within | time a point, over the leg's | as one curve |\n"
+        "| scene | branch | proved | within | alone within | time a point, over the leg's | as one "
+        "curve |\n"
         "|---|---|---|---|---|---|---|\n");
     for (const auto& file : files) table(file, points);
     arch(ELASTOCHECK_SCENES "/two_spring_arch.yaml");

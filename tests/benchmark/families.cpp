@@ -36,17 +36,20 @@ struct Text {
         if (kind == Hinge::bushing) {
             bushing(name, i, j, at, k_T, k_R);
         } else {
-            add(joints, "{}: {{type: revolute, bodies: [{}, {}], at: {}, axis: y}}", name, i, j, at);
-            add(torsion_springs, "{}_spring: {{bodies: [{}, {}], at: {}, axis: y, rate: {}}}", name, i, j, at,
-                k_R);
+            add(joints, "{}: {{type: revolute, bodies: [{}, {}], at: {}, axis: y}}", name, i, j,
+                at);
+            add(torsion_springs, "{}_spring: {{bodies: [{}, {}], at: {}, axis: y, rate: {}}}", name,
+                i, j, at, k_R);
         }
     }
-    void bushing(const std::string& name, const std::string& i, const std::string& j, const std::string& at,
-                 double k_T, double k_R) {
-        add(bushings, "{}: {{bodies: [{}, {}], at: {}, rates: [{}, {}, {}], rotational_rates: [{}, {}, {}]}}",
+    void bushing(const std::string& name, const std::string& i, const std::string& j,
+                 const std::string& at, double k_T, double k_R) {
+        add(bushings,
+            "{}: {{bodies: [{}, {}], at: {}, rates: [{}, {}, {}], rotational_rates: [{}, {}, {}]}}",
             name, i, j, at, k_T, k_T, k_T, k_R, k_R, k_R);
     }
-    void force_up(const std::string& name, const std::string& body, const std::string& at, double share) {
+    void force_up(const std::string& name, const std::string& body, const std::string& at,
+                  double share) {
         add(loads, "{}: {{on: {}, at: {}, force: [0, 0, {}]}}", name, body, at, share);
         load_names += (load_names.empty() ? "" : ", ") + name;
     }
@@ -77,17 +80,19 @@ std::string whole(const Text& text, const Family& family, const std::string& kno
 // ---- Chains.
 
 // n links from (0, y, 0) to (length, y, 0), their names and points beginning with `row`, of one `share` of the rod.
-void add_chain(Text& text, const Family& family, const std::string& row, double y, int n, double share) {
+void add_chain(Text& text, const Family& family, const std::string& row, double y, int n,
+               double share) {
     for (int k = 0; k <= n; ++k) text.point(fmt::format("{}p{}", row, k), length * k / n, y, 0);
     for (int k = 1; k <= n; ++k) {
         const std::string at = fmt::format("{}p{}", row, k - 1);
         text.body(fmt::format("{}b{}", row, k), at);
         text.hinge(family.hinge, fmt::format("{}h{}", row, k),
-                   k == 1 ? "ground" : fmt::format("{}b{}", row, k - 1), fmt::format("{}b{}", row, k), at,
-                   share * n * EA / length, share * n * EI / length);
+                   k == 1 ? "ground" : fmt::format("{}b{}", row, k - 1),
+                   fmt::format("{}b{}", row, k), at, share * n * EA / length,
+                   share * n * EI / length);
     }
-    text.force_up(fmt::format("{}push", row), fmt::format("{}b{}", row, n), fmt::format("{}p{}", row, n),
-                  share);
+    text.force_up(fmt::format("{}push", row), fmt::format("{}b{}", row, n),
+                  fmt::format("{}p{}", row, n), share);
 }
 
 std::string chain(const Family& family) {
@@ -111,18 +116,21 @@ std::string tree(const Family& family) {
     for (int k = 1; k <= n; ++k) {
         const int level = levels(k) - 1, across = 1 << level;
         const double y = width * ((k - across + 0.5) / across - 0.5);
-        const double share = static_cast<double>(leaves_on[static_cast<std::size_t>(k)]) / leaves_on[0];
+        const double share =
+            static_cast<double>(leaves_on[static_cast<std::size_t>(k)]) / leaves_on[0];
         const std::string body = fmt::format("b{}", k), at = fmt::format("p{}", k);
         text.point(at, level * h, y, 0);
         text.body(body, at);
-        text.hinge(family.hinge, fmt::format("h{}", k), k == 1 ? "ground" : fmt::format("b{}", k / 2), body,
-                   at, share * m * EA / length, share * m * EI / length);
+        text.hinge(family.hinge, fmt::format("h{}", k),
+                   k == 1 ? "ground" : fmt::format("b{}", k / 2), body, at, share * m * EA / length,
+                   share * m * EI / length);
         if (2 * k > n) {
             text.point(fmt::format("e{}", k), (level + 1) * h, y, 0);
             text.force_up(fmt::format("push{}", k), body, fmt::format("e{}", k), share);
         }
     }
-    return whole(text, family, "Full, of 2^m - 1 bodies, each level moves as one link of a chain of m.",
+    return whole(text, family,
+                 "Full, of 2^m - 1 bodies, each level moves as one link of a chain of m.",
                  fmt::format("b{}", n), fmt::format("e{}", n), load);
 }
 
@@ -130,8 +138,8 @@ std::string grid(const Family& family) {
     const int R = rows(family.bodies), C = family.bodies / R;
     Text text;
     for (int r = 1; r <= R; ++r)
-        add_chain(text, family, fmt::format("r{}", r), R == 1 ? 0 : width * ((r - 1.) / (R - 1) - 0.5), C,
-                  1. / R);
+        add_chain(text, family, fmt::format("r{}", r),
+                  R == 1 ? 0 : width * ((r - 1.) / (R - 1) - 0.5), C, 1. / R);
     for (int r = 1; r < R; ++r)
         for (int c = 1; c <= C; ++c) {
             const std::string at = fmt::format("t{}_{}", r, c);
@@ -147,7 +155,8 @@ std::string grid(const Family& family) {
 
 // `segments` shared out over beams of these lengths, from as many as each needs at least: the next one always to the beam
 // whose segments are longest.
-std::vector<int> shared_out(int segments, const std::vector<double>& lengths, std::vector<int> shares) {
+std::vector<int> shared_out(int segments, const std::vector<double>& lengths,
+                            std::vector<int> shares) {
     const auto longest = [&] {
         std::size_t found = 0;
         for (std::size_t k = 1; k < lengths.size(); ++k)
@@ -175,13 +184,15 @@ std::string leaf_spring(const Family& family) {
     for (int k = 0; k < pack.count; ++k) {
         std::string through = fmt::format("[front{}, ", k), back = fmt::format("rear{}]", k);
         for (const auto& [side, sign] : {std::pair{"front", 1}, {"rear", -1}}) {
-            const std::string end = fmt::format("{}{}", side, k), pad = fmt::format("{}_pad{}", side, k + 1);
+            const std::string end = fmt::format("{}{}", side, k),
+                              pad = fmt::format("{}_pad{}", side, k + 1);
             text.point(end, sign * pack.half_of(k), 0, -k * t);
             text.body(end, end);
             if (k + 1 < pack.count) text.point(pad, sign * pack.half_of(k + 1), 0, -k * t);
             if (k > 0)
                 text.add(text.bushings,
-                         "{0}_pad{1}: {{bodies: [leaf{2}.{0}_pad{1}, {3}], at: {3}, rates: [0, 0, {4}]}}",
+                         "{0}_pad{1}: {{bodies: [leaf{2}.{0}_pad{1}, {3}], at: {3}, rates: [0, 0, "
+                         "{4}]}}",
                          side, k, k - 1, end, pack.pad);
         }
         if (k + 1 < pack.count) {
@@ -189,22 +200,26 @@ std::string leaf_spring(const Family& family) {
             back = fmt::format("rear_pad{}, ", k + 1) + back;
         }
         text.point(fmt::format("seat{}", k), 0, 0, -k * t);
-        text.add(
-            text.beams,
-            "leaf{}: {{bodies: [front{}, rear{}], through: {}seat{}, {}, segments: {}, E: {}, G: {}, up: z,\n"
-            "    A: {}, I_y: {}, I_z: {}, J: {}}}",
-            k, k, k, through, k, back, segments[static_cast<std::size_t>(k)], E, G, w * t, w * t * t * t / 12,
-            t * w * w * w / 12, w * t * t * t / 3);
+        text.add(text.beams,
+                 "leaf{}: {{bodies: [front{}, rear{}], through: {}seat{}, {}, segments: {}, E: {}, "
+                 "G: {}, up: z,\n"
+                 "    A: {}, I_y: {}, I_z: {}, J: {}}}",
+                 k, k, k, through, k, back, segments[static_cast<std::size_t>(k)], E, G, w * t,
+                 w * t * t * t / 12, t * w * w * w / 12, w * t * t * t / 3);
         if (k > 0)
-            text.add(text.joints,
-                     "clamp{0}: {{type: fixed, bodies: [leaf0.seat0, leaf{0}.seat{0}], at: seat{0}}}", k);
+            text.add(
+                text.joints,
+                "clamp{0}: {{type: fixed, bodies: [leaf0.seat0, leaf{0}.seat{0}], at: seat{0}}}",
+                k);
     }
     text.add(text.joints, "eye: {{type: revolute, bodies: [front0, ground], at: front0, axis: y}}");
-    text.add(text.joints, "shackle: {{type: in_plane, bodies: [rear0, ground], at: rear0, normal: z}}");
+    text.add(text.joints,
+             "shackle: {{type: in_plane, bodies: [rear0, ground], at: rear0, normal: z}}");
     text.force_up("push", "leaf0.seat0", "seat0", 1);
     return whole(
         text, family,
-        fmt::format("{} leaves; for small loads the pressure between them follows from beams.", pack.count),
+        fmt::format("{} leaves; for small loads the pressure between them follows from beams.",
+                    pack.count),
         "leaf0.seat0", "seat0", pack.load);
 }
 
@@ -219,7 +234,8 @@ std::string ladder_frame(const Family& family) {
     const auto segments = shared_out(family.bodies - 2 + c, lengths, least);
     Text text;
     const auto node = [&](const char* side, int k) {
-        return k == 0 || k == c - 1 ? fmt::format("{}{}", side, k) : fmt::format("rail_{0}.{0}{1}", side, k);
+        return k == 0 || k == c - 1 ? fmt::format("{}{}", side, k)
+                                    : fmt::format("rail_{0}.{0}{1}", side, k);
     };
     for (const auto& [side, sign] : {std::pair{"left", 1}, {"right", -1}}) {
         std::string through;
@@ -229,27 +245,31 @@ std::string ladder_frame(const Family& family) {
             if (k == 0 || k == c - 1) text.body(at, at);
             through += (k == 0 ? "" : ", ") + at;
         }
-        text.add(text.beams,
-                 "rail_{0}: {{bodies: [{0}0, {0}{1}], through: [{2}], segments: {3}, E: {4}, G: {5}, "
-                 "diameter: {6}, wall: "
-                 "{7}}}",
-                 side, c - 1, through, segments[sign > 0 ? 0 : 1], E, G, f.rail.diameter, f.rail.wall);
+        text.add(
+            text.beams,
+            "rail_{0}: {{bodies: [{0}0, {0}{1}], through: [{2}], segments: {3}, E: {4}, G: {5}, "
+            "diameter: {6}, wall: "
+            "{7}}}",
+            side, c - 1, through, segments[sign > 0 ? 0 : 1], E, G, f.rail.diameter, f.rail.wall);
     }
     for (int k = 0; k < c; ++k)
         text.add(text.beams,
-                 "cross{0}: {{bodies: [{1}, {2}], through: [left{0}, right{0}], segments: {3}, E: {4}, G: "
+                 "cross{0}: {{bodies: [{1}, {2}], through: [left{0}, right{0}], segments: {3}, E: "
+                 "{4}, G: "
                  "{5}, diameter: "
                  "{6}, wall: {7}}}",
-                 k, node("left", k), node("right", k), segments[static_cast<std::size_t>(k) + 2], E, G,
-                 f.cross.diameter, f.cross.wall);
+                 k, node("left", k), node("right", k), segments[static_cast<std::size_t>(k) + 2], E,
+                 G, f.cross.diameter, f.cross.wall);
     text.add(text.joints, "rear_left: {{type: spherical, bodies: [left0, ground], at: left0}}");
-    text.add(text.joints, "rear_right: {{type: in_line, bodies: [right0, ground], at: right0, axis: y}}");
-    text.add(text.joints, "front_left: {{type: in_plane, bodies: [left{0}, ground], at: left{0}, normal: z}}",
+    text.add(text.joints,
+             "rear_right: {{type: in_line, bodies: [right0, ground], at: right0, axis: y}}");
+    text.add(text.joints,
+             "front_left: {{type: in_plane, bodies: [left{0}, ground], at: left{0}, normal: z}}",
              c - 1);
     const std::string corner = fmt::format("right{}", c - 1);
     text.force_up("push", corner, corner, 1);
-    return whole(text, family, fmt::format("{} cross-members; for small loads a grillage.", c), corner,
-                 corner, f.load);
+    return whole(text, family, fmt::format("{} cross-members; for small loads a grillage.", c),
+                 corner, corner, f.load);
 }
 
 // ---- Links.
@@ -270,11 +290,11 @@ std::string axle(const Family& family) {
         text.bushing(fmt::format("b{}", k + 1), body, "housing", end, K_T / n, K_R / n);
     }
     text.force_up("push", "housing", "middle", 1);
-    return whole(
-        text, family,
-        fmt::format("{} links{}.", n,
-                    n % 2 == 0 ? ", which all move as one" : ", one more to the front than to the rear"),
-        "housing", "middle", load);
+    return whole(text, family,
+                 fmt::format("{} links{}.", n,
+                             n % 2 == 0 ? ", which all move as one"
+                                        : ", one more to the front than to the rear"),
+                 "housing", "middle", load);
 }
 
 }  // namespace

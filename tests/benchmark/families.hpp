@@ -50,8 +50,8 @@ std::string scene(const Family& family);
 
 // ---- Chain, tree and grid: a rod of this length along x, the load across its end.
 inline constexpr double length = 1, load = 1000;  // [m] [N]
-inline constexpr double EI = 1000, EA = 1e5;      // [N·m²] [N]: n hinges have n EI/L and n EA/L each
-inline constexpr double width = 1;                // [m] of what lies side by side in y
+inline constexpr double EI = 1000, EA = 1e5;  // [N·m²] [N]: n hinges have n EI/L and n EA/L each
+inline constexpr double width = 1;            // [m] of what lies side by side in y
 
 int rows(int bodies);    // of the grid
 int levels(int bodies);  // of the tree

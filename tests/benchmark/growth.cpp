@@ -35,10 +35,11 @@ using families::Family;
 using families::Hinge;
 using families::Kind;
 
-const std::vector<Family> all_families{
-    {Kind::chain}, {Kind::chain, 0, Hinge::revolute}, {Kind::tree},        {Kind::tree, 0, Hinge::revolute},
-    {Kind::grid},  {Kind::grid, 0, Hinge::revolute},  {Kind::leaf_spring}, {Kind::ladder_frame},
-    {Kind::axle}};
+const std::vector<Family> all_families{{Kind::chain},       {Kind::chain, 0, Hinge::revolute},
+                                       {Kind::tree},        {Kind::tree, 0, Hinge::revolute},
+                                       {Kind::grid},        {Kind::grid, 0, Hinge::revolute},
+                                       {Kind::leaf_spring}, {Kind::ladder_frame},
+                                       {Kind::axle}};
 const std::vector<std::string> methods{"published", "series", "equilibrium", "energy", "inspect"};
 
 std::string title(const Family& family) {
@@ -46,7 +47,8 @@ std::string title(const Family& family) {
                        has_hinges(family.kind) ? fmt::format(" on {}s", name(family.hinge)) : "");
 }
 std::string file_name(const Family& family) {
-    return fmt::format("growth-{}{}", name(family.kind), family.hinge == Hinge::revolute ? "-revolute" : "");
+    return fmt::format("growth-{}{}", name(family.kind),
+                       family.hinge == Hinge::revolute ? "-revolute" : "");
 }
 
 // ---- One command.
@@ -67,19 +69,21 @@ Cost once(const std::vector<std::string>& words, double most_seconds) {
         const rlimit cpu{limit, limit + 1};
         const int nothing = ::open("/dev/null", O_RDWR);
         const bool ready = ::setrlimit(RLIMIT_CPU, &cpu) == 0 && nothing >= 0 &&
-                           ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
+                           ::dup2(nothing, STDIN_FILENO) >= 0 &&
+                           ::dup2(nothing, STDOUT_FILENO) >= 0 &&
                            ::dup2(nothing, STDERR_FILENO) >= 0;
         if (ready) ::execv(argv[0], argv.data());
         ::_exit(127);
     }
     int status = 0;
     rusage used{};
-    if (child < 0 || ::wait4(child, &status, 0, &used) != child) throw std::runtime_error("no process");
+    if (child < 0 || ::wait4(child, &status, 0, &used) != child)
+        throw std::runtime_error("no process");
     const auto seconds = [](const timeval& t) {
         return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
     };
-    Cost cost{seconds(used.ru_utime) + seconds(used.ru_stime), static_cast<double>(used.ru_maxrss) / 1024,
-              ""};
+    Cost cost{seconds(used.ru_utime) + seconds(used.ru_stime),
+              static_cast<double>(used.ru_maxrss) / 1024, ""};
     if (WIFSIGNALED(status))
         cost.outcome = fmt::format("stopped after {:.0f} s", cost.seconds);
     else if (WEXITSTATUS(status) != 0)
@@ -142,7 +146,9 @@ double exponent(const Growth& growth, double Cost::*what) {
 double foretold(const Growth& growth, int bodies) {
     const auto done = growth.done();
     if (done.empty()) return 0;
-    const auto more = [&](const Row& row) { return std::max(1e-3, row.cost.seconds - growth.start.seconds); };
+    const auto more = [&](const Row& row) {
+        return std::max(1e-3, row.cost.seconds - growth.start.seconds);
+    };
     const Row& last = done.back();
     double p = 3;
     if (done.size() > 1) {
@@ -150,11 +156,12 @@ double foretold(const Growth& growth, int bodies) {
         p = std::max(1.0, std::log(more(last) / more(before)) /
                               std::log(static_cast<double>(last.bodies) / before.bodies));
     }
-    return growth.start.seconds + more(last) * std::pow(static_cast<double>(bodies) / last.bodies, p);
+    return growth.start.seconds +
+           more(last) * std::pow(static_cast<double>(bodies) / last.bodies, p);
 }
 
-Growth grow(const Family& family, const std::string& method, const std::vector<int>& sizes, const Cost& start,
-            const std::filesystem::path& scratch, double budget) {
+Growth grow(const Family& family, const std::string& method, const std::vector<int>& sizes,
+            const Cost& start, const std::filesystem::path& scratch, double budget) {
     Growth growth{family, method, start, {}};
     for (const int bodies : sizes) {
         const double seconds = foretold(growth, bodies);
@@ -162,7 +169,8 @@ Growth grow(const Family& family, const std::string& method, const std::vector<i
         if (before.starts_with("skipped") || before.starts_with("stopped")) {
             growth.rows.push_back({bodies, {0, 0, "skipped"}});
         } else if (seconds > budget) {
-            growth.rows.push_back({bodies, {0, 0, fmt::format("skipped: {:.0f} s foretold", seconds)}});
+            growth.rows.push_back(
+                {bodies, {0, 0, fmt::format("skipped: {:.0f} s foretold", seconds)}});
         } else {
             Family of_size = family;
             of_size.bodies = bodies;
@@ -172,9 +180,9 @@ Growth grow(const Family& family, const std::string& method, const std::vector<i
         }
         const Cost& cost = growth.rows.back().cost;
         fmt::print(stderr, "{:22} {:12} {:5}  {}\n", title(family), method, bodies,
-                   cost.seconds > 0
-                       ? fmt::format("{:8.3f} s {:7.1f} MB {}", cost.seconds, cost.megabytes, cost.outcome)
-                       : cost.outcome);
+                   cost.seconds > 0 ? fmt::format("{:8.3f} s {:7.1f} MB {}", cost.seconds,
+                                                  cost.megabytes, cost.outcome)
+                                    : cost.outcome);
     }
     return growth;
 }
@@ -235,18 +243,21 @@ reports::Figure figure(const std::vector<Growth>& all, const Family& family) {
                                                reports::purple, reports::slate};
     for (const Growth& g : all) {
         if (title(g.family) != title(family)) continue;
-        const auto k = static_cast<std::size_t>(std::ranges::find(methods, g.method) - methods.begin());
+        const auto k =
+            static_cast<std::size_t>(std::ranges::find(methods, g.method) - methods.begin());
         const double p = exponent(g, &Cost::seconds);
-        reports::Series line{.title = g.method + (std::isfinite(p) ? fmt::format(", n^{:.2f}", p) : ""),
-                             .style = reports::Series::Style::line_points,
-                             .colour = colours[k],
-                             .mark = static_cast<int>(k)};
+        reports::Series line{
+            .title = g.method + (std::isfinite(p) ? fmt::format(", n^{:.2f}", p) : ""),
+            .style = reports::Series::Style::line_points,
+            .colour = colours[k],
+            .mark = static_cast<int>(k)};
         for (const Row& row : g.done())
             line.rows.push_back({static_cast<double>(row.bodies), row.cost.seconds});
         if (!line.rows.empty()) picture.series.push_back(line);
     }
-    picture.description = fmt::format(
-        "Logarithmic plot of the CPU time of the whole command over the bodies of a {}", title(family));
+    picture.description =
+        fmt::format("Logarithmic plot of the CPU time of the whole command over the bodies of a {}",
+                    title(family));
     for (std::size_t k = 0; k < picture.series.size(); ++k)
         picture.description += fmt::format("{} {}", k == 0 ? ":" : ";", picture.series[k].title);
     return picture;
@@ -266,8 +277,12 @@ int main(int argc, char** argv) {
     app.add_option("--bodies", sizes, "sizes, rising (default: 30,100,300,1000,2000)")
         ->delimiter(',')
         ->check(CLI::Range(4, families::most_bodies));
-    app.add_option("--families", kinds, "which (default: all)")->delimiter(',')->check(CLI::IsMember(kinds));
-    app.add_option("--methods", asked, "which (default: all)")->delimiter(',')->check(CLI::IsMember(methods));
+    app.add_option("--families", kinds, "which (default: all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(kinds));
+    app.add_option("--methods", asked, "which (default: all)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(methods));
     app.add_option("--budget", budget, "CPU seconds that a run may take (default: 20)")
         ->check(CLI::Range(1., 1e5));
     try {
@@ -300,6 +315,7 @@ int main(int argc, char** argv) {
     std::vector<reports::Plot> plots;
     for (const auto& picture : figures) plots.push_back({&picture, picture.id});
     reports::draw(plots, folder, {.keep_source = false});
-    const bool ran = std::ranges::all_of(all, [](const Growth& g) { return g.start.outcome.empty(); });
+    const bool ran =
+        std::ranges::all_of(all, [](const Growth& g) { return g.start.outcome.empty(); });
     return ran ? 0 : 3;
 }

@@ -26,11 +26,11 @@
 #include <chrono>
 #include <functional>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/recursive.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -50,7 +50,8 @@ const recursive::Analysis& analysis() {
 }
 
 void bare() {
-    static Eigen::MatrixXd A = Eigen::MatrixXd::Random(27, 27) + 27 * Eigen::MatrixXd::Identity(27, 27);
+    static Eigen::MatrixXd A =
+        Eigen::MatrixXd::Random(27, 27) + 27 * Eigen::MatrixXd::Identity(27, 27);
     static Eigen::VectorXd b = Eigen::VectorXd::Random(27), x(27);
     static Eigen::PartialPivLU<Eigen::MatrixXd> lu(27);
     for (int k = 0; k < 600; ++k) {
@@ -63,8 +64,8 @@ void bare() {
 
 void sweep(const recursive::Method& method) {
     for (const auto& branch : mcpherson().branches)
-        benchmark::DoNotOptimize(
-            recursive::solve(mcpherson(), branch, {.method = method, .steps = 300, .record = 1}, analysis()));
+        benchmark::DoNotOptimize(recursive::solve(
+            mcpherson(), branch, {.method = method, .steps = 300, .record = 1}, analysis()));
 }
 
 template <class Solve>
@@ -81,19 +82,22 @@ void equilibrium() {
     });
 }
 void energy() {
-    points(
-        [](const Branch& b, const auto& loads) { return reference::energy::solve(mcpherson(), b, loads); });
+    points([](const Branch& b, const auto& loads) {
+        return reference::energy::solve(mcpherson(), b, loads);
+    });
 }
 void adaptive() {  // 0.01 mm, 0.001 deg
     points([](const Branch& b, const auto&) {
-        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("adaptive"), .steps = 300},
+        return recursive::solve(mcpherson(), b,
+                                {.method = *recursive::find_method("adaptive"), .steps = 300},
                                 analysis());
     });
 }
 
 void series() {  // 1e-12 m
     points([](const Branch& b, const auto&) {
-        return recursive::solve(mcpherson(), b, {.method = *recursive::find_method("series"), .steps = 300},
+        return recursive::solve(mcpherson(), b,
+                                {.method = *recursive::find_method("series"), .steps = 300},
                                 analysis());
     });
 }
@@ -105,7 +109,8 @@ void branches(int order) {  // 1e-12 m, nothing evaluated
 void published() { sweep(recursive::Method{}); }
 
 // Runs job and base in turns; reports the time of the job and the median of their ratios.
-void in_turns(benchmark::State& state, const std::function<void()>& job, const std::function<void()>& base) {
+void in_turns(benchmark::State& state, const std::function<void()>& job,
+              const std::function<void()>& base) {
     const auto seconds = [](const std::function<void()>& f) {
         const auto start = Clock::now();
         f();
@@ -117,7 +122,8 @@ void in_turns(benchmark::State& state, const std::function<void()>& job, const s
         state.SetIterationTime(own);
         ratios.push_back(own / other);
     }
-    std::ranges::nth_element(ratios, ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
+    std::ranges::nth_element(ratios,
+                             ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
     state.counters["ratio"] = ratios[ratios.size() / 2];
 }
 
@@ -142,7 +148,8 @@ int main(int argc, char** argv) {
     add("points/series", series, equilibrium);
     for (const int order : {8, 12, 16, 20, 24})
         add(
-            "branches/series order " + std::to_string(order), [order] { branches(order); }, published);
+            "branches/series order " + std::to_string(order), [order] { branches(order); },
+            published);
     add(
         "analysis", [] { benchmark::DoNotOptimize(recursive::analyse(mcpherson())); }, published);
     benchmark::Initialize(&argc, argv);

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/settle.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "recursive/stepping/settle.hpp"
 #include "tests/benchmark/families.hpp"
 
 namespace {
@@ -43,7 +43,8 @@ struct Klu {
     Klu(const Pattern& p, std::vector<double>& values) : pattern(p) {
         klu_defaults(&common);
         symbolic = klu_analyze(pattern.size, pattern.first.data(), pattern.row.data(), &common);
-        numeric = klu_factor(pattern.first.data(), pattern.row.data(), values.data(), symbolic, &common);
+        numeric =
+            klu_factor(pattern.first.data(), pattern.row.data(), values.data(), symbolic, &common);
     }
     ~Klu() {
         klu_free_numeric(&numeric, &common);
@@ -52,8 +53,8 @@ struct Klu {
     Klu(const Klu&) = delete;
     Klu& operator=(const Klu&) = delete;
     bool solve(std::vector<double>& values, std::vector<double>& b) {
-        return klu_refactor(pattern.first.data(), pattern.row.data(), values.data(), symbolic, numeric,
-                            &common) == 1 &&
+        return klu_refactor(pattern.first.data(), pattern.row.data(), values.data(), symbolic,
+                            numeric, &common) == 1 &&
                klu_solve(symbolic, numeric, pattern.size, 1, b.data(), &common) == 1;
     }
 };
@@ -61,7 +62,7 @@ struct Klu {
 bool compare(const families::Family& family, int steps) {
     const Model model = compile(parse_scene(families::scene(family), "family"));
     const Branch& branch = model.branches[0];
-    March<double> s(model, branch, analyse(model));
+    SteppingState<double> s(model, branch, analyse(model));
     const Linear published;
     if (settle(s, published, 1) != Outcome::converged) return false;
     std::vector<double> step_time, own_time, klu_time, ratio;
@@ -71,7 +72,8 @@ bool compare(const families::Family& family, int steps) {
     bool good = true;
     for (int k = 1; k <= steps; ++k) {
         const Place<double> next{1, 1e-3 * branch.to * k / steps};
-        step_time.push_back(seconds([&] { good = step(s, published, next) == Outcome::converged && good; }));
+        step_time.push_back(
+            seconds([&] { good = step(s, published, next) == Outcome::converged && good; }));
         values = s.system.values;
         std::ranges::fill(b, 1);
         own_time.push_back(seconds([&] {
@@ -95,8 +97,8 @@ int main(int argc, char** argv) {
     std::vector<int> bodies;
     for (int k = 1; k < argc; ++k) bodies.push_back(std::stoi(argv[k]));
     if (bodies.empty()) bodies = {300, 1000};
-    fmt::print("chain of {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "bodies", "unknowns", "entries",
-               "KLU's", "step, us", "own LU", "KLU", "ratio");
+    fmt::print("chain of {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "bodies", "unknowns",
+               "entries", "KLU's", "step, us", "own LU", "KLU", "ratio");
     bool good = true;
     for (const auto hinge : {families::Hinge::bushing, families::Hinge::revolute})
         for (const int n : bodies) good = compare({families::Kind::chain, n, hinge}, 101) && good;

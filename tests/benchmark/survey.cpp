@@ -17,11 +17,11 @@
 #include <functional>
 #include <limits>
 
-#include "compare/compare.hpp"
-#include "compare/trim.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "recursive/series/path.hpp"
 
 namespace {
@@ -32,11 +32,13 @@ using namespace elastocheck::compare;
 constexpr int points = 40, fine = 640, coarse = 100;  // of a way
 
 // What a method makes of a branch, against the references there.
-compare::Curve walked(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
-                      const std::vector<Way>& ways, const recursive::Method& method, int refine) {
+compare::Curve walked(const Model& model, const std::vector<Channel>& channels,
+                      const Branch& branch, const std::vector<BranchSide>& ways,
+                      const recursive::Method& method, int refine) {
     return curve(
         model, channels, branch,
-        walk(ways, {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine}).points);
+        walk(ways, {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine})
+            .points);
 }
 
 Accuracy at_equal_travel(const std::vector<Channel>& channels, const compare::Curve& truth,
@@ -68,30 +70,34 @@ bool survey(const std::string& file) {
     double time_of_series = 0, time_of_equilibrium = 0;
     std::string failed;
     for (const auto& branch : model.branches) {
-        const auto ways = ways_of(model, branch, points * static_cast<int>(elastocheck::ways(branch).size()));
+        const auto ways =
+            sides_of(model, branch, points * static_cast<int>(elastocheck::ways(branch).size()));
         const auto known = references(model, channels, branch, ways);
         for (const auto& why : known.failures) failed += fmt::format(" {}: {};", branch.name, why);
         if (!known.failures.empty()) continue;
         apart = worse(apart, known.uncertainty);
-        const auto published = walked(model, channels, branch, ways, recursive::Method{}, fine / points);
+        const auto published =
+            walked(model, channels, branch, ways, recursive::Method{}, fine / points);
         by_load = worse(by_load, distance(channels, known.truth, published));
         by_travel = worse(by_travel, at_equal_travel(channels, known.truth, published));
         for (auto& [name, error] : rungs) {
-            const auto hundred = ways_of(model, branch, coarse / 5 * static_cast<int>(ways.size()));
+            const auto hundred =
+                sides_of(model, branch, coarse / 5 * static_cast<int>(ways.size()));
             const auto truth =
                 curve(model, channels, branch, walk(hundred, {.leg = Leg::equilibrium}).points);
-            error = worse(error,
-                          distance(channels, truth,
-                                   walked(model, channels, branch, hundred, *recursive::find_method(name), 5))
-                              .mm);
+            error = worse(error, distance(channels, truth,
+                                          walked(model, channels, branch, hundred,
+                                                 *recursive::find_method(name), 5))
+                                     .mm);
         }
-        of_series = worse(of_series,
-                          distance(channels, known.truth, walked(model, channels, branch, ways, series, 1)));
+        of_series = worse(of_series, distance(channels, known.truth,
+                                              walked(model, channels, branch, ways, series, 1)));
         for (const auto& way : ways)
             expansions += recursive::series::follow(way.model, way.branch).expansions.size();
-        const auto least = [&](const Gait& gait) {
+        const auto least = [&](const SolverSettings& solver) {
             double time = std::numeric_limits<double>::infinity();
-            for (int turn = 0; turn < 3; ++turn) time = std::min(time, seconds([&] { walk(ways, gait); }));
+            for (int turn = 0; turn < 3; ++turn)
+                time = std::min(time, seconds([&] { walk(ways, solver); }));
             return time;
         };
         time_of_series += least({.leg = Leg::recursive, .recursion = {.method = series}});
@@ -102,11 +108,12 @@ bool survey(const std::string& file) {
         return std::isfinite(rung.second) ? rung.second : std::numeric_limits<double>::infinity();
     });
     fmt::print(
-        "| {} | {} | {} | {:.2g} mm, {:.1g}° | {:.2g} mm, {:.1g}° | {:.1g} mm, `{}` | {}, {:.0e} mm | {:.0e} "
+        "| {} | {} | {} | {:.2g} mm, {:.1g}° | {:.2g} mm, {:.1g}° | {:.1g} mm, `{}` | {}, {:.0e} "
+        "mm | {:.0e} "
         "mm | 1/{:.0f} |\n",
         scene.name, model.branches.size(), coordinates(model) + constraint_rows(model), by_load.mm,
-        by_load.deg, by_travel.mm, by_travel.deg, best->second, best->first, expansions, of_series.mm,
-        apart.mm, time_of_equilibrium / time_of_series);
+        by_load.deg, by_travel.mm, by_travel.deg, best->second, best->first, expansions,
+        of_series.mm, apart.mm, time_of_equilibrium / time_of_series);
     if (!failed.empty()) fmt::print(stderr, "survey: {}:{}\n", file, failed);
     return failed.empty();
 }
@@ -115,7 +122,8 @@ bool survey(const std::string& file) {
 
 int main(int argc, char** argv) {
     fmt::print(
-        "| scene | branches | unknowns | gap, equal load | gap, equal travel | best of 100 steps | series | "
+        "| scene | branches | unknowns | gap, equal load | gap, equal travel | best of 100 steps | "
+        "series | "
         "references | "
         "series : equilibrium |\n|---|---|---|---|---|---|---|---|---|\n");
     bool judged = argc > 1;

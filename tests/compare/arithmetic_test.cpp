@@ -1,6 +1,6 @@
 // Robustness against floating-point arithmetic: rounding modes, flush-to-zero, inputs changed by
 // one ulp, and NaN in every input. A converged result must still be correct.
-#include "compare/arithmetic.hpp"
+#include "compare/stress/arithmetic.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,18 +11,20 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compare/lost_digits.hpp"
-#include "compare/retold.hpp"
-#include "compare/stress.hpp"
-#include "models/compile.hpp"
+#include "compare/stress/lost_digits.hpp"
+#include "compare/stress/stress.hpp"
+#include "compare/stress/transforms.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
 // A single bushing: all its points coincide, and a rounding difference between them is no length.
-constexpr std::array scene_list{"mcpherson", "pendulum", "arch_driven", "parallel_springs", "single_bushing"};
-constexpr std::array others{Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero, Arithmetic::flushed};
+constexpr std::array scene_list{"mcpherson", "pendulum", "arch_driven", "parallel_springs",
+                                "single_bushing"};
+constexpr std::array others{Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero,
+                            Arithmetic::flushed};
 
 Scene small(const std::string& name) {
     Scene scene = support::scene(name);
@@ -61,7 +63,8 @@ TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
         try {
             const WithArithmetic in_force(how);
             EXPECT_EQ(third() > nearest, how == Arithmetic::up) << name(how);
-            EXPECT_EQ(half_of_the_least() == 0, how == Arithmetic::flushed && exists(how)) << name(how);
+            EXPECT_EQ(half_of_the_least() == 0, how == Arithmetic::flushed && exists(how))
+                << name(how);
             throw std::runtime_error("whoever solves may throw");
         } catch (const std::runtime_error&) {
         }
@@ -88,13 +91,15 @@ TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
         const LostDigits lost = lost_digits(survival);
         EXPECT_EQ(lost.variants.size(), exists(Arithmetic::flushed) ? 5u : 4u);
         ASSERT_EQ(lost.rows.size(), 1u);
-        for (const auto& cell : survival.cells) EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
+        for (const auto& cell : survival.cells)
+            EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
         // No solver fails because of rounding.
         for (const auto* cell : lost.gave_up) ADD_FAILURE() << told(*cell);
         for (const auto& cell : survival.cells) {
             if (cell.sweep != other_arithmetic || cell.outcome != Outcome::converged) continue;
             EXPECT_TRUE(std::isfinite(cell.lost) && cell.lost >= 0) << told(cell);
-            if (cell.solver == "equilibrium" || cell.solver == "energy" || cell.solver == "series") {
+            if (cell.solver == "equilibrium" || cell.solver == "energy" ||
+                cell.solver == "series") {
                 EXPECT_GE(cell.digits, 8) << told(cell);
             }
         }
@@ -110,7 +115,8 @@ TEST(Arithmetic, ReachesEverySolver) {
     for (const auto& solver : survival.solvers) {
         bool differs = false;
         for (const auto& cell : survival.cells)
-            if (cell.solver == solver && cell.variant == name(Arithmetic::up)) differs |= cell.apart > 0;
+            if (cell.solver == solver && cell.variant == name(Arithmetic::up))
+                differs |= cell.apart > 0;
         EXPECT_TRUE(differs) << solver;
     }
 }
@@ -173,11 +179,11 @@ TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
             const Model model = compile(made);
             for (const auto& solver : solvers()) {
                 Answer& answer = all.emplace_back();
-                Gait gait = solver.gait;
-                gait.every = 4, gait.account = false;
-                for (const auto& way : ways_of(model, model.branches.front(), 4)) {
-                    const auto path =
-                        walk(way, gait, [&](const Equilibrium& state) { answer.poses = state.poses; });
+                SolverSettings solver = solver.solver;
+                solver.every = 4, solver.error_bound = false;
+                for (const auto& way : sides_of(model, model.branches.front(), 4)) {
+                    const auto path = walk(
+                        way, solver, [&](const Equilibrium& state) { answer.poses = state.poses; });
                     if (answer.outcome == Outcome::converged) answer.outcome = path.outcome;
                 }
             }
@@ -200,7 +206,8 @@ TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
                     ASSERT_EQ(now[s].poses.size(), expected[s].poses.size());
                     for (std::size_t b = 0; b < now[s].poses.size(); ++b)
                         EXPECT_LE((now[s].poses[b].r - expected[s].poses[b].r).norm(), 1e-12)
-                            << name << ", number " << at << " of " << count << ", " << solvers()[s].name;
+                            << name << ", number " << at << " of " << count << ", "
+                            << solvers()[s].name;
                 }
             }
     }

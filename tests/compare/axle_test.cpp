@@ -1,9 +1,9 @@
 // Axles: mirrored definition, rack, and several drivers on one branch.
 #include <gtest/gtest.h>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -69,7 +69,8 @@ struct Solved {
         throw std::logic_error("no such branch");
     }
     std::vector<double> channel(std::string_view branch, std::string_view name, Leg leg) const {
-        return curve(branch, leg).channel(static_cast<std::size_t>(find_channel(comparison.channels, name)));
+        return curve(branch, leg)
+            .channel(static_cast<std::size_t>(find_channel(comparison.channels, name)));
     }
 };
 const Solved& solved() {
@@ -94,7 +95,8 @@ TEST(Axle, EveryBranchIsConclusiveAndTheSeriesMeetsTheReferences) {
     EXPECT_TRUE(all.conclusive());
     EXPECT_EQ(all.branches.size(), 6u);
     for (const auto& branch : all.branches) {
-        for (const auto& why : branch.inconclusive.texts()) ADD_FAILURE() << branch.branch << ": " << why;
+        for (const auto& why : branch.inconclusive.texts())
+            ADD_FAILURE() << branch.branch << ": " << why;
         for (std::size_t c = 0; c < all.channels.size(); ++c)
             if (all.channels[c].main && all.channels[c].kinematic()) {
                 EXPECT_LE(branch.deviation.equal_parameter.channels[c].max, 1e-9)
@@ -106,7 +108,8 @@ TEST(Axle, EveryBranchIsConclusiveAndTheSeriesMeetsTheReferences) {
 TEST(Axle, ParallelTravelIsSymmetricAndRollAntisymmetric) {
     for (const Leg leg : legs)
         for (const char* what : {"toe", "camber", "wheel_centre_x", "jack.drive_force"}) {
-            const std::string left = std::string("left.") + what, right = std::string("right.") + what;
+            const std::string left = std::string("left.") + what,
+                              right = std::string("right.") + what;
             const double bound = std::string_view(what) == "jack.drive_force" ? 1e-5 : 1e-8;
             EXPECT_LE(largest_difference(solved().channel("parallel", left, leg),
                                          solved().channel("parallel", right, leg)),
@@ -129,7 +132,8 @@ TEST(Axle, SteeringTurnsBothWheelsAndTheHeldHeightsAreHeld) {
             const auto left = solved().channel(branch, "left.toe", leg),
                        right = solved().channel(branch, "right.toe", leg);
             EXPECT_GT(std::abs(left.back() - left.front()), 10);
-            EXPECT_LE(largest_difference(left, backwards(right)), 1e-8) << branch << " " << name(leg);
+            EXPECT_LE(largest_difference(left, backwards(right)), 1e-8)
+                << branch << " " << name(leg);
             const auto force = solved().channel(branch, "rack.drive_force", leg);
             std::vector<double> opposite = backwards(force);
             for (double& f : opposite) f = -f;

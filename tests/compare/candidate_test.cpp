@@ -1,6 +1,6 @@
 // Judgement of external candidates: same criteria as for the recursion, typical faults are named,
 // missing data never passes.
-#include "compare/candidate.hpp"
+#include "compare/candidate/candidate.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -55,7 +55,9 @@ Candidate table_of(Leg leg) {
 }
 
 std::vector<double>& values(Candidate& candidate, const char* name) {
-    return std::ranges::find(candidate.points.columns, solved().channel(name), &PointColumn::channel)->values;
+    return std::ranges::find(candidate.points.columns, solved().channel(name),
+                             &PointColumn::channel)
+        ->values;
 }
 
 CandidateJudgement judged(const Candidate& candidate) {
@@ -72,7 +74,8 @@ std::string texts(const CandidateJudgement& judgement) {
 // Explanation of this kind for one column, or null.
 const Explanation* explained(const CandidateJudgement& judgement, const char* name, Kind kind) {
     for (const auto& one : judgement.explanations)
-        if (one.kind == kind && judgement.columns[one.column].channel == solved().channel(name)) return &one;
+        if (one.kind == kind && judgement.columns[one.column].channel == solved().channel(name))
+            return &one;
     return nullptr;
 }
 
@@ -110,8 +113,10 @@ TEST(Candidate, ThatIsTheRecursionGetsItsNumbersDigitForDigit) {
             // At equal travel the recursion's reading is interpolated, this one is not. The last
             // common points differ by half a step: one of the recursion, one of the reference.
             if (judgement.columns[c].channel == solved().channel("toe")) {
-                const double there = ours.equal_abscissa.channels[judgement.columns[c].channel].signed_max;
-                EXPECT_NEAR(theirs.equal_abscissa.columns[c].signed_max, there, 0.05 * std::abs(there));
+                const double there =
+                    ours.equal_abscissa.channels[judgement.columns[c].channel].signed_max;
+                EXPECT_NEAR(theirs.equal_abscissa.columns[c].signed_max, there,
+                            0.05 * std::abs(there));
             }
         }
     }
@@ -172,7 +177,8 @@ TEST(Candidate, WithTwoColumnsChangedOverIsToldWhich) {
     const auto judgement = judged(candidate);
     EXPECT_EQ(judgement.verdict, Grade::fail);
     ASSERT_EQ(judgement.said.size(), 1u) << texts(judgement);
-    EXPECT_TRUE(judgement.said[0].starts_with("toe and camber are changed over")) << judgement.said[0];
+    EXPECT_TRUE(judgement.said[0].starts_with("toe and camber are changed over"))
+        << judgement.said[0];
 }
 
 TEST(Candidate, OffByAThousandthFailsAndTheThousandthIsTold) {
@@ -236,7 +242,8 @@ TEST(Candidate, WithWhatIsNoNumberIsNotJudged) {
 TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndWhatIsMissingIsSaid) {
     Candidate all = table_of(Leg::equilibrium), part;
     part.name = all.name;
-    for (const auto& column : all.points.columns) part.points.columns.push_back({column.channel, false, {}});
+    for (const auto& column : all.points.columns)
+        part.points.columns.push_back({column.channel, false, {}});
     for (std::size_t k = 0; k < all.points.a.size(); ++k) {
         if (all.points.branch[k] != "jounce" || all.points.a[k] > 1500) continue;
         part.points.branch.push_back(all.points.branch[k]);
@@ -246,8 +253,8 @@ TEST(Candidate, OfFewerPointsIsJudgedOnTheseAndWhatIsMissingIsSaid) {
     }
     auto judgement = judged(part);
     EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
-    EXPECT_EQ(judgement.not_given,
-              (std::vector<std::string>{"branch 'jounce' from 1500 to 3000 N", "branch 'rebound'"}));
+    EXPECT_EQ(judgement.not_given, (std::vector<std::string>{"branch 'jounce' from 1500 to 3000 N",
+                                                             "branch 'rebound'"}));
     part.complete = true;  // whole branches were requested, so a missing part is a failure
     judgement = judged(part);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
@@ -263,7 +270,8 @@ TEST(Candidate, WhatIsMissingIsSaidHoweverItIsMissing) {
         Candidate part = all;
         part.points.a.clear();
         part.points.abscissa = travel;
-        const auto& at = std::ranges::find(part.points.columns, travel, &PointColumn::channel)->values;
+        const auto& at =
+            std::ranges::find(part.points.columns, travel, &PointColumn::channel)->values;
         part.points.at = at;
         for (std::size_t k = 0; k < at.size(); ++k)
             if (std::abs(all.points.a[k]) > share * 3000)
@@ -274,14 +282,16 @@ TEST(Candidate, WhatIsMissingIsSaidHoweverItIsMissing) {
     auto judgement = judged(without_loads(0.5));
     EXPECT_EQ(judgement.verdict, Grade::pass);
     ASSERT_EQ(judgement.not_given.size(), 2u) << texts(judgement);
-    EXPECT_TRUE(judgement.not_given[0].starts_with("branch 'jounce' from ")) << judgement.not_given[0];
+    EXPECT_TRUE(judgement.not_given[0].starts_with("branch 'jounce' from "))
+        << judgement.not_given[0];
     EXPECT_TRUE(judgement.not_given[0].ends_with(" mm"));
 
     Candidate column = all;
     for (std::size_t k = 0; k < all.points.a.size(); ++k)
         if (all.points.a[k] > 750) values(column, "camber")[k] = std::nan("");
     judgement = judged(column);
-    EXPECT_EQ(judgement.not_given, std::vector<std::string>{"camber on branch 'jounce' from 750 to 3000 N"});
+    EXPECT_EQ(judgement.not_given,
+              std::vector<std::string>{"camber on branch 'jounce' from 750 to 3000 N"});
     column.complete = true;
     EXPECT_EQ(judged(column).verdict, Grade::not_judged);
 
@@ -289,8 +299,9 @@ TEST(Candidate, WhatIsMissingIsSaidHoweverItIsMissing) {
     for (std::size_t k = 0; k < all.points.a.size(); ++k)
         if (all.points.a[k] != 0 && std::abs(all.points.a[k]) != 3000)
             for (auto& c : ends.points.columns) c.values[k] = std::nan("");
-    EXPECT_EQ(judged(ends).not_given, (std::vector<std::string>{"branch 'jounce' from 0 to 3000 N",
-                                                                "branch 'rebound' from -3000 to 0 N"}));
+    EXPECT_EQ(judged(ends).not_given,
+              (std::vector<std::string>{"branch 'jounce' from 0 to 3000 N",
+                                        "branch 'rebound' from -3000 to 0 N"}));
 
     Candidate beyond = all;
     beyond.points.branch.push_back("jounce");
@@ -311,7 +322,8 @@ TEST(Candidate, WhoseForceIsOffFailsThoughItsPositionsAreRight) {
         Candidate candidate = table_of(Leg::equilibrium);
         auto& column = candidate.points.columns.emplace_back(PointColumn{c, false, {}});
         for (const auto& branch : solved().comparison.branches)
-            for (const auto& row : branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve.values)
+            for (const auto& row :
+                 branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve.values)
                 column.values.push_back(row[c] + share * branch.extents[c]);
         return judged(candidate);
     };
@@ -361,7 +373,8 @@ TEST(Candidate, WhosePointsAllLieAtTheBeginningIsNotJudged) {
     ASSERT_FALSE(right.points.a.empty());
     const auto judgement = judged(right);
     EXPECT_EQ(judgement.verdict, Grade::not_judged);
-    EXPECT_NE(texts(judgement).find("its points are all where the branches begin"), std::string::npos)
+    EXPECT_NE(texts(judgement).find("its points are all where the branches begin"),
+              std::string::npos)
         << texts(judgement);
     Candidate wrong = right;
     for (double& v : values(wrong, "toe")) v += 1;
@@ -389,7 +402,7 @@ TEST(Candidate, AtLoadsOfItsOwnIsHeldAgainstTheReferenceThere) {
     candidate.name = "mysolver";
     const auto toe = solved().channel("toe"), travel = solved().channel("travel");
     candidate.points.columns = {{toe, false, {}}, {travel, false, {}}};
-    const Way way = ways_of(solved().model, solved().model.branches[0], 7).front();
+    const BranchSide way = sides_of(solved().model, solved().model.branches[0], 7).front();
     const auto path = walk(way, {.leg = Leg::energy});
     for (const auto& point : path.points) {
         const auto row = evaluate(solved().model, solved().comparison.channels, point);
@@ -418,7 +431,7 @@ TEST(Candidate, AsAFunctionIsALeg) {
     const auto run = [&](Leg leg) {
         const CandidateSolver solver = [&](const Model& model, const Branch& branch,
                                            std::span<const double>) {
-            return walk(Way{branch.name, model, branch}, {.leg = leg});
+            return walk(BranchSide{branch.name, model, branch}, {.leg = leg});
         };
         return judged(candidate_of(solved().model, all, "mine", solver));
     };
@@ -449,7 +462,7 @@ TEST(Candidate, AsAFunctionIsALeg) {
 
 TEST(Candidate, AStateThatIsMovedLeavesTheForceOfItsStiffness) {
     const auto& all = solved().comparison;
-    const Way way = ways_of(solved().model, solved().model.branches[0], 4).front();
+    const BranchSide way = sides_of(solved().model, solved().model.branches[0], 4).front();
     const auto path = walk(way, {.leg = Leg::equilibrium});
     std::vector<CandidateState> states;
     for (const auto& point : path.points) states.push_back({"jounce", point.load, point.poses});
@@ -468,10 +481,12 @@ TEST(Candidate, WhoseSolverGivesUpIsNotJudged) {
     const CandidateSolver nothing = [](const Model&, const Branch&, std::span<const double>) {
         return EquilibriumPath{Outcome::iteration_limit, "gave up", {}, {}};
     };
-    const auto judgement = judged(candidate_of(solved().model, solved().comparison, "mine", nothing));
+    const auto judgement =
+        judged(candidate_of(solved().model, solved().comparison, "mine", nothing));
     EXPECT_EQ(judgement.verdict, Grade::not_judged) << texts(judgement);
-    const CandidateSolver no_numbers = [](const Model& model, const Branch& branch, std::span<const double>) {
-        auto path = walk(Way{branch.name, model, branch}, {.leg = Leg::equilibrium});
+    const CandidateSolver no_numbers = [](const Model& model, const Branch& branch,
+                                          std::span<const double>) {
+        auto path = walk(BranchSide{branch.name, model, branch}, {.leg = Leg::equilibrium});
         path.points.back().poses.front().r.y() = std::nan("");
         return path;
     };

@@ -1,9 +1,9 @@
 // Interval proofs of paths and their use in a comparison.
 #include <gtest/gtest.h>
 
-#include "compare/certify.hpp"
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/proofs/certify.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -22,12 +22,13 @@ TEST(Certify, EveryWayOfEveryBranchIsProvedByEachReference) {
     for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series}) {
         const CertifyStudy study = certify(model, by(leg));
         std::size_t ways = 0;
-        for (const Branch& branch : model.branches) ways += ways_of(model, branch).size();
+        for (const Branch& branch : model.branches) ways += sides_of(model, branch).size();
         ASSERT_EQ(study.ways.size(), ways);
         EXPECT_TRUE(study.conclusive());
         for (const CertifiedWay& way : study.ways) {
             EXPECT_GE(way.tally.points, 5) << way.branch;
-            EXPECT_EQ(way.tally.proved, way.tally.points) << way.branch << ": " << way.tally.not_proved;
+            EXPECT_EQ(way.tally.proved, way.tally.points)
+                << way.branch << ": " << way.tally.not_proved;
             EXPECT_LE(way.tally.error.length, 1e-9) << way.branch;
             EXPECT_GT(way.tally.unique.length, way.tally.error.length) << way.branch;
         }
@@ -84,7 +85,9 @@ TEST(Certify, AReferenceThatIsProvablyWrongObjects) {
 TEST(Certify, AComparisonProvesNothingWhereNobodyAsks) {
     Options options;
     options.prove = false;
-    EXPECT_EQ(compare(compile(support::scene("pinned_bar")), options).branches[0].runs[1].proved.points, 0);
+    EXPECT_EQ(
+        compare(compile(support::scene("pinned_bar")), options).branches[0].runs[1].proved.points,
+        0);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // Output channels: wheel angles by definition, travel, units.
-#include "compare/channels.hpp"
+#include "compare/outputs/channels.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -77,7 +77,8 @@ TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
     EXPECT_EQ(list[kinematic].name, "ball_joint.force_x");
     EXPECT_EQ(list[kinematic].joints(), std::vector<int>{0});
     EXPECT_FALSE(list[kinematic].main || list[kinematic].kinematic());
-    for (std::size_t c = 5; c < kinematic; ++c) EXPECT_TRUE(!list[c].main && list[c].kinematic()) << c;
+    for (std::size_t c = 5; c < kinematic; ++c)
+        EXPECT_TRUE(!list[c].main && list[c].kinematic()) << c;
 }
 
 TEST(Channels, EveryOneHasAUnitADefinitionAndANameOfItsOwn) {
@@ -134,7 +135,8 @@ struct Steered {
                                 .contact_local = Vector3d::Zero(),
                                 .spin_axis_local = at(0, 1, 0),
                                 .side = side});
-        model.wheels[0].steering_axis = {{ground, at(0.02, 0.6, 0.1)}, {ground, at(-0.03, 0.55, 0.6)}};
+        model.wheels[0].steering_axis = {{ground, at(0.02, 0.6, 0.1)},
+                                         {ground, at(-0.03, 0.55, 0.6)}};
         state = design_state(model);
         state.poses[0].p = turn;
     }
@@ -146,7 +148,8 @@ TEST(SteeringAxis, IsToTheWheelWhatItsDefinitionsSay) {
         Steered drawn(side);
         for (int order = 0; order < 2; ++order) {  // exchanging the ends of the axis has no effect
             EXPECT_NEAR(drawn["caster"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
-            EXPECT_NEAR(drawn["kingpin_inclination"], std::atan(0.1) * 180 / std::numbers::pi, 1e-12);
+            EXPECT_NEAR(drawn["kingpin_inclination"], std::atan(0.1) * 180 / std::numbers::pi,
+                        1e-12);
             EXPECT_NEAR(drawn["scrub_radius"], 90, 1e-10);
             EXPECT_NEAR(drawn["mechanical_trail"], 30, 1e-10);
             auto& axis = *drawn.model.wheels[0].steering_axis;
@@ -188,9 +191,11 @@ TEST(SteeringAxis, ThatIsVerticalHasNoAnglesAndOneThatLiesFlatIsUndefined) {
     EXPECT_NEAR(upright["mechanical_trail"], 10, 1e-10);
     for (const double slope : {0.0, 0.05, 0.099}) {  // [rad] to the road, along and across
         for (const bool along : {true, false}) {
-            const Vector3d u(along ? std::cos(slope) : 0, along ? 0 : std::cos(slope), std::sin(slope));
+            const Vector3d u(along ? std::cos(slope) : 0, along ? 0 : std::cos(slope),
+                             std::sin(slope));
             axis.upper.s_local = axis.lower.s_local + 0.5 * u;
-            for (const char* name : names) EXPECT_TRUE(std::isinf(upright[name])) << name << " " << slope;
+            for (const char* name : names)
+                EXPECT_TRUE(std::isinf(upright[name])) << name << " " << slope;
         }
     }
     axis.upper.s_local = axis.lower.s_local + 0.5 * Vector3d(std::cos(0.101), 0, std::sin(0.101));
@@ -221,8 +226,8 @@ struct TwoSteered {
     Equilibrium state;
     explicit TwoSteered(double left, double right) {  // [deg], positive to the left
         for (const int side : {+1, -1}) {
-            model.bodies.push_back(
-                {side > 0 ? "l" : "r", {Vector3d(0, side * 0.6, 0), Eigen::Quaterniond::Identity()}});
+            model.bodies.push_back({side > 0 ? "l" : "r",
+                                    {Vector3d(0, side * 0.6, 0), Eigen::Quaterniond::Identity()}});
             model.wheels.push_back({.name = side > 0 ? "left" : "right",
                                     .body = side > 0 ? 0 : 1,
                                     .centre_local = Vector3d(0, side * 0.1, 0.3),
@@ -242,18 +247,22 @@ struct TwoSteered {
 
 // Circle about a point on the rear-axle line, R to the left of the middle: tan δ = l / (R -+ j/2).
 TEST(Ackermann, IsHundredPercentWhereThePerpendicularsMeetOnTheRearAxle) {
-    const auto angle = [](double R, double y) { return std::atan(2.7 / (R - y)) * 180 / std::numbers::pi; };
+    const auto angle = [](double R, double y) {
+        return std::atan(2.7 / (R - y)) * 180 / std::numbers::pi;
+    };
     for (const double R : {4.0, 10.0, -5.0, -30.0}) {
         const TwoSteered round(angle(R, 0.6), angle(R, -0.6));
         EXPECT_NEAR(round["ackermann"], 100, 1e-9) << R;
     }
-    for (const double both : {2.5, 20.0, -7.0}) EXPECT_NEAR(TwoSteered(both, both)["ackermann"], 0, 1e-9);
+    for (const double both : {2.5, 20.0, -7.0})
+        EXPECT_NEAR(TwoSteered(both, both)["ackermann"], 0, 1e-9);
     EXPECT_LT(TwoSteered(19, 20)["ackermann"], -1);  // the outer wheel turns more
     EXPECT_LT(TwoSteered(-20, -19)["ackermann"], -1);
 }
 
 TEST(Ackermann, IsUndefinedUnlessBothWheelsTurnTheSameWay) {
-    for (const auto& [left, right] : {std::pair{0.0, 0.0}, {1.9, 5.0}, {5.0, 1.9}, {3.0, -3.0}, {-4.0, 6.0}})
+    for (const auto& [left, right] :
+         {std::pair{0.0, 0.0}, {1.9, 5.0}, {5.0, 1.9}, {3.0, -3.0}, {-4.0, 6.0}})
         EXPECT_TRUE(std::isinf(TwoSteered(left, right)["ackermann"])) << left << " " << right;
     TwoSteered rear(10, 12);
     rear.model.vehicle->axle = Axle::rear;
@@ -326,10 +335,11 @@ TEST(Effort, TimesTheChangeOfTheOffsetIsTheWorkOfTheDriver) {
     Model gone = rod.model;
     gone.joints[0].driven = -1;
     const auto list = channels(rod.model);
-    EXPECT_EQ(
-        evaluate(gone, std::vector{list[static_cast<std::size_t>(find_channel(list, "drive.drive_force"))]},
-                 rod.state),
-        std::vector<double>{0});
+    EXPECT_EQ(evaluate(gone,
+                       std::vector{
+                           list[static_cast<std::size_t>(find_channel(list, "drive.drive_force"))]},
+                       rod.state),
+              std::vector<double>{0});
 }
 
 TEST(Totals, AddUpTheWrenchesOnOneBodyAboutOnePoint) {

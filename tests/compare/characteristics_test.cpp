@@ -8,12 +8,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare/characteristics.hpp"
-#include "compare/compare.hpp"
-#include "compare/elements.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -25,8 +25,10 @@ using std::numbers::pi;
 constexpr double deg = 180 / pi;
 constexpr std::array all_legs{Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive};
 
-Model model_of(const std::string& text, const std::string& units = "{length: m, angle: rad, force: N}") {
-    return compile(parse_scene("elastocheck: 1\nname: test\nunits: " + units + "\n" + text, "test.yaml"));
+Model model_of(const std::string& text,
+               const std::string& units = "{length: m, angle: rad, force: N}") {
+    return compile(
+        parse_scene("elastocheck: 1\nname: test\nunits: " + units + "\n" + text, "test.yaml"));
 }
 
 // Characteristics at a = 0 of a branch, the first by default, by one leg.
@@ -57,12 +59,12 @@ class Read {
     Answers answers;
 
   private:
-    static Way way(const Model& model, const std::string& name) {
+    static BranchSide way(const Model& model, const std::string& name) {
         for (const auto& branch : model.branches)
-            if (name.empty() || branch.name == name) return ways_of(model, branch).front();
+            if (name.empty() || branch.name == name) return sides_of(model, branch).front();
         throw std::logic_error("no branch " + name);
     }
-    Way way_;
+    BranchSide way_;
     std::vector<Channel> channels_;
     std::vector<double> values_;
 };
@@ -94,7 +96,8 @@ std::string arm_scene(const Arm& arm, const std::string& more = "") {
 TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
     const Arm arm{{0.5, 0.9, 0.02}, {0.42, 0.5, -0.05}, {0, 1.1, 0}, {0.03, 1.12, -0.3}};
     const Model model = model_of(arm_scene(arm));
-    const Vector3d v_c = arm.v(arm.centre), v_p = arm.v(arm.patch), n = arm.n(), e(0, 1, 0), de = n.cross(e);
+    const Vector3d v_c = arm.v(arm.centre), v_p = arm.v(arm.patch), n = arm.n(), e(0, 1, 0),
+                   de = n.cross(e);
     const double dz = v_c.z();
     const Vector3d top(0.1, 1.0, 0.4), low(0.1, 1.0, 0);
     const double ratio = arm.v(low).z() / dz, k = 50e3;
@@ -114,7 +117,8 @@ TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
         EXPECT_NEAR(is["front_view_swing_arm"], 1e3 * (arm.centre.y() - from_front.y()), 1e-6);
         EXPECT_NEAR(is["coil.motion_ratio"], ratio, 1e-12);
         // Unloaded: force at the patch over travel of the centre is k (dℓ/dφ)² / (v_p v_c).
-        EXPECT_NEAR(is["wheel_rate"], 1e-3 * k * std::pow(arm.v(low).z(), 2) / (v_p.z() * dz), 1e-9);
+        EXPECT_NEAR(is["wheel_rate"], 1e-3 * k * std::pow(arm.v(low).z(), 2) / (v_p.z() * dz),
+                    1e-9);
         EXPECT_EQ(is["lateral_stiffness"], undefined);  // rigid with the wheel held
         EXPECT_NEAR(is["lateral_force_steer"], 0, 1e-12);
     }
@@ -194,9 +198,10 @@ TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const auto with = [&](const char* axle) {
         return model_of(arm_scene(
-            arm, fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
-                             "drive_share: 1}}\n",
-                             axle)));
+            arm,
+            fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
+                        "drive_share: 1}}\n",
+                        axle)));
     };
     const Read rear(with("rear"), Leg::equilibrium), front(with("front"), Leg::equilibrium);
     EXPECT_NEAR(rear["anti_lift"], 100 * 0.4 * 0.8 * 5, 1e-9);
@@ -229,7 +234,8 @@ TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
 std::string wishbones(const std::string& upper_inner, const std::string& upper_outer,
                       const std::string& lower_inner, const std::string& lower_outer) {
     return fmt::format(
-        "points: {{ui: {}, uo: {}, li: {}, lo: {}, c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, 0.8]}}\n"
+        "points: {{ui: {}, uo: {}, li: {}, lo: {}, c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, "
+        "0.8]}}\n"
         "bodies: {{upper: {{origin: ui}}, lower: {{origin: li}}, wheel: {{origin: c}}}}\n"
         "joints:\n"
         "  ui: {{type: revolute, bodies: [upper, ground], at: ui, axis: x}}\n"
@@ -247,8 +253,9 @@ TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFr
     // Both arms fall by 0.1 over 0.4 towards the wheel: its points move inwards by a quarter of the
     // rise; with rising arms outwards.
     for (const double fall : {0.0, 0.1, -0.1}) {
-        const Model model = model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall),
-                                               "[0, 0.3, 0.15]", fmt::format("[0, 0.7, {}]", 0.15 - fall)));
+        const Model model =
+            model_of(wishbones("[0, 0.3, 0.45]", fmt::format("[0, 0.7, {}]", 0.45 - fall),
+                               "[0, 0.3, 0.15]", fmt::format("[0, 0.7, {}]", 0.15 - fall)));
         for (const Leg leg : all_legs) {
             const Read is(model, leg);
             EXPECT_NEAR(is["bump_camber"], 0, 1e-9) << fall;
@@ -260,11 +267,11 @@ TEST(Characteristics, EqualParallelArmsCarryTheWheelUprightAndHaveNoArmFromTheFr
 }
 
 TEST(Characteristics, RollCentreLiesOnTheLineFromThePatchToTheInstantCentre) {
-    const Model model =
-        model_of(wishbones("[0, 0.35, 0.42]", "[0, 0.68, 0.46]", "[0, 0.3, 0.18]", "[0, 0.72, 0.14]"));
+    const Model model = model_of(
+        wishbones("[0, 0.35, 0.42]", "[0, 0.68, 0.46]", "[0, 0.3, 0.18]", "[0, 0.72, 0.14]"));
     // Where the lines z = 0.42 + 0.04/0.33 (y - 0.35) and z = 0.18 - 0.04/0.42 (y - 0.3) meet.
-    const double m = 0.04 / 0.33, n = -0.04 / 0.42, y = (0.18 - n * 0.3 - 0.42 + m * 0.35) / (m - n),
-                 z = 0.42 + m * (y - 0.35);
+    const double m = 0.04 / 0.33, n = -0.04 / 0.42,
+                 y = (0.18 - n * 0.3 - 0.42 + m * 0.35) / (m - n), z = 0.42 + m * (y - 0.35);
     for (const Leg leg : all_legs) {
         const Read is(model, leg);
         EXPECT_NEAR(is["front_view_swing_arm"], 1e3 * (0.8 - y), 1e-6);
@@ -290,20 +297,22 @@ TEST(Characteristics, SteeringAxisIsTheLineThroughTheBalls) {
             };
             const Model model = model_of(fmt::format(
                 "points: {{top: {}, low: {}, c: {}, p: {}, outer: {}, inner: {}, above: {}}}\n"
-                "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: above}}}}\n"
+                "bodies: {{wheel: {{origin: c}}, rack: {{origin: inner}}, link: {{origin: "
+                "above}}}}\n"
                 "joints:\n"
                 "  top: {{type: spherical, bodies: [wheel, link], at: top}}\n"
                 "  low: {{type: spherical, bodies: [wheel, link], at: low}}\n"
                 "  slide: {{type: translational, bodies: [link, ground], at: above, axis: z}}\n"
                 "  tie: {{type: distance, bodies: [wheel, rack], from: outer, to: inner}}\n"
-                "  rack: {{type: translational, bodies: [rack, ground], at: inner, axis: y, held: true}}\n"
+                "  rack: {{type: translational, bodies: [rack, ground], at: inner, axis: y, held: "
+                "true}}\n"
                 "springs: {{coil: {{bodies: [link, ground], from: above, to: c, rate: 30e3}}}}\n"
                 "branches: {{steer: {{drive: joints.rack, to: 0.01, steps: 2}}}}\n"
                 "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: {}y, side: {}}}\n",
                 point(-0.2 * caster, 0.8 - inboard - 0.2 * inclination, 0.5),
                 point(0.2 * caster, 0.8 - inboard + 0.2 * inclination, 0.1), point(0, 0.8, 0.3),
-                point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3), point(0, 0.5, 0.9),
-                side > 0 ? "" : "-", side > 0 ? "left" : "right"));
+                point(0, 0.8, 0), point(-0.15, 0.75, 0.3), point(-0.15, 0.4, 0.3),
+                point(0, 0.5, 0.9), side > 0 ? "" : "-", side > 0 ? "left" : "right"));
             for (const Leg leg : all_legs) {
                 const Read is(model, leg);
                 EXPECT_NEAR(is["caster_steered"], deg * std::atan(caster), 1e-8) << name(leg);
@@ -330,19 +339,19 @@ TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSt
                 return fmt::format("[{:.17g}, {:.17g}, {}]", r.x(), side * 0.7 + r.y(), z);
             };
             const Vector3d spin = turned(0, 1);
-            const Model model = model_of(
-                fmt::format("points: {{low: {}, up: {}, c: {}, p: {}}}\n"
-                            "bodies: {{slider: {{origin: low}}, wheel: {{origin: c}}}}\n"
-                            "joints:\n"
-                            "  lift: {{type: translational, bodies: [slider, ground], at: low, axis: z}}\n"
-                            "  kingpin: {{type: revolute, bodies: [wheel, slider], at: low, axis: [low, up], "
-                            "held: true}}\n"
-                            "springs: {{coil: {{bodies: [slider, ground], from: low, to: up, rate: 30e3}}}}\n"
-                            "branches: {{steer: {{drive: joints.kingpin, to: 0.1, steps: 2}}}}\n"
-                            "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: [{:.17g}, "
-                            "{:.17g}, 0], side: {}}}\n",
-                            point(0, 0, -0.1), point(0, 0, 0.2), point(0, 0.05, 0), point(-0.03, 0.1, -0.3),
-                            spin.x(), spin.y(), side > 0 ? "left" : "right"));
+            const Model model = model_of(fmt::format(
+                "points: {{low: {}, up: {}, c: {}, p: {}}}\n"
+                "bodies: {{slider: {{origin: low}}, wheel: {{origin: c}}}}\n"
+                "joints:\n"
+                "  lift: {{type: translational, bodies: [slider, ground], at: low, axis: z}}\n"
+                "  kingpin: {{type: revolute, bodies: [wheel, slider], at: low, axis: [low, up], "
+                "held: true}}\n"
+                "springs: {{coil: {{bodies: [slider, ground], from: low, to: up, rate: 30e3}}}}\n"
+                "branches: {{steer: {{drive: joints.kingpin, to: 0.1, steps: 2}}}}\n"
+                "wheel: {{body: wheel, centre: c, contact_patch: p, spin_axis: [{:.17g}, "
+                "{:.17g}, 0], side: {}}}\n",
+                point(0, 0, -0.1), point(0, 0, 0.2), point(0, 0.05, 0), point(-0.03, 0.1, -0.3),
+                spin.x(), spin.y(), side > 0 ? "left" : "right"));
             const Read is(model, Leg::equilibrium);
             EXPECT_NEAR(is["scrub_radius_steered"], 100, 1e-6) << side << " " << steered;
             EXPECT_NEAR(is["mechanical_trail_steered"], 30, 1e-6) << side << " " << steered;
@@ -355,9 +364,11 @@ TEST(Characteristics, ScrubAndTrailOfTheAxisThatSteersAreOfTheWheelHoweverItIsSt
 TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
     const Model model = model_of(
         "points: {m: [0.1, 0.7, 0.4], c: [0, 1, 0.3], p: [0, 1, 0]}\nbodies: {wheel: {origin: c}}\n"
-        "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], rotational_rates: [9e3, "
+        "bushings: {mount: {bodies: [wheel, ground], at: m, rates: [2e6, 5e6, 4e6], "
+        "rotational_rates: [9e3, "
         "7e3, 8e3]}}\n"
-        "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, steps: 2}}\n"
+        "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, "
+        "steps: 2}}\n"
         "wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}\n");
     const Vector3d lever = Vector3d(0, 1, 0) - Vector3d(0.1, 0.7, 0.4);
     const auto tilde = [](const Vector3d& v) {
@@ -367,7 +378,8 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
     };
     Matrix6 A = Matrix6::Identity();  // the wrench about the bushing of a unit wrench at the patch
     A.bottomLeftCorner<3, 3>() = tilde(lever);
-    const Vector6 flexible = (Vector6() << 1 / 2e6, 1 / 5e6, 1 / 4e6, 1 / 9e3, 1 / 7e3, 1 / 8e3).finished();
+    const Vector6 flexible =
+        (Vector6() << 1 / 2e6, 1 / 5e6, 1 / 4e6, 1 / 9e3, 1 / 7e3, 1 / 8e3).finished();
     const Matrix6 expected = A.transpose() * flexible.asDiagonal() * A;
     for (const Leg leg : all_legs) {
         const Read is(model, leg);
@@ -403,15 +415,15 @@ TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const auto rates_at_end = [&](const Model& model, const std::string& force) {
         const auto all = characteristics(model);
-        const Way way = ways_of(model, model.branches[0]).front();
-        const Gait gait{.leg = Leg::equilibrium};
-        const auto path = walk(way, gait);
+        const BranchSide way = sides_of(model, model.branches[0]).front();
+        const SolverSettings solver{.leg = Leg::equilibrium};
+        const auto path = walk(way, solver);
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
         auto told = channels(model);
         std::ranges::move(element_channels(model), std::back_inserter(told));
         const int c = find_channel(told, force);
         const auto values = evaluate(way.model, way.branch, told, path.points.back());
-        return std::pair{row_of(model, all, way, gait, path.points.back()).values,
+        return std::pair{row_of(model, all, way, solver, path.points.back()).values,
                          c < 0 ? 0.0 : values[static_cast<std::size_t>(c)]};
     };
     const auto scene = [&](const std::string& branches, const std::string& more) {
@@ -452,11 +464,13 @@ TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
 Model standing(const Scene& scene) { return compile(trim(scene).scene); }
 
 TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
-    for (const char* scene : {"mcpherson", "mcpherson_strut", "double_wishbone", "double_wishbone_rigid",
-                              "multi_link", "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
+    for (const char* scene :
+         {"mcpherson", "mcpherson_strut", "double_wishbone", "double_wishbone_rigid", "multi_link",
+          "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
         SCOPED_TRACE(scene);
         const Model model = standing(support::scene(scene));
-        const Read truth(model, Leg::equilibrium), second(model, Leg::energy), series(model, Leg::series);
+        const Read truth(model, Leg::equilibrium), second(model, Leg::energy),
+            series(model, Leg::series);
         for (std::size_t c = 0; c < truth.values().size(); ++c) {
             const double is = truth.values()[c];
             for (const Read* other : {&second, &series}) {
@@ -507,21 +521,25 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
 // Virtual work: the lateral movement of the patch per wheel rise equals the jack force per lateral
 // force. The first is a motion, the second a force, from independent curves.
 TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
-    for (const char* name : {"double_wishbone", "mcpherson_strut", "multi_link", "semi_trailing_arm"}) {
+    for (const char* name :
+         {"double_wishbone", "mcpherson_strut", "multi_link", "semi_trailing_arm"}) {
         Scene scene = support::scene(name);
         for (auto& branch : scene.branches)
             if (branch.name == "lateral") branch.from = -1, branch.to = 1, branch.steps = 2;
         const Model model = standing(scene);
         const auto& lateral = *std::ranges::find(model.branches, "lateral", &Branch::name);
         const auto force = run(model, lateral, Leg::equilibrium);
-        const auto jack = static_cast<std::size_t>(find_channel(channels(model), "jack.drive_force"));
-        const double per_newton = (force.curve.values.back()[jack] - force.curve.values.front()[jack]) / 2;
+        const auto jack =
+            static_cast<std::size_t>(find_channel(channels(model), "jack.drive_force"));
+        const double per_newton =
+            (force.curve.values.back()[jack] - force.curve.values.front()[jack]) / 2;
         const Read is(model, Leg::equilibrium, "lateral");
         const Pose& wheel = is.state.poses[static_cast<std::size_t>(model.wheels[0].body)];
         const double y = (wheel.r + wheel.p * model.wheels[0].contact_local).y();
         // The jack acts at the centre; the rise of the patch differs slightly with camber.
-        const double rises =
-            moved(is.state, is.answers.travel[0], {model.wheels[0].body, model.wheels[0].contact_local}).z();
+        const double rises = moved(is.state, is.answers.travel[0],
+                                   {model.wheels[0].body, model.wheels[0].contact_local})
+                                 .z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }
@@ -549,13 +567,14 @@ TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
 TEST(Characteristics, PublishedTangentLeavesOutWhatThePreloadDoes) {
     const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const Model unloaded = model_of(arm_scene(arm));
-    std::string text = arm_scene(arm, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");
+    std::string text =
+        arm_scene(arm, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");
     const Model loaded = model_of(text);
     const double published = Read(loaded, Leg::recursive)["wheel_rate"],
                  truth = Read(loaded, Leg::equilibrium)["wheel_rate"];
     EXPECT_GT(std::abs(published - truth), 0.01 * truth);
-    EXPECT_NEAR(Read(unloaded, Leg::recursive)["wheel_rate"], Read(unloaded, Leg::equilibrium)["wheel_rate"],
-                1e-9);
+    EXPECT_NEAR(Read(unloaded, Leg::recursive)["wheel_rate"],
+                Read(unloaded, Leg::equilibrium)["wheel_rate"], 1e-9);
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "recursive/series/path.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/cantilever.hpp"
 #include "tests/support/quadrature.hpp"
 
@@ -20,7 +20,8 @@ namespace {
 using namespace support;  // the leaf: E, G, L, width, thick, EI
 using std::numbers::pi;
 
-constexpr double no_curve = 1e-8;    // [mm] [deg] distance of the references without a knot of a curve
+constexpr double no_curve =
+    1e-8;  // [mm] [deg] distance of the references without a knot of a curve
 constexpr double expansions = 1e-9;  // [mm] [deg] distance of the series from the equilibrium leg
 
 // A scene in metres, radians and newtons, solved by the series and both references, which must
@@ -28,10 +29,11 @@ constexpr double expansions = 1e-9;  // [mm] [deg] distance of the series from t
 class Solved {
   public:
     // `told`: tolerance of the series [m]; smaller for chains of many bodies.
-    Solved(const std::string& text, const std::string& what, double told = recursive::Series{}.tolerance)
-        : model(compile(parse_scene(
-              "elastocheck: 1\nname: " + what + "\nunits: {length: m, angle: rad, force: N}\n" + text,
-              what))) {
+    Solved(const std::string& text, const std::string& what,
+           double told = recursive::Series{}.tolerance)
+        : model(compile(parse_scene("elastocheck: 1\nname: " + what +
+                                        "\nunits: {length: m, angle: rad, force: N}\n" + text,
+                                    what))) {
         Options options;
         options.recursion.method = {"series", 0, recursive::Series{.tolerance = told}};
         all = compare(model, options);
@@ -55,9 +57,11 @@ class Solved {
     // Output of a leg along a branch; Leg::recursive is the series. In mm, deg, N, N·m.
     std::vector<double> read(std::string_view branch, std::string_view channel,
                              Leg leg = Leg::equilibrium) const {
-        return run(branch, leg).curve.channel(static_cast<std::size_t>(find_channel(all.channels, channel)));
+        return run(branch, leg)
+            .curve.channel(static_cast<std::size_t>(find_channel(all.channels, channel)));
     }
-    double at_end(std::string_view branch, std::string_view channel, Leg leg = Leg::equilibrium) const {
+    double at_end(std::string_view branch, std::string_view channel,
+                  Leg leg = Leg::equilibrium) const {
         return read(branch, channel, leg).back();
     }
     const LegRun& run(std::string_view branch, Leg leg) const {
@@ -82,26 +86,31 @@ TEST(Cantilever, RollsIntoACircleUnderAMomentAtItsTip) {
         std::vector<double> errors;
         for (const int n : {4, 8, 16}) {
             const Solved s(
-                leaf(n) + fmt::format("loads: {{roll: {{on: tip, moment: [0, 0, 1], follows: {}}}}}\n"
-                                      "branches: {{roll: {{load: roll, to: {}, steps: 8}}}}\n",
-                                      follows, turn * EI / L),
+                leaf(n) +
+                    fmt::format("loads: {{roll: {{on: tip, moment: [0, 0, 1], follows: {}}}}}\n"
+                                "branches: {{roll: {{load: roll, to: {}, steps: 8}}}}\n",
+                                follows, turn * EI / L),
                 fmt::format("leaf of {} segments, {}", n, follows ? "follower" : "dead"), 1e-13);
             EXPECT_EQ(s.all.branches[0].second, follows ? Leg::series : Leg::energy);
-            const auto x = s.read("roll", "tip_x"), y = s.read("roll", "tip_y"), z = s.read("roll", "tip_z");
+            const auto x = s.read("roll", "tip_x"), y = s.read("roll", "tip_y"),
+                       z = s.read("roll", "tip_z");
             ASSERT_EQ(x.size(), 9u) << n;
             double error = 0;
             for (std::size_t k = 1; k < x.size(); ++k) {
-                const double phi = turn * static_cast<double>(k) / 8, theta = phi / n, R = 1e3 * L / phi;
+                const double phi = turn * static_cast<double>(k) / 8, theta = phi / n,
+                             R = 1e3 * L / phi;
                 const double chain = R * (theta / 2) / std::tan(theta / 2);
                 EXPECT_NEAR(x[k], chain * std::sin(phi), 1e-8) << n << " " << phi;
                 EXPECT_NEAR(y[k], chain * (1 - std::cos(phi)), 1e-8) << n << " " << phi;
                 EXPECT_NEAR(z[k], 0, 1e-8) << n << " " << phi;
-                error = std::max(error, std::hypot(x[k] - R * std::sin(phi), y[k] - R * (1 - std::cos(phi))));
+                error = std::max(
+                    error, std::hypot(x[k] - R * std::sin(phi), y[k] - R * (1 - std::cos(phi))));
             }
             errors.push_back(error);
         }
         for (std::size_t k = 1; k < errors.size(); ++k)
-            EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.05) << errors[k - 1] << " to " << errors[k];
+            EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.05)
+                << errors[k - 1] << " to " << errors[k];
     }
 }
 
@@ -114,15 +123,18 @@ TEST(Cantilever, ARoundRodUnderADeadMomentIsNoMinimumOfAnEnergyAllTheWayRound) {
     const int n = 8, steps = 16;
     const double diameter = 0.022, EI_rod = E * pi * std::pow(diameter, 4) / 64;
     const Model model = compile(parse_scene(
-        fmt::format("elastocheck: 1\nname: rod\nunits: {{length: m, angle: rad, force: N}}\n"
-                    "points: {{root: [0, 0, 0], tip: [{0}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
-                    "beams: {{rod: {{bodies: [ground, tip], through: [root, tip], segments: {1}, E: {2}, G: "
-                    "{3}, diameter: {4}}}}}\n"
-                    "probes: {{tip: {{on: tip, at: tip}}}}\nloads: {{roll: {{on: tip, moment: [0, 0, 1]}}}}\n"
-                    "branches: {{roll: {{load: roll, to: {5}, steps: {6}}}}}\n",
-                    L, n, E, G, diameter, 2 * pi * EI_rod / L, steps),
+        fmt::format(
+            "elastocheck: 1\nname: rod\nunits: {{length: m, angle: rad, force: N}}\n"
+            "points: {{root: [0, 0, 0], tip: [{0}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
+            "beams: {{rod: {{bodies: [ground, tip], through: [root, tip], segments: {1}, E: {2}, "
+            "G: "
+            "{3}, diameter: {4}}}}}\n"
+            "probes: {{tip: {{on: tip, at: tip}}}}\nloads: {{roll: {{on: tip, moment: [0, 0, "
+            "1]}}}}\n"
+            "branches: {{roll: {{load: roll, to: {5}, steps: {6}}}}}\n",
+            L, n, E, G, diameter, 2 * pi * EI_rod / L, steps),
         "rod.yaml"));
-    const auto ways = ways_of(model, model.branches[0]);
+    const auto ways = sides_of(model, model.branches[0]);
     for (const Leg leg : {Leg::equilibrium, Leg::series, Leg::energy}) {
         const auto path = walk(ways, {.leg = leg});
         if (leg == Leg::energy) {
@@ -151,10 +163,11 @@ TEST(Cantilever, FollowsTheElasticaUnderAForceAtItsTip) {
     EXPECT_NEAR(1 - elastica(4).x, 0.32894, 1e-5);
     std::vector<double> errors;
     for (const int n : {4, 8, 16}) {
-        const Solved s(leaf(n) + fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
-                                             "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
-                                             10 * EI / (L * L)),
-                       fmt::format("leaf of {} segments", n), 1e-13);
+        const Solved s(
+            leaf(n) + fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
+                                  "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
+                                  10 * EI / (L * L)),
+            fmt::format("leaf of {} segments", n), 1e-13);
         const auto x = s.read("push", "tip_x"), y = s.read("push", "tip_y");
         ASSERT_EQ(x.size(), 6u) << n;
         double error = 0;
@@ -180,11 +193,11 @@ TEST(Column, TangentIsSingularAtEulersLoad) {
     const double euler = pi * pi * EI / (4 * L * L);
     std::vector<double> errors;
     for (const int n : {4, 8, 16}) {
-        const Model model = compile(
-            parse_scene("elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n" + leaf(n) +
-                            "loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}\n"
-                            "branches: {press: {load: press, to: 1, steps: 1}}\n",
-                        "column.yaml"));
+        const Model model = compile(parse_scene(
+            "elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n" + leaf(n) +
+                "loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}\n"
+                "branches: {press: {load: press, to: 1, steps: 1}}\n",
+            "column.yaml"));
         const double P = critical_load(n);
         for (const auto& [leg, method] : {std::pair{Leg::recursive, "series"},
                                           {Leg::recursive, "adaptive"},
@@ -196,28 +209,30 @@ TEST(Column, TangentIsSingularAtEulersLoad) {
             for (const double share : {1 - margin, 1 + margin, 1.5}) {
                 Branch branch = model.branches[0];
                 branch.to = share * P;
-                const auto path =
-                    walk(ways_of(model, branch),
-                         {.leg = leg, .recursion = {.method = recursive::find_method(method).value()}});
+                const auto path = walk(
+                    sides_of(model, branch),
+                    {.leg = leg, .recursion = {.method = recursive::find_method(method).value()}});
                 // Within its smallest step the equilibrium leg does not distinguish a bifurcation
                 // from a limit point.
-                const bool ends = path.outcome == Outcome::dividing_point ||
+                const bool ends = path.outcome == Outcome::bifurcation_point ||
                                   (leg == Leg::equilibrium && path.outcome == Outcome::singular);
                 EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
-                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " " << method
-                    << " at " << share << ": " << path.detail;
+                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " "
+                    << method << " at " << share << ": " << path.detail;
             }
         }
         errors.push_back(1 - P / euler);
     }
     for (std::size_t k = 1; k < errors.size(); ++k)
-        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1) << errors[k - 1] << " to " << errors[k];
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1)
+            << errors[k - 1] << " to " << errors[k];
 }
 
 // ---- Torsion, bending, and both.
 
 // A rod of 22 mm.
-constexpr double D = 0.022, EI_rod = E * pi * D * D * D * D / 64, GJ_rod = G * pi * D * D * D * D / 32;
+constexpr double D = 0.022, EI_rod = E * pi * D * D * D * D / 64,
+                 GJ_rod = G * pi * D * D * D * D / 32;
 const std::string steel_rod = fmt::format("E: {}, G: {}, diameter: {}", E, G, D);
 
 // T = G J φ / L: a rod of any number of segments, and the torsion spring of the same rate. A lever
@@ -225,21 +240,23 @@ const std::string steel_rod = fmt::format("E: {}, G: {}, diameter: {}", E, G, D)
 TEST(TorsionBar, TwistsByItsTorqueTimesLengthOverGJ) {
     const double turn = 2.5;  // [rad]
     const std::string end = fmt::format(
-        "loads: {{torque: {{on: tip, moment: [1, 0, 0]}}}}\nprobes: {{lever: {{on: tip, at: lever}}}}\n"
+        "loads: {{torque: {{on: tip, moment: [1, 0, 0]}}}}\nprobes: {{lever: {{on: tip, at: "
+        "lever}}}}\n"
         "branches: {{twist: {{load: torque, from: {}, to: {}, steps: 10}}}}\n",
         -turn * GJ_rod / L, turn * GJ_rod / L);
     const std::string points = fmt::format(
-        "points: {{root: [0, 0, 0], tip: [{}, 0, 0], lever: [{}, 0.1, 0]}}\nbodies: {{tip: {{origin: "
+        "points: {{root: [0, 0, 0], tip: [{}, 0, 0], lever: [{}, 0.1, 0]}}\nbodies: {{tip: "
+        "{{origin: "
         "tip}}}}\n",
         L, L);
-    std::vector<std::string> bars{
-        fmt::format("joints: {{hinge: {{type: revolute, bodies: [tip, ground], at: tip, axis: x}}}}\n"
-                    "torsion_springs: {{bar: {{bodies: [tip, ground], at: tip, axis: x, rate: {}}}}}\n",
-                    GJ_rod / L)};
+    std::vector<std::string> bars{fmt::format(
+        "joints: {{hinge: {{type: revolute, bodies: [tip, ground], at: tip, axis: x}}}}\n"
+        "torsion_springs: {{bar: {{bodies: [tip, ground], at: tip, axis: x, rate: {}}}}}\n",
+        GJ_rod / L)};
     for (const int n : {1, 3, 12})
-        bars.push_back(
-            fmt::format("beams: {{bar: {{bodies: [ground, tip], through: [root, tip], segments: {}, {}}}}}\n",
-                        n, steel_rod));
+        bars.push_back(fmt::format(
+            "beams: {{bar: {{bodies: [ground, tip], through: [root, tip], segments: {}, {}}}}}\n",
+            n, steel_rod));
     for (const auto& bar : bars) {
         const Solved s(points + bar + end, "torsion bar");
         for (const Leg leg : legs) {
@@ -266,15 +283,18 @@ TEST(LeafSpring, GivesWayInTheMiddleByFLCubedOver48EI) {
             return fmt::format(
                 "points: {{eye_front: [{0}, 0, 0], seat: [0, 0, 0], eye_rear: [-{0}, 0, 0]}}\n"
                 "bodies: {{front: {{origin: eye_front}}, rear: {{origin: eye_rear}}}}\n"
-                "joints:\n  front: {{type: revolute, bodies: [front, ground], at: eye_front, axis: y}}\n"
+                "joints:\n  front: {{type: revolute, bodies: [front, ground], at: eye_front, axis: "
+                "y}}\n"
                 "  shackle: {{type: in_plane, bodies: [rear, ground], at: eye_rear, normal: z}}\n"
-                "beams: {{leaf: {{bodies: [front, rear], through: [eye_front, seat, eye_rear], segments: "
+                "beams: {{leaf: {{bodies: [front, rear], through: [eye_front, seat, eye_rear], "
+                "segments: "
                 "{1}, up: z, E: "
                 "{2}, G: {3},\n  A: {4}, I_y: {5}, I_z: {6}, J: {7}}}}}\n"
                 "loads: {{push: {{on: leaf.seat, at: seat, force: [0, 0, 1]}}}}\n"
                 "probes: {{seat: {{on: leaf.seat, at: seat}}}}\n"
                 "branches: {{push: {{load: push, to: {8}, steps: 4}}}}\n",
-                length / 2, n, E, G, b * t, b * t * t * t / 12, t * b * b * b / 12, b * t * t * t / 3, force);
+                length / 2, n, E, G, b * t, b * t * t * t / 12, t * b * b * b / 12,
+                b * t * t * t / 3, force);
         };
         std::vector<double> more;
         for (const double F : {5., 50., 500.}) {
@@ -301,17 +321,22 @@ TEST(AntiRollBar, HasTheRateOfItsTextbookSum) {
     for (const int n : {3, 7, 21}) {
         const auto text = [&](double force) {
             return fmt::format(
-                "points: {{end_left: [0, {0}, 0], bearing_left: [{1}, {0}, 0], bearing_right: [{1}, -{0}, "
+                "points: {{end_left: [0, {0}, 0], bearing_left: [{1}, {0}, 0], bearing_right: "
+                "[{1}, -{0}, "
                 "0], "
                 "end_right: [0, -{0}, 0]}}\n"
                 "bodies: {{link_left: {{origin: end_left}}, link_right: {{origin: end_right}}}}\n"
-                "beams: {{bar: {{bodies: [link_left, link_right], through: [end_left, bearing_left, "
+                "beams: {{bar: {{bodies: [link_left, link_right], through: [end_left, "
+                "bearing_left, "
                 "bearing_right, "
                 "end_right], segments: {2}, {3}}}}}\n"
-                "joints:\n  left: {{type: spherical, bodies: [bar.bearing_left, ground], at: bearing_left}}\n"
-                "  right: {{type: in_line, bodies: [bar.bearing_right, ground], at: bearing_right, axis: "
+                "joints:\n  left: {{type: spherical, bodies: [bar.bearing_left, ground], at: "
+                "bearing_left}}\n"
+                "  right: {{type: in_line, bodies: [bar.bearing_right, ground], at: bearing_right, "
+                "axis: "
                 "y}}\n"
-                "  link: {{type: in_plane, bodies: [link_right, ground], at: end_right, normal: z}}\n"
+                "  link: {{type: in_plane, bodies: [link_right, ground], at: end_right, normal: "
+                "z}}\n"
                 "loads: {{lift: {{on: link_left, at: end_left, force: [0, 0, 1]}}}}\n"
                 "probes: {{end: {{on: link_left, at: end_left}}}}\n"
                 "branches: {{lift: {{load: lift, to: {4}, steps: 4}}}}\n",
@@ -342,11 +367,14 @@ struct Block {
     std::string text(double to) const {
         return fmt::format(
             "points: {{low: [0, 0, 0], high: [0, 0, 0.4]}}\nbodies: {{block: {{origin: high}}}}\n"
-            "joints: {{guide: {{type: translational, bodies: [block, ground], at: high, axis: z}}}}\n"
-            "springs:\n  coil: {{bodies: [block, ground], from: high, to: low, rate: {}, bump_stop: "
+            "joints: {{guide: {{type: translational, bodies: [block, ground], at: high, axis: "
+            "z}}}}\n"
+            "springs:\n  coil: {{bodies: [block, ground], from: high, to: low, rate: {}, "
+            "bump_stop: "
             "{{clearance: {}, rate: "
             "{}}}, rebound_stop: {{clearance: {}, rate: {}}}}}\n"
-            "loads: {{push: {{on: block, at: high, force: [0, 0, -1]}}}}\nprobes: {{top: {{on: block, at: "
+            "loads: {{push: {{on: block, at: high, force: [0, 0, -1]}}}}\nprobes: {{top: {{on: "
+            "block, at: "
             "high}}}}\n"
             "branches: {{push: {{load: push, from: {}, to: {}, steps: 30}}}}\n",
             k, c, s, d, r, -to, to);
@@ -371,7 +399,8 @@ TEST(Stop, BearsWhatTheHandCalculationSaysInEveryLeg) {
             for (std::size_t k = 0; k < z.size(); ++k) {
                 const double F = run.curve.a[k], down = 0.4 - z[k] / 1e3;
                 EXPECT_NEAR(1e3 * down, 1e3 * block.down(F), 1e-8) << name(leg) << " " << F;
-                EXPECT_NEAR(F - block.k * down, block.contact(F), 1e-8 * to) << name(leg) << " " << F;
+                EXPECT_NEAR(F - block.k * down, block.contact(F), 1e-8 * to)
+                    << name(leg) << " " << F;
             }
         }
     }
@@ -385,7 +414,8 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
     const Block block;
     const double to = 3100;
     const Model model = compile(parse_scene(
-        "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n" + block.text(to), "block"));
+        "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n" + block.text(to),
+        "block"));
     for (const auto& method : recursive::methods)
         for (const int steps : {20, 40, 80, 160}) {
             const LegRun done =
@@ -402,9 +432,11 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
             const auto error = [&](const Equilibrium& point) {
                 return 0.4 - point.poses[0].r.z() - block.down(point.load);
             };
-            EXPECT_NEAR(error(*done.landmarks.back), sums ? kept(block.k * block.c, block.s) : 0, 1e-12)
+            EXPECT_NEAR(error(*done.landmarks.back), sums ? kept(block.k * block.c, block.s) : 0,
+                        1e-12)
                 << method.name << " " << steps;
-            EXPECT_NEAR(error(*done.landmarks.front), sums ? -kept(block.k * block.d, block.r) : 0, 1e-12)
+            EXPECT_NEAR(error(*done.landmarks.front), sums ? -kept(block.k * block.d, block.r) : 0,
+                        1e-12)
                 << method.name << " " << steps;
         }
 }
@@ -467,10 +499,12 @@ struct Arm {
         for (std::size_t k = 0; k < curve.x.size(); ++k)
             rows += fmt::format("{}[{}, {}]", k > 0 ? ", " : "", curve.x[k], curve.f[k]);
         return fmt::format(
-            "points: {{hinge: [0, 0, 0], end: [{}, 0, 0], top: [{}, 0, {}]}}\nbodies: {{arm: {{origin: "
+            "points: {{hinge: [0, 0, 0], end: [{}, 0, 0], top: [{}, 0, {}]}}\nbodies: {{arm: "
+            "{{origin: "
             "hinge}}}}\n"
             "joints: {{hinge: {{type: revolute, bodies: [arm, ground], at: hinge, axis: y}}}}\n"
-            "springs:\n  coil: {{bodies: [arm, ground], from: end, to: top, curve: {{table: [{}]}}, "
+            "springs:\n  coil: {{bodies: [arm, ground], from: end, to: top, curve: {{table: "
+            "[{}]}}, "
             "bump_stop: {{clearance: "
             "{}, rate: {}}}}}\n"
             "probes: {{end: {{on: arm, at: end}}}}\n"
@@ -479,7 +513,9 @@ struct Arm {
     }
     // ℓ - ℓ(0) with the arm turned by α from x towards -z, and its slope dℓ/dα.
     double longer(double alpha) const { return length(alpha) - length(0); }
-    double length(double alpha) const { return std::hypot(x - R * std::cos(alpha), z + R * std::sin(alpha)); }
+    double length(double alpha) const {
+        return std::hypot(x - R * std::cos(alpha), z + R * std::sin(alpha));
+    }
     double slope(double alpha) const {
         return R * (x * std::sin(alpha) + z * std::cos(alpha)) / length(alpha);
     }
@@ -520,14 +556,16 @@ TEST(Curve, NeedsTheMomentOfTheHandCalculationAtEveryAngle) {
 TEST(Curve, StoresTheWorkOfTheMomentThatTurnsIt) {
     const Arm arm;
     const Model model = compile(parse_scene(
-        "elastocheck: 1\nname: arm\nunits: {length: m, angle: rad, force: N}\n" + arm.text(0.24), "arm"));
+        "elastocheck: 1\nname: arm\nunits: {length: m, angle: rad, force: N}\n" + arm.text(0.24),
+        "arm"));
     const auto all = channels(model);
     const auto drive = static_cast<std::size_t>(find_channel(all, "hinge.drive_moment"));
-    for (const auto& way : ways_of(model, model.branches[0])) {
+    for (const auto& way : sides_of(model, model.branches[0])) {
         const double to = way.branch.to;
         std::vector<double> ends{0, to};  // no knot in between
         for (const double knot : {-0.03, -0.06, 0.02, 0.05, 0.08, -arm.clearance})
-            if (const double alpha = arm.angle(knot); alpha * to > 0 && std::abs(alpha) < std::abs(to))
+            if (const double alpha = arm.angle(knot);
+                alpha * to > 0 && std::abs(alpha) < std::abs(to))
                 ends.push_back(alpha);
         std::ranges::sort(ends, {}, [](double a) { return std::abs(a); });
         EXPECT_GT(ends.size(), 3u);
@@ -540,10 +578,11 @@ TEST(Curve, StoresTheWorkOfTheMomentThatTurnsIt) {
         const auto path = recursive::series::follow(way.model, way.branch);
         std::vector<Equilibrium> polynomial;
         for (const double a : at)
-            polynomial.push_back(recursive::series::evaluate(way.model, way.branch, path,
-                                                             recursive::series::find(path, a).value()));
+            polynomial.push_back(recursive::series::evaluate(
+                way.model, way.branch, path, recursive::series::find(path, a).value()));
         for (const auto& [leg, points] :
-             {std::pair{Leg::equilibrium, reference::equilibrium::solve(way.model, way.branch, at).points},
+             {std::pair{Leg::equilibrium,
+                        reference::equilibrium::solve(way.model, way.branch, at).points},
               {Leg::energy, reference::energy::solve(way.model, way.branch, at).points},
               {Leg::series, polynomial}}) {
             ASSERT_EQ(points.size(), at.size()) << name(leg);

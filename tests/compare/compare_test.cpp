@@ -1,5 +1,5 @@
 // Comparison of the three legs: required accuracy, and the conditions of an inconclusive result.
-#include "compare/compare.hpp"
+#include "compare/comparison/compare.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,10 +10,10 @@
 #include <limits>
 #include <utility>
 
-#include "compare/gate.hpp"
-#include "models/compile.hpp"
+#include "compare/gate/gate.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/overloaded.hpp"
-#include "recursive/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -34,7 +34,8 @@ bool is_undefined(const Comparison& all, const BranchComparison& branch, std::si
 double share_of_rate(const Comparison& all, const BranchComparison& branch, std::size_t c) {
     if (!std::holds_alternative<Characteristic>(all.channels[c].reads)) return 0;
     double largest = 1e-3;
-    for (const double value : branch.runs[1].curve.channel(c)) largest = std::max(largest, std::abs(value));
+    for (const double value : branch.runs[1].curve.channel(c))
+        largest = std::max(largest, std::abs(value));
     return 1e-6 * largest;
 }
 
@@ -46,7 +47,8 @@ TEST(Compare, ReferencesAgreeOnTheMcPhersonAtEveryPointOfTheSweep) {
             const auto& d = branch.uncertainty.equal_parameter.channels[c];
             EXPECT_EQ(d.compared, 301);
             if (is_undefined(mcpherson(), branch, c)) continue;
-            const double bound = std::max(channel.main ? 1e-6 : 1e-5, share_of_rate(mcpherson(), branch, c));
+            const double bound =
+                std::max(channel.main ? 1e-6 : 1e-5, share_of_rate(mcpherson(), branch, c));
             EXPECT_TRUE(std::isfinite(d.max) && d.max <= bound)
                 << branch.branch << " " << channel.name << " " << d.max;
         }
@@ -57,9 +59,11 @@ TEST(Compare, EachReferenceHoldsInTheEquationsOfTheOther) {
     for (const auto& branch : mcpherson().branches) {
         for (const auto& [run, by] : {std::pair{1, Leg::energy}, std::pair{2, Leg::equilibrium},
                                       std::pair{1, Leg::recursive}, std::pair{2, Leg::recursive}}) {
-            const auto& r = branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(by)];
+            const auto& r =
+                branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(by)];
             EXPECT_TRUE(r.force <= 1e-6 && r.moment <= 1e-6) << r.force << " " << r.moment;
-            EXPECT_TRUE(1e3 * r.length <= 1e-9 && r.direction <= 1e-12) << r.length << " " << r.direction;
+            EXPECT_TRUE(1e3 * r.length <= 1e-9 && r.direction <= 1e-12)
+                << r.length << " " << r.direction;
         }
     }
 }
@@ -81,7 +85,8 @@ TEST(Compare, RecursionMeetsTheReferenceForSmallLoads) {
         }
         // Loads held from the start add a stiffness that eq. (24) leaves out, like a preload.
         std::erase_if(scene.branches, [](const Branch& branch) {
-            return std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; });
+            return std::ranges::any_of(branch.drivers,
+                                       [](const Driver& d) { return d.start != 0; });
         });
         const Model model = compile(scene);
         for (const auto& branch : model.branches) {
@@ -106,12 +111,13 @@ TEST(Compare, PreloadMakesTheRecursionWrongEvenForTheSmallestLoad) {
     for (auto& branch : scene.branches) branch.to = std::copysign(1, branch.to), branch.steps = 1;
     const Model model = compile(scene);
     for (const auto& branch : model.branches) {
-        const LegRun fast = run(model, branch, Leg::recursive), truth = run(model, branch, Leg::equilibrium);
-        const auto consistent =
-            run(model, branch, Leg::recursive, {.method = *recursive::find_method("tangent"), .steps = 1});
+        const LegRun fast = run(model, branch, Leg::recursive),
+                     truth = run(model, branch, Leg::equilibrium);
+        const auto consistent = run(model, branch, Leg::recursive,
+                                    {.method = *recursive::find_method("tangent"), .steps = 1});
         const auto travelled = [&](const LegRun& leg) {
-            const auto travel =
-                leg.curve.channel(static_cast<std::size_t>(find_channel(channels(model), "travel")));
+            const auto travel = leg.curve.channel(
+                static_cast<std::size_t>(find_channel(channels(model), "travel")));
             return travel[1] - travel[0];
         };
         EXPECT_NEAR(travelled(fast) / travelled(truth), 1.103, 0.002) << branch.name;
@@ -160,7 +166,8 @@ TEST(Compare, ALegThatDoesNotConvergeMakesItInconclusive) {
     const auto comparison = compare(compile(scene));
     EXPECT_FALSE(comparison.conclusive());
     ASSERT_FALSE(comparison.branches[0].inconclusive.empty());
-    const std::string all = fmt::format("{}", fmt::join(comparison.branches[0].inconclusive.texts(), "; "));
+    const std::string all =
+        fmt::format("{}", fmt::join(comparison.branches[0].inconclusive.texts(), "; "));
     EXPECT_NE(all.find("equilibrium leg: limit point"), std::string::npos) << all;
     EXPECT_TRUE(comparison.branches[1].inconclusive.empty());
 }
@@ -170,7 +177,8 @@ TEST(Compare, ReferencesThatDisagreeMakeItInconclusive) {
     options.agreement.length = 0;  // no two solvers agree to the last bit
     const auto comparison = compare(compile(support::scene("pinned_bar")), options);
     ASSERT_FALSE(comparison.conclusive());
-    EXPECT_NE(comparison.branches[0].inconclusive.texts().at(0).find("disagree on tip_"), std::string::npos);
+    EXPECT_NE(comparison.branches[0].inconclusive.texts().at(0).find("disagree on tip_"),
+              std::string::npos);
     options = {};
     options.agreement.residual_length = 0;  // nor do they close many joints to the last bit
     options.recursion.steps = 10;
@@ -188,10 +196,11 @@ TEST(Compare, AReferenceIsJudgedByTheEquationsOfTheOtherNeverByItsOwn) {
     ASSERT_EQ(reasons.size(), 2u);
     for (const auto& [run, other] :
          {std::pair{Leg::equilibrium, Leg::energy}, std::pair{Leg::energy, Leg::equilibrium}}) {
-        const auto& r = branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(other)];
-        const auto said =
-            fmt::format("the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
-                        name(run), r.force, r.moment, 1e3 * r.length, name(other));
+        const auto& r =
+            branch.runs[static_cast<std::size_t>(run)].judged[static_cast<std::size_t>(other)];
+        const auto said = fmt::format(
+            "the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} leg's equations",
+            name(run), r.force, r.moment, 1e3 * r.length, name(other));
         EXPECT_TRUE(reasons[0].starts_with(said) || reasons[1].starts_with(said)) << said;
     }
 }
@@ -202,8 +211,9 @@ TEST(Compare, DeviationIsTheRecursionMinusTheReference) {
         EXPECT_EQ(branch.deviation.b, Leg::recursive);
         for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
             if (!is_undefined(mcpherson(), branch, c)) {
-                EXPECT_EQ(branch.deviation.equal_parameter.channels[c].end,
-                          branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
+                EXPECT_EQ(
+                    branch.deviation.equal_parameter.channels[c].end,
+                    branch.runs[0].curve.values.back()[c] - branch.runs[1].curve.values.back()[c])
                     << mcpherson().channels[c].name;
             }
     }
@@ -253,12 +263,14 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
         for (const auto& reason : branch.inconclusive.texts()) ADD_FAILURE() << reason;
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
-            const bool shared = channel.name.starts_with(pin + ".") || channel.name.starts_with("again.");
+            const bool shared =
+                channel.name.starts_with(pin + ".") || channel.name.starts_with("again.");
             EXPECT_EQ(branch.determined[c], !shared) << channel.name;
             const bool total = channel.name.starts_with(pin + "+again.");
             totals_seen += total;
             if (total) {
-                EXPECT_GT(branch.uncertainty.equal_parameter.channels[c].compared, 0) << channel.name;
+                EXPECT_GT(branch.uncertainty.equal_parameter.channels[c].compared, 0)
+                    << channel.name;
             }
         }
     }
@@ -267,8 +279,10 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
     const auto single = compare(compile(other));
     const int all = find_channel(comparison.channels, pin + "+again.force_z"),
               one = find_channel(single.channels, pin + ".force_z");
-    const double together = comparison.branches[0].runs[1].curve.values.back()[static_cast<std::size_t>(all)],
-                 alone = single.branches[0].runs[1].curve.values.back()[static_cast<std::size_t>(one)];
+    const double
+        together =
+            comparison.branches[0].runs[1].curve.values.back()[static_cast<std::size_t>(all)],
+        alone = single.branches[0].runs[1].curve.values.back()[static_cast<std::size_t>(one)];
     EXPECT_NEAR(together, alone, 1e-6 * std::abs(alone) + 1e-6);
 }
 
@@ -278,8 +292,9 @@ TEST(Compare, ProgressIsToldBeforeEachLeg) {
     options.progress = [&](std::string_view what) { said.emplace_back(what); };
     (void)compare(compile(support::scene("single_bushing")), options);
     EXPECT_EQ(said, (std::vector<std::string>{"pull: recursive leg", "pull: equilibrium leg",
-                                              "pull: energy leg", "pull: proofs", "push: recursive leg",
-                                              "push: equilibrium leg", "push: energy leg", "push: proofs"}));
+                                              "pull: energy leg", "pull: proofs",
+                                              "push: recursive leg", "push: equilibrium leg",
+                                              "push: energy leg", "push: proofs"}));
 }
 
 // ---- Exact results are conclusive, wrong ones are not
@@ -290,15 +305,17 @@ Scene one_arm(double k, double load) {
     Scene scene;
     scene.name = "one arm";
     scene.bodies.push_back({"arm", {}});
-    scene.joints.push_back({"pin", Revolute{Point{0}, Point{}, {0, {1, 0, 0}}, {ground, {1, 0, 0}}}});
+    scene.joints.push_back(
+        {"pin", Revolute{Point{0}, Point{}, {0, {1, 0, 0}}, {ground, {1, 0, 0}}}});
     Bushing bushing{{0, {0, 0.5, 0}}, {ground, {0, 0.5, 0}}, LinearStiffness{}};
     std::get<LinearStiffness>(bushing.law).K.diagonal() << k, k, k, 0, 0, 0;
     scene.elastics.push_back({"mount", bushing});
     scene.probes.push_back({"tip", {0, {0, 0.5, 0}}});
-    scene.branches.push_back({.name = "up",
-                              .to = load,
-                              .steps = 5,
-                              .drivers = {{Load{"pull", DeadForce{{0, {0, 0.5, 0}}, {0, 0, 1}}}, 0, 1}}});
+    scene.branches.push_back(
+        {.name = "up",
+         .to = load,
+         .steps = 5,
+         .drivers = {{Load{"pull", DeadForce{{0, {0, 0.5, 0}}, {0, 0, 1}}}, 0, 1}}});
     return scene;
 }
 
@@ -329,7 +346,8 @@ TEST(Judgement, BoundsAreSharesOfWhatActs) {
     EXPECT_DOUBLE_EQ(bounds.length, 1e-6);  // of a metre at least
     EXPECT_NE(describe(bounds).find("0.5 m"), std::string::npos) << describe(bounds);
     // Ten times the load gives ten times the bound.
-    EXPECT_NEAR(compare(compile(one_arm(1e5, 1e4))).branches[0].bounds.force / bounds.force, 10, 0.5);
+    EXPECT_NEAR(compare(compile(one_arm(1e5, 1e4))).branches[0].bounds.force / bounds.force, 10,
+                0.5);
     // The last digit of half a metre on a mount of 1e11 N/m exceeds any share of the load.
     const auto stiff = compare(compile(one_arm(1e11, 1000))).branches[0].bounds;
     EXPECT_GE(stiff.residual_force, 0.5 * 1e11 * std::numeric_limits<double>::epsilon());
@@ -357,14 +375,15 @@ TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
             EXPECT_GT(found.worst[0].share, 9.9);
         }
     for (const Leg leg : {Leg::equilibrium, Leg::energy})
-        for (double Residuals::*part : {&Residuals::force, &Residuals::moment, &Residuals::length}) {
+        for (double Residuals::*part :
+             {&Residuals::force, &Residuals::moment, &Residuals::length}) {
             BranchComparison wrong = comparison.branches[0];
             const Leg other = leg == Leg::energy ? Leg::equilibrium : Leg::energy;
             const Bounds& b = wrong.bounds;
-            wrong.runs[static_cast<std::size_t>(leg)].judged[static_cast<std::size_t>(other)].*part +=
-                10 * (part == &Residuals::force    ? b.residual_force
-                      : part == &Residuals::moment ? b.residual_moment
-                                                   : 1e-3 * b.residual_length);
+            wrong.runs[static_cast<std::size_t>(leg)].judged[static_cast<std::size_t>(other)].*
+                part += 10 * (part == &Residuals::force    ? b.residual_force
+                              : part == &Residuals::moment ? b.residual_moment
+                                                           : 1e-3 * b.residual_length);
             EXPECT_EQ(disagreements(model, comparison.channels, model.branches[0], wrong).count, 1);
         }
 }
@@ -372,17 +391,19 @@ TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
 TEST(Judgement, AnOutputThatHasAValueByOneReferenceOnlyIsAnObjection) {
     const auto& comparison = mcpherson();
     const Model model = compile(support::scene("chrono_mcpherson"));
-    const auto c =
-        std::ranges::find_if(comparison.channels, &Channel::may_be_undefined) - comparison.channels.begin();
+    const auto c = std::ranges::find_if(comparison.channels, &Channel::may_be_undefined) -
+                   comparison.channels.begin();
     ASSERT_LT(c, std::ssize(comparison.channels));
     for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
         BranchComparison wrong = comparison.branches[0];
-        auto& value = wrong.runs[static_cast<std::size_t>(leg)].curve.values[3][static_cast<std::size_t>(c)];
+        auto& value =
+            wrong.runs[static_cast<std::size_t>(leg)].curve.values[3][static_cast<std::size_t>(c)];
         value = value == undefined ? 1 : undefined;
         const auto found = disagreements(model, comparison.channels, model.branches[0], wrong);
         ASSERT_EQ(found.count, 1) << name(leg);
-        EXPECT_NE(found.worst[0].what.find(
-                      "whether " + comparison.channels[static_cast<std::size_t>(c)].name + " has a value"),
+        EXPECT_NE(found.worst[0].what.find("whether " +
+                                           comparison.channels[static_cast<std::size_t>(c)].name +
+                                           " has a value"),
                   std::string::npos)
             << found.worst[0].what;
     }
@@ -392,8 +413,9 @@ TEST(Judgement, ALegThatIsWrongByTenBoundsIsFound) {
     // The energy leg solves a spring that is stiffer by 1e-6.
     const Scene right = support::scene("pinned_bar");
     Scene wrong = right;
-    const auto stiffer = overloaded{[](AxialSpring& e) { std::get<LinearRate>(e.law).k *= 1 + 1e-6; },
-                                    [](Bushing& e) { std::get<LinearStiffness>(e.law).K *= 1 + 1e-6; }};
+    const auto stiffer =
+        overloaded{[](AxialSpring& e) { std::get<LinearRate>(e.law).k *= 1 + 1e-6; },
+                   [](Bushing& e) { std::get<LinearStiffness>(e.law).K *= 1 + 1e-6; }};
     std::visit(stiffer, wrong.elastics.front().kind);
     const Model a = compile(right), b = compile(wrong);
     auto comparison = compare(a);
@@ -428,7 +450,8 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     EXPECT_FALSE(comparison.conclusive());
     const auto why = comparison.branches[0].inconclusive.texts();
     ASSERT_FALSE(why.empty());
-    EXPECT_EQ(why[0], "nothing drives branch 'up': load 'pull': its body is left out (branch 'up')");
+    EXPECT_EQ(why[0],
+              "nothing drives branch 'up': load 'pull': its body is left out (branch 'up')");
     // The gate must not pass it either, though every number is unchanged.
     Baseline baseline;
     baseline.accepted = measure(compile(scene), comparison);
@@ -442,7 +465,8 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
 TEST(Judgement, ABranchOnWhichNoOutputMovesIsNoPass) {
     Scene scene = one_arm(1e5, 1000);
     // The load acts on the pin, which carries all of it.
-    std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind) = {{0, {0, 0, 0}}, {1, 0, 0}};
+    std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind) = {{0, {0, 0, 0}},
+                                                                                   {1, 0, 0}};
     const auto comparison = compare(compile(scene));
     EXPECT_FALSE(comparison.conclusive());
     const auto why = comparison.branches[0].inconclusive.texts();
@@ -468,7 +492,8 @@ TEST(Ways, ATwoWayBranchIsItsTwoHalvesInOneCurve) {
     const Model whole = compile(both), apart = compile(short_halves);
     for (const Leg leg : legs) {
         const auto one = run(whole, whole.branches[0], leg);
-        const auto up = run(apart, apart.branches[0], leg), down = run(apart, apart.branches[1], leg);
+        const auto up = run(apart, apart.branches[0], leg),
+                   down = run(apart, apart.branches[1], leg);
         ASSERT_EQ(one.outcome, Outcome::converged) << one.detail;
         ASSERT_EQ(one.curve.a.size(), 61u);
         EXPECT_EQ(one.curve.start, 30u);
@@ -503,7 +528,8 @@ TEST(Ways, AFailureOnOneSideIsToldWithItsWay) {
     std::swap(scene.branches[0].from, scene.branches[0].to);
     const auto second = run(compile(scene), compile(scene).branches[0], Leg::equilibrium);
     EXPECT_EQ(second.outcome, Outcome::limit_point);
-    EXPECT_TRUE(second.detail.starts_with(scene.branches[0].name + " to -300 N: ")) << second.detail;
+    EXPECT_TRUE(second.detail.starts_with(scene.branches[0].name + " to -300 N: "))
+        << second.detail;
 }
 
 TEST(Ways, AnyChannelCanBeTheAbscissa) {
@@ -514,7 +540,8 @@ TEST(Ways, AnyChannelCanBeTheAbscissa) {
     for (const auto& branch : comparison.branches) {
         const auto& reading = branch.deviation.equal_abscissa;
         if (!reading.not_compared.empty()) {
-            EXPECT_TRUE(reading.not_compared.starts_with("camber turns back at ")) << reading.not_compared;
+            EXPECT_TRUE(reading.not_compared.starts_with("camber turns back at "))
+                << reading.not_compared;
             continue;
         }
         EXPECT_LE(reading.channels[4].max, 1e-9);

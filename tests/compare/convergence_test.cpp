@@ -1,6 +1,6 @@
 // Step-size convergence: orders, limits and error bands of exact laws, published examples, and
 // sequences that must not get an order.
-#include "compare/convergence.hpp"
+#include "compare/studies/convergence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,8 @@ std::vector<Level> doubling(const std::vector<double>& values) {
 std::string text(const StepConvergence& c) {
     return std::string(name(c.behaviour)) + ", order " + std::to_string(c.order) + " +- " +
            std::to_string(c.order_error) + ", limit " + std::to_string(c.limit) + " +- " +
-           std::to_string(c.band) + ", levels " + std::to_string(c.first) + " + " + std::to_string(c.count);
+           std::to_string(c.band) + ", levels " + std::to_string(c.first) + " + " +
+           std::to_string(c.count);
 }
 
 void expect_no_order(const StepConvergence& c, Behaviour expected) {
@@ -77,18 +78,21 @@ TEST(Convergence, AnExactLawGivesItsOrderAndLimitInAnyRatioOfSteps) {
         for (const double p : {0.5, 1.0, 2.0, 3.0, 4.0})
             for (const double L : {0.0, -1.68, 113.0})
                 for (const double C : {2.0, -0.3}) {
-                    const auto levels = sequence(steps, [&](double h) { return L + C * std::pow(h, p); });
+                    const auto levels =
+                        sequence(steps, [&](double h) { return L + C * std::pow(h, p); });
                     const auto c = step_convergence(levels, p, exact);
                     ASSERT_EQ(c.behaviour, Behaviour::converging) << text(c) << " expected " << p;
                     EXPECT_TRUE(c.as_formal) << text(c) << " expected " << p;
                     // Rounding of the values, relative to the smallest difference between levels.
                     double smallest = infinity;
                     for (std::size_t k = 1; k < levels.size(); ++k)
-                        smallest = std::min(smallest, std::abs(levels[k].value - levels[k - 1].value));
+                        smallest =
+                            std::min(smallest, std::abs(levels[k].value - levels[k - 1].value));
                     const double rounding = 2.3e-16 * (std::abs(L) + 1) / smallest;
                     const double order = std::abs(c.order - p) / (1e-12 + 20 * rounding);
                     const double limit = std::abs(c.limit - L) / (c.band + 1e-15);
-                    if (!(order <= 1)) ADD_FAILURE() << text(c) << " expected " << p << " ratio " << order;
+                    if (!(order <= 1))
+                        ADD_FAILURE() << text(c) << " expected " << p << " ratio " << order;
                     if (!(limit <= 1))
                         ADD_FAILURE() << text(c) << " expected limit " << L << " ratio " << limit;
                     worst_order = std::max(worst_order, order);
@@ -101,13 +105,14 @@ TEST(Convergence, AnExactLawGivesItsOrderAndLimitInAnyRatioOfSteps) {
 TEST(Convergence, SmallOrdersKeepTheirSign) {
     for (const auto& steps : step_counts)
         for (const double p : {0.005, 0.02, 0.04, 0.06}) {
-            const auto c =
-                step_convergence(sequence(steps, [p](double h) { return std::pow(h, p); }), nan, exact);
+            const auto c = step_convergence(
+                sequence(steps, [p](double h) { return std::pow(h, p); }), nan, exact);
             ASSERT_EQ(c.behaviour, Behaviour::converging) << p;
             EXPECT_NEAR(c.order, p, 1e-9);
             EXPECT_NEAR(c.limit, 0, 1e-6);
             expect_nothing(
-                step_convergence(sequence(steps, [p](double h) { return std::pow(h, -p); }), nan, exact),
+                step_convergence(sequence(steps, [p](double h) { return std::pow(h, -p); }), nan,
+                                 exact),
                 Behaviour::diverging);
         }
 }
@@ -153,7 +158,8 @@ const Published monotone[] = {
     {{18000, 8000, 4500}, {6.063, 5.972, 5.863}, 1.53, 6.1685, 1.5, 1.7, 2.2},
     {{18000, 4500, 980}, {10.7880, 10.7250, 10.6050}, 0.75, 10.8801, 0.6, nan, 1.1},
 };
-const Published oscillating = {{18000, 4500, 980}, {6.0042, 5.9624, 6.0909}, 1.51, 6.0269, 0.7, 0.4, 0.5};
+const Published oscillating = {
+    {18000, 4500, 980}, {6.0042, 5.9624, 6.0909}, 1.51, 6.0269, 0.7, 0.4, 0.5};
 
 std::vector<Level> levels_of(const Published& example) {
     std::vector<Level> levels;
@@ -169,7 +175,8 @@ double fixed_point(const std::vector<Level>& levels) {
     const double s = ratio > 0 ? 1 : -1;
     double p = 1;
     for (int k = 0; k < 2000; ++k)
-        p = std::abs(std::log(std::abs(ratio)) + std::log((std::pow(r21, p) - s) / (std::pow(r32, p) - s))) /
+        p = std::abs(std::log(std::abs(ratio)) +
+                     std::log((std::pow(r21, p) - s) / (std::pow(r32, p) - s))) /
             std::log(r21);
     return p;
 }
@@ -240,28 +247,32 @@ TEST(Convergence, HigherOrderTermsStayWithinTheBand) {
     int formal = 0, compared = 0;
     for (const double p : {1.0, 2.0, 3.0})
         for (const double q : {1.0, 2.0})
-            for (const auto& steps : std::vector<std::vector<double>>{{10, 20, 40, 80, 160, 320},
-                                                                      {10, 15, 20, 30, 40, 60, 80, 120},
-                                                                      {10, 40, 160, 640},
-                                                                      {10, 20, 40, 80},
-                                                                      {10, 20, 40}})
+            for (const auto& steps :
+                 std::vector<std::vector<double>>{{10, 20, 40, 80, 160, 320},
+                                                  {10, 15, 20, 30, 40, 60, 80, 120},
+                                                  {10, 40, 160, 640},
+                                                  {10, 20, 40, 80},
+                                                  {10, 20, 40}})
                 for (int k = 0; k <= 80; ++k)
                     for (const double sign : {-1.0, 1.0}) {
                         const double D = sign * std::pow(10, -1 + k / 20.0);
-                        const auto levels = sequence(
-                            steps, [&](double h) { return 1 + std::pow(h, p) + D * std::pow(h, p + q); });
+                        const auto levels = sequence(steps, [&](double h) {
+                            return 1 + std::pow(h, p) + D * std::pow(h, p + q);
+                        });
                         const auto c = step_convergence(levels, p, exact);
                         if (c.behaviour != Behaviour::converging) continue;
                         const double ratio = std::abs(c.limit - 1) / c.band;
-                        if (!(ratio <= 1)) ADD_FAILURE() << p << " " << q << " D " << D << ": " << text(c);
+                        if (!(ratio <= 1))
+                            ADD_FAILURE() << p << " " << q << " D " << D << ": " << text(c);
                         worst = std::max(worst, ratio);
                         if (c.as_formal) worst_formal = std::max(worst_formal, ratio), ++formal;
                         ++compared;
                     }
     EXPECT_GE(compared, 4500);
     EXPECT_GE(formal, 2000);
-    std::printf("higher order: %d converging, worst |limit - truth| / band %.2f; %d as formal, %.2f\n",
-                compared, worst, formal, worst_formal);
+    std::printf(
+        "higher order: %d converging, worst |limit - truth| / band %.2f; %d as formal, %.2f\n",
+        compared, worst, formal, worst_formal);
 }
 
 TEST(Convergence, CoarseLevelsOutsideTheAsymptoticRangeAreLeftOut) {
@@ -278,7 +289,8 @@ TEST(Convergence, CoarseLevelsOutsideTheAsymptoticRangeAreLeftOut) {
 TEST(Convergence, AnExactLawKeepsAllItsLevels) {
     for (const double p : {1.0, 2.0}) {
         const auto c = step_convergence(
-            sequence({2, 4, 8, 16, 32, 64, 128}, [p](double h) { return 4 + std::pow(h, p); }), p, exact);
+            sequence({2, 4, 8, 16, 32, 64, 128}, [p](double h) { return 4 + std::pow(h, p); }), p,
+            exact);
         EXPECT_EQ(c.first, 0) << text(c);
         EXPECT_EQ(c.count, 7) << text(c);
     }
@@ -292,8 +304,9 @@ TEST(Convergence, NoiseOfKnownSizeIsCoveredByTheStandardErrorAndTheBand) {
             int converging = 0, order = 0, limit = 0;
             double square = 0;
             for (int trial = 0; trial < 200; ++trial) {
-                const auto levels = sequence({2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64},
-                                             [&](double h) { return -1.7 + std::pow(h, p) + noise(random); });
+                const auto levels =
+                    sequence({2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64},
+                             [&](double h) { return -1.7 + std::pow(h, p) + noise(random); });
                 const auto c = step_convergence(levels, p, {4 * sigma, 0});
                 if (c.behaviour != Behaviour::converging) continue;
                 ++converging;
@@ -324,8 +337,8 @@ TEST(Convergence, MoreLevelsOfPureNoiseAreTakenForConvergenceMoreRarely) {
             converging += c.behaviour == Behaviour::converging;
             formal += c.as_formal;
         }
-        std::printf("%d levels of pure noise: %d of 1000 converging, %d as formal\n", count, converging,
-                    formal);
+        std::printf("%d levels of pure noise: %d of 1000 converging, %d as formal\n", count,
+                    converging, formal);
         EXPECT_LE(formal, 25);
         return converging;
     };
@@ -347,7 +360,8 @@ TEST(Convergence, ScatterAboutTheLawReachesOrderAndLimitAsPerturbedValuesDo) {
         auto up = levels, down = levels;
         up[k].value += 1e-6;
         down[k].value -= 1e-6;
-        const auto above = step_convergence(up, nan, exact), below = step_convergence(down, nan, exact);
+        const auto above = step_convergence(up, nan, exact),
+                   below = step_convergence(down, nan, exact);
         of_order = std::hypot(of_order, above.order - below.order);
         of_limit = std::hypot(of_limit, above.limit - below.limit);
     }
@@ -375,7 +389,8 @@ TEST(Convergence, TheSafetyFactorIsSmallOnlyForTheFormalOrderOnFourLevels) {
 TEST(Convergence, AnOrderIsFormalWithinATenthAndAtMostAQuarter) {
     const std::vector<double> steps = {10, 20, 40, 80, 160};
     const auto as_formal = [&](double order, double formal) {
-        return step_convergence(sequence(steps, [&](double h) { return std::pow(h, order); }), formal, exact)
+        return step_convergence(sequence(steps, [&](double h) { return std::pow(h, order); }),
+                                formal, exact)
             .as_formal;
     };
     for (const double formal : {0.5, 1.0, 2.0, 3.0, 4.0})
@@ -398,7 +413,8 @@ TEST(Convergence, DivergenceNeverComesOutWithAPositiveOrder) {
             }
     for (const auto& steps : step_counts)  // logarithmic drift, p = 0: grows past any limit too
         expect_nothing(
-            step_convergence(sequence(steps, [](double h) { return std::log(h) - 1e-3 / h; }), 1, exact),
+            step_convergence(sequence(steps, [](double h) { return std::log(h) - 1e-3 / h; }), 1,
+                             exact),
             Behaviour::diverging);
 }
 
@@ -427,7 +443,8 @@ TEST(Convergence, OscillationHasNoOrderWhetherItDecaysOrNot) {
             for (int k = 0; k < count; ++k) values.push_back(3 + std::pow(ratio, k));
             expect_nothing(step_convergence(doubling(values), 1, exact), Behaviour::oscillating);
         }
-    expect_nothing(step_convergence(doubling({4, 3, 2.5, 2.25, 2.5}), 1, exact), Behaviour::oscillating);
+    expect_nothing(step_convergence(doubling({4, 3, 2.5, 2.25, 2.5}), 1, exact),
+                   Behaviour::oscillating);
 }
 
 TEST(Convergence, ATurnAtTheCoarseEndIsLeftOutOfTheWindow) {
@@ -457,7 +474,8 @@ TEST(Convergence, ADifferenceAtRoundOffIsNoTurn) {
 }
 
 TEST(Convergence, SeveralTurnsNeedFourLevelsInOneDirectionAfterwards) {
-    EXPECT_EQ(step_convergence(doubling({0, 1, 0, 1, 1.5}), 1, exact).behaviour, Behaviour::oscillating);
+    EXPECT_EQ(step_convergence(doubling({0, 1, 0, 1, 1.5}), 1, exact).behaviour,
+              Behaviour::oscillating);
     const auto c = step_convergence(doubling({1, 0, 2, 1, 0.5, 0.25}), 1, exact);
     EXPECT_EQ(c.behaviour, Behaviour::converging) << text(c);
     EXPECT_EQ(c.first, 2);
@@ -486,7 +504,8 @@ TEST(Convergence, AConstantIsAtTheRoundOffFloor) {
 
 TEST(Convergence, RoundingOfTheValuesIsAFloorThatNeedNotBeStated) {
     const double next = std::nextafter(113.0, 200.0);
-    expect_no_order(step_convergence(doubling({113, next, 113, next}), 1, exact), Behaviour::round_off_floor);
+    expect_no_order(step_convergence(doubling({113, next, 113, next}), 1, exact),
+                    Behaviour::round_off_floor);
     expect_no_order(step_convergence(doubling({113, next, 113, next}), 1, {nan, nan}),
                     Behaviour::round_off_floor);
 }
@@ -510,8 +529,8 @@ TEST(Convergence, LevelsAtRoundOffAreLeftOutAndGiveTheLimit) {
 }
 
 TEST(Convergence, ThreeLevelsAtRoundOffAreALimitWhateverCameBefore) {
-    for (const auto& values :
-         std::vector<std::vector<double>>{{1, -1, 0.5, 0.2, 0.2, 0.2}, {0, 1, 3, 3, 3}, {1, 2, 2}}) {
+    for (const auto& values : std::vector<std::vector<double>>{
+             {1, -1, 0.5, 0.2, 0.2, 0.2}, {0, 1, 3, 3, 3}, {1, 2, 2}}) {
         const auto c = step_convergence(doubling(values), 1, exact);
         expect_no_order(c, Behaviour::round_off_floor);
         EXPECT_EQ(c.limit, values.back());
@@ -525,7 +544,8 @@ TEST(Convergence, WithinTheReferencesUncertaintyNothingIsClaimed) {
     EXPECT_EQ(c.limit, 1.0001);
     EXPECT_EQ(c.band, 1e-3);
     for (const double reference : {0.0, 1e-4, nan})
-        EXPECT_EQ(step_convergence(levels, 1, {0, reference}).behaviour, Behaviour::converging) << reference;
+        EXPECT_EQ(step_convergence(levels, 1, {0, reference}).behaviour, Behaviour::converging)
+            << reference;
     // Oscillation, divergence and growth below the floor are not significant either.
     expect_no_order(step_convergence(doubling({1, 1.0001, 1, 1.0003}), 1, {0, 1e-3}),
                     Behaviour::reference_floor);
@@ -566,7 +586,8 @@ TEST(Convergence, StepsMustBePositiveAndIncrease) {
 }
 
 TEST(Convergence, AnOrderBeyondTheSearchRangeIsReadAsTenOrMore) {
-    for (const auto& values : std::vector<std::vector<double>>{{1, 1e-5, 1e-10}, {1, 1e-4, 1e-8, 1e-11}}) {
+    for (const auto& values :
+         std::vector<std::vector<double>>{{1, 1e-5, 1e-10}, {1, 1e-4, 1e-8, 1e-11}}) {
         const auto c = step_convergence(doubling(values), 1, {1e-13, 0});
         ASSERT_EQ(c.behaviour, Behaviour::converging);
         EXPECT_NEAR(c.order, 10, 1e-6);
@@ -579,8 +600,9 @@ TEST(Convergence, AnOrderBeyondTheSearchRangeIsReadAsTenOrMore) {
 TEST(Convergence, EveryBehaviourHasItsOwnName) {
     std::set<std::string> names;
     for (const Behaviour each :
-         {Behaviour::converging, Behaviour::oscillating, Behaviour::diverging, Behaviour::round_off_floor,
-          Behaviour::reference_floor, Behaviour::not_finite, Behaviour::too_few_levels})
+         {Behaviour::converging, Behaviour::oscillating, Behaviour::diverging,
+          Behaviour::round_off_floor, Behaviour::reference_floor, Behaviour::not_finite,
+          Behaviour::too_few_levels})
         names.insert(name(each));
     EXPECT_EQ(names.size(), 7u);
     EXPECT_EQ(names.count("?"), 0u);
@@ -606,8 +628,8 @@ TEST(StepsFor, TheStepErrorWithThatManyStepsIsTheOneAskedFor) {
 }
 
 TEST(StepsFor, TheLawAboveRoundOffIsUsedWhenTheFinestLevelsAreAtIt) {
-    const auto levels =
-        sequence({4, 8, 16, 32, 64, 512, 1024}, [](double h) { return 5 + (h < 1e-2 ? 0 : std::pow(h, 3)); });
+    const auto levels = sequence({4, 8, 16, 32, 64, 512, 1024},
+                                 [](double h) { return 5 + (h < 1e-2 ? 0 : std::pow(h, 3)); });
     const auto c = step_convergence(levels, 3, {1e-7, 0});
     ASSERT_EQ(c.behaviour, Behaviour::converging) << text(c);
     EXPECT_NEAR(steps_for(c, levels, 1e-3), 10, 0.05);
@@ -617,8 +639,8 @@ TEST(StepsFor, WithoutConvergenceOrAnErrorThereIsNoNumber) {
     const auto good = doubling({1, 0.5, 0.25});
     const auto c = step_convergence(good, 1, exact);
     for (const double error : {0.0, -1.0, nan}) EXPECT_TRUE(std::isnan(steps_for(c, good, error)));
-    for (const auto& values :
-         std::vector<std::vector<double>>{{1, 1, 1}, {1, 2, 4}, {1, 2, 1}, {1, nan, 1}, {1, 2}, {}}) {
+    for (const auto& values : std::vector<std::vector<double>>{
+             {1, 1, 1}, {1, 2, 4}, {1, 2, 1}, {1, nan, 1}, {1, 2}, {}}) {
         const auto levels = doubling(values);
         EXPECT_TRUE(std::isnan(steps_for(step_convergence(levels, 1, exact), levels, 1e-3)));
     }
@@ -630,7 +652,8 @@ TEST(OrderOf, APowerLawGivesItsSignedOrder) {
     for (const auto& steps : step_counts)
         for (const double p : {-2.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0})
             for (const double C : {3.0, -1e-6}) {
-                const auto fit = order_of(sequence(steps, [&](double h) { return C * std::pow(h, p); }), 0);
+                const auto fit =
+                    order_of(sequence(steps, [&](double h) { return C * std::pow(h, p); }), 0);
                 EXPECT_NEAR(fit.order, p, 1e-12);
                 EXPECT_LE(fit.order_error, 1e-12);
                 EXPECT_EQ(fit.count, static_cast<int>(steps.size()));

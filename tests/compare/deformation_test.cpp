@@ -1,12 +1,12 @@
 // Deformations of elements as computed by compare/, and ends of curves.
-#include "compare/deformation.hpp"
+#include "compare/outputs/deformation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -23,17 +23,20 @@ constexpr double third = 1.0 / 3;
 Law cubic(bool known_outside = true) {
     const auto f = [](double x) { return 1000 * x + 2e5 * x * x * x; };
     const auto slope = [](double x) { return 1000 + 6e5 * x * x; };
-    const auto about = [&](double x) { return std::array<double, 4>{f(x), slope(x), 6e5 * x, 2e5}; };
-    return {{-0.02, 0.01, 0.03},
-            {{f(-0.02), slope(-0.02), 0, 0}, about(-0.02), about(0.01), {f(0.03), slope(0.03), 0, 0}},
-            known_outside};
+    const auto about = [&](double x) {
+        return std::array<double, 4>{f(x), slope(x), 6e5 * x, 2e5};
+    };
+    return {
+        {-0.02, 0.01, 0.03},
+        {{f(-0.02), slope(-0.02), 0, 0}, about(-0.02), about(0.01), {f(0.03), slope(0.03), 0, 0}},
+        known_outside};
 }
 
 TEST(Laws, ForceOfACurveIsThatOfItsPolynomialOnEveryPiece) {
     for (double x = -0.02; x <= 0.03; x += 0.0005)
         EXPECT_NEAR(force(ScalarLaw(cubic()), x), 1000 * x + 2e5 * x * x * x, 1e-11) << x;
-    EXPECT_NEAR(force(ScalarLaw(cubic()), 0.05), 1000 * 0.03 + 2e5 * 27e-6 + 0.02 * (1000 + 6e5 * 9e-4),
-                1e-11);
+    EXPECT_NEAR(force(ScalarLaw(cubic()), 0.05),
+                1000 * 0.03 + 2e5 * 27e-6 + 0.02 * (1000 + 6e5 * 9e-4), 1e-11);
 }
 
 TEST(Laws, SteepestSlopeIsFoundAtEndsAndInside) {
@@ -58,19 +61,22 @@ Pair turned(const Quaterniond& B, const Vector3d& d) {
 TEST(Deformation, AnglesAreThoseOfTheirNames) {
     using Angles = Formulation::Angles;
     const Quaterniond cardan = Quaterniond(AngleAxisd(0.3, Vector3d::UnitX())) *
-                               AngleAxisd(-0.2, Vector3d::UnitY()) * AngleAxisd(0.5, Vector3d::UnitZ());
+                               AngleAxisd(-0.2, Vector3d::UnitY()) *
+                               AngleAxisd(0.5, Vector3d::UnitZ());
     auto [bushing, state] = turned(cardan, {0, 0, 0});
     bushing.formulation.angles = Angles::cardan;
     EXPECT_LE((deformation(bushing, state).tail<3>() - Vector3d(0.3, -0.2, 0.5)).norm(), 1e-15);
     const Vector3d theta(0.4, -0.3, 0.2);
-    auto [other, turn] = turned(Quaterniond(AngleAxisd(theta.norm(), theta.normalized())), {0, 0, 0});
+    auto [other, turn] =
+        turned(Quaterniond(AngleAxisd(theta.norm(), theta.normalized())), {0, 0, 0});
     EXPECT_LE((deformation(other, turn).tail<3>() - theta).norm(), 1e-15);
     // About one axis all three angle conventions agree.
     for (int axis = 0; axis < 3; ++axis) {
         auto [single, at] = turned(Quaterniond(AngleAxisd(0.7, Vector3d::Unit(axis))), {0, 0, 0});
         for (const auto angles : {Angles::rotation_vector, Angles::cardan, Angles::projected}) {
             single.formulation.angles = angles;
-            EXPECT_LE((deformation(single, at).tail<3>() - 0.7 * Vector3d::Unit(axis)).norm(), 1e-15);
+            EXPECT_LE((deformation(single, at).tail<3>() - 0.7 * Vector3d::Unit(axis)).norm(),
+                      1e-15);
         }
     }
 }
@@ -89,7 +95,8 @@ TEST(Deformation, InTheMiddleItIsTheSameFromBothSides) {
 TEST(Deformation, IsCountedFromWhereNothingIsDeformed) {
     auto [bushing, state] = turned(Quaterniond::Identity(), {1e-3, 0, 0});
     bushing.undeformed = Vector6::Constant(third);
-    EXPECT_LE((deformation(bushing, state) - Vector6::Unit(0) * 1e-3 + bushing.undeformed).norm(), 1e-16);
+    EXPECT_LE((deformation(bushing, state) - Vector6::Unit(0) * 1e-3 + bushing.undeformed).norm(),
+              1e-16);
 }
 
 // The paper's strut whose spring curve ends at 60 mm on both sides.
@@ -99,8 +106,8 @@ Scene short_table(bool known_outside) {
     for (auto& elastic : scene.elastics)
         if (auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
             const double k = std::get<LinearRate>(spring->law).k, x = 0.06;
-            spring->law =
-                Law{{-x, x}, {{-k * x, k, 0, 0}, {-k * x, k, 0, 0}, {k * x, k, 0, 0}}, known_outside};
+            spring->law = Law{
+                {-x, x}, {{-k * x, k, 0, 0}, {-k * x, k, 0, 0}, {k * x, k, 0, 0}}, known_outside};
         }
     return scene;
 }
@@ -108,11 +115,12 @@ Scene short_table(bool known_outside) {
 TEST(OutsideTable, ACurveThatGoesOnIsTheRateItIs) {
     Scene linear = support::scene("chrono_mcpherson");
     for (auto& branch : linear.branches) branch.steps = 30;
-    const Comparison straight = compare(compile(linear)), curved = compare(compile(short_table(true)));
+    const Comparison straight = compare(compile(linear)),
+                     curved = compare(compile(short_table(true)));
     EXPECT_TRUE(curved.conclusive());
     for (std::size_t b = 0; b < straight.branches.size(); ++b) {
-        const Reading apart =
-            at_equal_parameter(straight.branches[b].runs[1].curve, curved.branches[b].runs[1].curve);
+        const Reading apart = at_equal_parameter(straight.branches[b].runs[1].curve,
+                                                 curved.branches[b].runs[1].curve);
         for (std::size_t c = 0; c < 5; ++c)
             EXPECT_LE(apart.channels[c].max, 1e-8) << straight.channels[c].name;
         // Bounds depend on the largest stiffness and force, for any law.
@@ -137,9 +145,10 @@ TEST(OutsideTable, EveryLegEndsThereAndBothReferencesAgreeOnWhere) {
         EXPECT_GT(equilibrium.curve.a.size(), 10u);
         EXPECT_LT(equilibrium.curve.a.size(), 31u);
         ASSERT_FALSE(branch.inconclusive.empty());
-        EXPECT_NE(branch.inconclusive.worst.front().what.find("outside its table"), std::string::npos)
+        EXPECT_NE(branch.inconclusive.worst.front().what.find("outside its table"),
+                  std::string::npos)
             << branch.inconclusive.worst.front().what;
-        const auto ways = ways_of(model, model.branches[b]);
+        const auto ways = sides_of(model, model.branches[b]);
         const auto points = walk(ways, {.leg = Leg::equilibrium}).points;
         EXPECT_EQ(points.size(), equilibrium.curve.a.size());
         for (const auto& point : points)

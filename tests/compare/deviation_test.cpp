@@ -1,5 +1,5 @@
 // Deviations between curves: NaN, empty curves and wrong abscissas never pass.
-#include "compare/deviation.hpp"
+#include "compare/deviation/deviation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -94,7 +94,8 @@ TEST(Deviation, ANaNAnywhereIsNeverSmall) {
         EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].max)) << where;
         EXPECT_TRUE(std::isnan(at_equal_parameter(a, b).channels[1].range)) << where;
         b.values[where][0] = nan;
-        EXPECT_FALSE(at_equal_travel(made(1, [](double x) { return x; }), b).not_compared.empty()) << where;
+        EXPECT_FALSE(at_equal_travel(made(1, [](double x) { return x; }), b).not_compared.empty())
+            << where;
     }
 }
 
@@ -182,7 +183,9 @@ TEST(Abscissa, IsTravelWhereThereIsAWheelElseWhatMovesFarthest) {
 TEST(Interpolation, IsExactForPolynomialsUpToItsDegreeOnBothDirections) {
     for (const double direction : {1.0, -1.0}) {
         std::vector<double> x, y;
-        const auto p = [](double t) { return 1 + t * (2 + t * (-0.5 + t * (0.3 + t * (0.1 - 0.02 * t)))); };
+        const auto p = [](double t) {
+            return 1 + t * (2 + t * (-0.5 + t * (0.3 + t * (0.1 - 0.02 * t))));
+        };
         for (int k = 0; k < 12; ++k) {
             x.push_back(direction * (k + 0.3 * std::sin(3.0 * k)));
             y.push_back(p(x.back()));
@@ -191,7 +194,8 @@ TEST(Interpolation, IsExactForPolynomialsUpToItsDegreeOnBothDirections) {
             const double at = direction * t;
             EXPECT_NEAR(interpolate(x, y, at, 6), p(at), 1e-9 * (1 + std::abs(p(at))));
         }
-        for (std::size_t k = 0; k < x.size(); ++k) EXPECT_DOUBLE_EQ(interpolate(x, y, x[k], 6), y[k]);
+        for (std::size_t k = 0; k < x.size(); ++k)
+            EXPECT_DOUBLE_EQ(interpolate(x, y, x[k], 6), y[k]);
     }
 }
 

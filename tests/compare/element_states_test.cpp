@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "compare/elements.hpp"
-#include "compare/positions.hpp"
-#include "compare/table.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/outputs/positions.hpp"
+#include "compare/tables/table.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
 #include "models/overloaded.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -32,8 +32,8 @@ Pose shifted(const Pose& pose, int k, double h) {
     return {pose.r, Eigen::Quaterniond(Eigen::AngleAxisd(h, Vector3d::Unit(k % 3))) * pose.p};
 }
 
-Vector6 wrench_about_origin(const Equilibrium& state, BodyId body, const Vector3d& at, const Vector3d& f,
-                            const Vector3d& m) {
+Vector6 wrench_about_origin(const Equilibrium& state, BodyId body, const Vector3d& at,
+                            const Vector3d& f, const Vector3d& m) {
     Vector6 w;
     w << f, m + (at - pose(state.poses, body).r).cross(f);
     return w;
@@ -41,8 +41,8 @@ Vector6 wrench_about_origin(const Equilibrium& state, BodyId body, const Vector3
 
 void add(std::vector<Vector6>& on, const Equilibrium& state, const LoadKind& load, double factor) {
     const auto force = [&](const Point& at, const Vector3d& f) {
-        on[static_cast<std::size_t>(at.body)] +=
-            wrench_about_origin(state, at.body, position(state.poses, at), factor * f, Vector3d::Zero());
+        on[static_cast<std::size_t>(at.body)] += wrench_about_origin(
+            state, at.body, position(state.poses, at), factor * f, Vector3d::Zero());
     };
     const auto moment = [&](BodyId body, const Vector3d& m) {
         on[static_cast<std::size_t>(body)].tail<3>() += factor * m;
@@ -50,11 +50,12 @@ void add(std::vector<Vector6>& on, const Equilibrium& state, const LoadKind& loa
     const auto turn = [&](BodyId body, const Vector3d& v) -> Vector3d {
         return pose(state.poses, body).p * v;
     };
-    std::visit(overloaded{[&](const DeadForce& l) { force(l.at, l.f); },
-                          [&](const DeadMoment& l) { moment(l.body, l.m); },
-                          [&](const FollowerForce& l) { force(l.at, turn(l.at.body, l.f_local)); },
-                          [&](const FollowerMoment& l) { moment(l.body, turn(l.body, l.m_local)); }},
-               load);
+    std::visit(
+        overloaded{[&](const DeadForce& l) { force(l.at, l.f); },
+                   [&](const DeadMoment& l) { moment(l.body, l.m); },
+                   [&](const FollowerForce& l) { force(l.at, turn(l.at.body, l.f_local)); },
+                   [&](const FollowerMoment& l) { moment(l.body, turn(l.body, l.m_local)); }},
+        load);
 }
 
 // Wrenches of loads and joints on each body, about its origin.
@@ -90,7 +91,8 @@ double out_of_balance(const Model& model, const Branch& branch, const Equilibriu
             Equilibrium more = state, less = state;
             more.poses[b] = shifted(state.poses[b], k, h);
             less.poses[b] = shifted(state.poses[b], k, -h);
-            const auto there = evaluate(model, branch, all, more), here = evaluate(model, branch, all, less);
+            const auto there = evaluate(model, branch, all, more),
+                       here = evaluate(model, branch, all, less);
             double sum = on[b][k];
             size = std::max(size, std::abs(sum));
             for (std::size_t c = 0; c < all.size(); ++c) {
@@ -98,7 +100,8 @@ double out_of_balance(const Model& model, const Branch& branch, const Equilibriu
                 if (of == nullptr || of->component < 6 || std::isnan(values[c])) continue;
                 std::size_t d = c;  // the deformation along the same axis
                 while (std::get<OfElement>(all[d].reads).component != of->component - 6) --d;
-                const double taken_up = values[c] * (there[d] - here[d]) / in_unit(all[d].unit) / (2 * h);
+                const double taken_up =
+                    values[c] * (there[d] - here[d]) / in_unit(all[d].unit) / (2 * h);
                 sum -= taken_up;
                 size = std::max(size, std::abs(taken_up));
             }
@@ -125,15 +128,17 @@ TEST_P(Balance, ForcesOfElementsLoadsAndJointsAddUpToNothingOnEveryBody) {
     const Scene scene = trim(support::scene(GetParam())).scene;
     const Model model = compile(scene);
     for (const auto& branch : model.branches)
-        for (const Way& way : ways_of(model, branch, 4)) {
+        for (const BranchSide& way : sides_of(model, branch, 4)) {
             const std::vector<double> ends{0, way.branch.to / 2, way.branch.to};
             const auto equilibrium = reference::equilibrium::solve(way.model, way.branch, ends);
             ASSERT_FALSE(equilibrium.points.empty()) << way.name << ": " << equilibrium.detail;
             for (const auto& state : equilibrium.points)
-                EXPECT_LE(out_of_balance(model, branch, state), 1e-7) << way.name << " at " << state.load;
+                EXPECT_LE(out_of_balance(model, branch, state), 1e-7)
+                    << way.name << " at " << state.load;
             const auto energy = reference::energy::solve(way.model, way.branch, ends);
             for (const auto& state : energy.points)
-                EXPECT_LE(out_of_balance(model, branch, state), 1e-6) << way.name << " at " << state.load;
+                EXPECT_LE(out_of_balance(model, branch, state), 1e-6)
+                    << way.name << " at " << state.load;
         }
 }
 

@@ -1,12 +1,12 @@
 // Element outputs: closed forms, signs, names.
-#include "compare/elements.hpp"
+#include "compare/comparison/elements.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -14,7 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-double value(const Model& model, const Branch& branch, const Equilibrium& state, const std::string& name) {
+double value(const Model& model, const Branch& branch, const Equilibrium& state,
+             const std::string& name) {
     const auto list = element_channels(model);
     const int c = find_channel(list, name);
     if (c < 0) {
@@ -56,8 +57,9 @@ TEST(ElementOutputs, OfASpringAndAStopArePositiveInCompression) {
 
     // Acts from 20 mm of compression on, at a design length of 0.5 m.
     const elastocheck::Curve closing{{-0.02}, {{0, 1e5, 0, 0}, {0, 0, 0, 0}}};
-    const One stop({"coil.bump_stop", AxialSpring{coil.i, coil.j, closing, 0.5}, false, WrittenAs::stop},
-                   {Vector3d(0, 0, 0.03), Eigen::Quaterniond::Identity()});
+    const One stop(
+        {"coil.bump_stop", AxialSpring{coil.i, coil.j, closing, 0.5}, false, WrittenAs::stop},
+        {Vector3d(0, 0, 0.03), Eigen::Quaterniond::Identity()});
     EXPECT_NEAR(stop["coil.bump_stop.deflection"], 30, 1e-10);
     EXPECT_NEAR(stop["coil.bump_stop.force"], 1000, 1e-8);
 }
@@ -162,7 +164,8 @@ TEST(ElementOutputs, HaveNamesOfTheirOwnBesideThoseOfTheJoints) {
         const std::size_t first = all.size();
         for (const auto& channel : element_channels(model)) all.push_back(channel);
         for (std::size_t c = first; c < all.size(); ++c) {
-            EXPECT_EQ(find_channel(all, all[c].name), static_cast<int>(c)) << name << " " << all[c].name;
+            EXPECT_EQ(find_channel(all, all[c].name), static_cast<int>(c))
+                << name << " " << all[c].name;
             EXPECT_FALSE(all[c].main || all[c].kinematic());
             EXPECT_TRUE(all[c].definition.find("positive") != std::string::npos ||
                         all[c].definition.find("right-handed") != std::string::npos)

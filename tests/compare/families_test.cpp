@@ -6,9 +6,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/benchmark/families.hpp"
 #include "tests/support/planar_chain.hpp"
 
@@ -40,8 +40,9 @@ struct Walked {
 
     EquilibriumPath by(Leg leg) const {
         const auto path =
-            walk(ways_of(model, model.branches[0]),
-                 {.leg = leg, .recursion = {.method = {"series", 0, recursive::Series{.tolerance = 1e-13}}}});
+            walk(sides_of(model, model.branches[0]),
+                 {.leg = leg,
+                  .recursion = {.method = {"series", 0, recursive::Series{.tolerance = 1e-13}}}});
         EXPECT_EQ(path.outcome, Outcome::converged)
             << named(family) << " by " << name(leg) << ": " << path.detail;
         EXPECT_EQ(path.points.size(), 6u) << named(family) << " by " << name(leg);
@@ -73,7 +74,8 @@ Eigen::Vector3d on_chain(const Family& f, const PlanarChain::Shape& shape, int l
                          const Eigen::Vector3d& drawn) {
     const auto link = static_cast<std::size_t>(std::lround(drawn.x() * links / families::length));
     EXPECT_LT(link, shape.x.size()) << named(f);
-    return {static_cast<double>(shape.x.at(link)), drawn.y(), static_cast<double>(shape.z.at(link))};
+    return {static_cast<double>(shape.x.at(link)), drawn.y(),
+            static_cast<double>(shape.z.at(link))};
 }
 
 // The axle: the housing only rises by u, as its links are mirror images. Each link has V = F/n
@@ -105,8 +107,8 @@ double off_the_closed_form_mm(const Walked& w, const EquilibriumPath& path) {
                       : f.kind == Kind::tree ? families::levels(f.bodies)
                                              : f.bodies / families::rows(f.bodies);
     const double h = families::length / links;
-    const auto chain =
-        PlanarChain::links(links, h, families::EI / h, f.hinge == Hinge::bushing ? h / families::EA : 0);
+    const auto chain = PlanarChain::links(links, h, families::EI / h,
+                                          f.hinge == Hinge::bushing ? h / families::EA : 0);
     double most = path.points.empty() ? NAN : 0;
     for (const auto& point : path.points) {
         if (point.load == 0) continue;
@@ -114,8 +116,8 @@ double off_the_closed_form_mm(const Walked& w, const EquilibriumPath& path) {
         const auto axle = lifted(f.hinge, point.load);
         for (std::size_t i = 0; i < point.poses.size(); ++i) {
             const auto& drawn = w.model.bodies[i].design.r;
-            const auto known =
-                f.kind == Kind::axle ? on_axle(axle, point.load, drawn) : on_chain(f, shape, links, drawn);
+            const auto known = f.kind == Kind::axle ? on_axle(axle, point.load, drawn)
+                                                    : on_chain(f, shape, links, drawn);
             most = larger(most, 1e3 * (point.poses[i].r - known).norm());
         }
     }
@@ -162,7 +164,8 @@ TEST(Families, StandThereWithFourTimesTheBodies) {
 Walked pushed_at_a_corner() {
     const Family grid{Kind::grid, 15};
     Scene scene = parse_scene(families::scene(grid), "grid");
-    scene.branches[0].drivers.erase(scene.branches[0].drivers.begin(), scene.branches[0].drivers.end() - 1);
+    scene.branches[0].drivers.erase(scene.branches[0].drivers.begin(),
+                                    scene.branches[0].drivers.end() - 1);
     return {grid, scene};
 }
 
@@ -178,14 +181,16 @@ TEST(Families, WithoutAClosedFormStandWhereBothReferencesSay) {
     for (const Walked& w : all) {
         const auto equilibrium = w.by(Leg::equilibrium);
         EXPECT_LE(furthest_apart_mm(equilibrium, w.by(Leg::energy)), references) << named(w.family);
-        EXPECT_LE(furthest_apart_mm(equilibrium, w.by(Leg::recursive)), expansions) << named(w.family);
+        EXPECT_LE(furthest_apart_mm(equilibrium, w.by(Leg::recursive)), expansions)
+            << named(w.family);
     }
 }
 
 TEST(Families, OfBeamsStandWithFourTimesTheBodiesWhereEquilibriumLegAndSeriesSay) {
     for (const Kind kind : {Kind::leaf_spring, Kind::ladder_frame}) {
         const Walked w({kind, 60});
-        EXPECT_LE(furthest_apart_mm(w.by(Leg::equilibrium), w.by(Leg::recursive)), expansions) << name(kind);
+        EXPECT_LE(furthest_apart_mm(w.by(Leg::equilibrium), w.by(Leg::recursive)), expansions)
+            << name(kind);
     }
 }
 
@@ -257,8 +262,8 @@ double frame_flexibility(const families::Frame& frame) {
         const int at[] = {3 * i, 3 * i + slope, 3 * j, 3 * j + slope};
         const double s = sign * l;
         Eigen::Matrix4d bend;
-        bend << 12, 6 * s, -12, 6 * s, 6 * s, 4 * l * l, -6 * s, 2 * l * l, -12, -6 * s, 12, -6 * s, 6 * s,
-            2 * l * l, -6 * s, 4 * l * l;
+        bend << 12, 6 * s, -12, 6 * s, 6 * s, 4 * l * l, -6 * s, 2 * l * l, -12, -6 * s, 12, -6 * s,
+            6 * s, 2 * l * l, -6 * s, 4 * l * l;
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b) K(at[a], at[b]) += EI / (l * l * l) * bend(a, b);
         for (const int a : {i, j})
@@ -270,7 +275,8 @@ double frame_flexibility(const families::Frame& frame) {
         add(right(k), left(k), frame.width, frame.cross, 1, 1, 2);  // along y: w' = φ_x
         if (k + 1 < c)
             for (const auto& side : {left(k), right(k)})
-                add(side, side + 2, frame.length / (c - 1), frame.rail, 2, -1, 1);  // along x: w' = -φ_y
+                add(side, side + 2, frame.length / (c - 1), frame.rail, 2, -1,
+                    1);  // along x: w' = -φ_y
     }
     for (const int held : {left(0), right(0), left(c - 1)}) {
         K.row(3 * held).setZero();
@@ -301,24 +307,25 @@ TEST(Families, MethodsHaveTheOrderTheyDeclare) {
     for (const Family& family : all) {
         const Walked w(family);
         const bool nothing_turns = family.hinge == Hinge::revolute && family.kind != Kind::axle;
-        const bool beams = !has_hinges(family.kind);  // nearly inextensible: large higher-order terms
+        const bool beams =
+            !has_hinges(family.kind);  // nearly inextensible: large higher-order terms
         const Eigen::Vector3d truth = w.end(w.by(Leg::equilibrium).points.back());
         for (const auto& method : recursive::methods) {
             if (!has_steps(method)) continue;
             std::vector<Eigen::Vector3d> ends;
             for (const int refine : {20, 40, 80}) {
-                const auto path =
-                    walk(ways_of(w.model, w.model.branches[0]),
-                         {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine});
+                const auto path = walk(
+                    sides_of(w.model, w.model.branches[0]),
+                    {.leg = Leg::recursive, .recursion = {.method = method}, .refine = refine});
                 ASSERT_EQ(path.outcome, Outcome::converged)
                     << named(family) << " " << method.name << path.detail;
                 ends.push_back(w.end(path.points.back()));
             }
             const double own = std::log2((ends[0] - ends[1]).norm() / (ends[1] - ends[2]).norm());
             const double to_truth = std::log2((ends[1] - truth).norm() / (ends[2] - truth).norm());
-            const std::string what =
-                fmt::format("{} {}: own {:.3f}, to the truth {:.3f}, off by {:.2e} mm", named(family),
-                            method.name, own, to_truth, 1e3 * (ends[2] - truth).norm());
+            const std::string what = fmt::format(
+                "{} {}: own {:.3f}, to the truth {:.3f}, off by {:.2e} mm", named(family),
+                method.name, own, to_truth, 1e3 * (ends[2] - truth).norm());
             if (method.formal_order == 0) {
                 EXPECT_NEAR(own, 1, 0.1) << what;
                 EXPECT_NEAR(to_truth, nothing_turns ? 1 : 0, 0.1) << what;
@@ -354,9 +361,11 @@ TEST(Families, OfNoSuchSizeOrJointAreRefused) {
     for (const Kind kind : families::kinds) {
         EXPECT_THROW(families::scene({kind, families::least_bodies(kind) - 1}), std::out_of_range)
             << name(kind);
-        EXPECT_THROW(families::scene({kind, families::most_bodies + 1}), std::out_of_range) << name(kind);
+        EXPECT_THROW(families::scene({kind, families::most_bodies + 1}), std::out_of_range)
+            << name(kind);
         if (!has_hinges(kind)) {
-            EXPECT_THROW(families::scene({kind, 30, Hinge::revolute}), std::invalid_argument) << name(kind);
+            EXPECT_THROW(families::scene({kind, 30, Hinge::revolute}), std::invalid_argument)
+                << name(kind);
         }
     }
 }

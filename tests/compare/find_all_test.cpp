@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "compare/find_all.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/proofs/multiple_equilibria.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -60,7 +60,7 @@ std::vector<double> heights(double load) {
 
 AllEquilibria all_of(const std::string& text, double a) {
     const Model model = compile(parse_scene(text, "scene.yaml"));
-    return find_all(model, model.branches.front(), a);
+    return find_equilibria(model, model.branches.front(), a);
 }
 
 TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedFormHasThem) {
@@ -82,7 +82,8 @@ TEST(FindAll, TheArchHasThreeAtALoadBelowItsLimitEachProvedAndWhereTheClosedForm
         }
         std::ranges::sort(found);
         for (int n = 0; n < 3; ++n)
-            EXPECT_NEAR(found[static_cast<std::size_t>(n)], expected[static_cast<std::size_t>(n)], 1e-9);
+            EXPECT_NEAR(found[static_cast<std::size_t>(n)], expected[static_cast<std::size_t>(n)],
+                        1e-9);
         EXPECT_TRUE(all.list.front().on_branch);
         EXPECT_NEAR(all.list.front().state.poses[0].r.z(), expected[2], 1e-9);
         EXPECT_EQ(std::ranges::count(all.list, true, &FoundEquilibrium::on_branch), 1);
@@ -135,7 +136,7 @@ probes: {tip: {on: m, at: a}}
 TEST(FindAll, AModelThatIsTooLargeIsNotSearched) {
     Model large = compile(parse_scene(arch("-200"), "scene.yaml"));
     large.bodies.resize(101, large.bodies[0]);
-    const auto all = find_all(large, large.branches.front(), -120);
+    const auto all = find_equilibria(large, large.branches.front(), -120);
     EXPECT_EQ(all.outcome, Outcome::too_large);
     EXPECT_EQ(all.detail, "101 bodies, equilibria are searched for up to 100");
     EXPECT_FALSE(all.proved);
@@ -165,7 +166,8 @@ TEST(FindAll, WhereNoBranchBeginsDistancesAreFromTheDrawing) {
     EXPECT_EQ(all.stable(), 2);
     for (const auto& one : all.list) {
         EXPECT_NEAR(one.length, one.stable ? std::sqrt(0.31 * 0.31 - 0.3 * 0.3) : 0, 1e-9);
-        EXPECT_NE(one.meaning.find("from the drawing, from which no branch begins"), one.meaning.npos);
+        EXPECT_NE(one.meaning.find("from the drawing, from which no branch begins"),
+                  one.meaning.npos);
     }
 }
 
@@ -203,7 +205,7 @@ TEST(FindAll, AStraightColumnPastItsBucklingLoadHasABentOneOnEitherSide) {
     EXPECT_NEAR(x[2], theta, 1e-8);
     // These are rotated by 59 deg; a smaller limit leaves only the straight one.
     const Model model = compile(parse_scene(column, "scene.yaml"));
-    const auto upright = find_all(model, model.branches.front(), f, {.turn = 0.9});
+    const auto upright = find_equilibria(model, model.branches.front(), f, {.turn = 0.9});
     EXPECT_EQ(upright.list.size(), 1u);
     EXPECT_EQ(upright.turned_over, 2);
 }
@@ -219,15 +221,17 @@ TEST(FindAll, LegsOnTwoBranchesAreSaidToBeAndNotToDeviate) {
     for (auto& channel : branch.uncertainty.equal_parameter.channels) channel.max = 160;
     ASSERT_FALSE(said().empty());
     EXPECT_NE(said()[0].find("the reference legs disagree on"), std::string::npos) << said()[0];
-    const auto all = find_all(model, model.branches[0], -120);
+    const auto all = find_equilibria(model, model.branches[0], -120);
     ASSERT_EQ(all.list.size(), 3u);
     auto& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
     energy.landmarks.back = all.list.back().state;
     ASSERT_EQ(said().size(), 1u);
-    EXPECT_EQ(said()[0],
-              fmt::format("the energy leg is on another equilibrium than the equilibrium leg at -120 N, each "
-                          "proved: body 'a' is {:.3g} mm away",
-                          1e3 * all.list.back().length));
+    EXPECT_EQ(
+        said()[0],
+        fmt::format(
+            "the energy leg is on another equilibrium than the equilibrium leg at -120 N, each "
+            "proved: body 'a' is {:.3g} mm away",
+            1e3 * all.list.back().length));
     // A state that is no equilibrium is not another branch.
     energy.landmarks.back->poses[0].r.z() += 1e-4;
     EXPECT_NE(said()[0].find("the reference legs disagree on"), std::string::npos) << said()[0];
@@ -242,7 +246,7 @@ TEST(FindAll, ASlideOnItsHeadIsNoEquilibriumOfTheArch) {
 
 TEST(FindAll, ASuspensionHasTheOneOfItsBranch) {
     const Model model = compile(support::scene("mcpherson"));
-    const auto all = find_all(model, model.branches.front(), 500, {.at_random = 4});
+    const auto all = find_equilibria(model, model.branches.front(), 500, {.at_random = 4});
     ASSERT_FALSE(all.list.empty());
     EXPECT_TRUE(all.list[0].on_branch);
     EXPECT_TRUE(all.list[0].stable);

@@ -1,12 +1,12 @@
 // Key figures of a comparison, and comparison with measured points.
-#include "compare/findings.hpp"
+#include "compare/studies/findings.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "compare/measured.hpp"
-#include "models/compile.hpp"
+#include "compare/candidate/measured.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -94,7 +94,8 @@ TEST(RateErrors, AreNotSaidOfBranchesThatLoadAnythingElse) {
     };
     EXPECT_EQ(with([&](Branch& b, Scene&) { force(b).f = {1, 0, 1}; }), 0u);
     EXPECT_EQ(with([&](Branch& b, Scene&) { force(b).f = {0, 0.1, 0}; }), 0u);
-    EXPECT_EQ(with([&](Branch& b, Scene& s) { force(b).at.body = s.wheels[0].body == 0 ? 1 : 0; }), 0u);
+    EXPECT_EQ(with([&](Branch& b, Scene& s) { force(b).at.body = s.wheels[0].body == 0 ? 1 : 0; }),
+              0u);
     EXPECT_EQ(with([&](Branch& b, Scene&) {
                   b.drivers.push_back(b.drivers[0]), force(b).f = {0, 1e-3, 0};
               }),
@@ -162,15 +163,16 @@ TEST(Measured, PointsAreReadOnTheirBranchByParameterAndByTravel) {
     for (const std::size_t branch : {0u, 1u})
         for (const bool by_travel : {false, true})
             for (const bool named : {false, true}) {
-                const auto found =
-                    compare_measured(mcpherson(), compared(), taken(branch, 0.25, by_travel, named));
+                const auto found = compare_measured(mcpherson(), compared(),
+                                                    taken(branch, 0.25, by_travel, named));
                 ASSERT_EQ(found.readings.size(), 1u);
                 EXPECT_EQ(found.readings[0].by_parameter, !by_travel);
                 const MeasuredRow& row = found.readings[0].rows[0];
                 EXPECT_EQ(row.compared, 3);
                 EXPECT_NEAR(row.off[1].signed_max, 0.25, 1e-6);
                 EXPECT_NEAR(row.off[1].rms, 0.25, 1e-6);
-                EXPECT_EQ(found.branch, std::vector<std::string>(3, compared().branches[branch].branch));
+                EXPECT_EQ(found.branch,
+                          std::vector<std::string>(3, compared().branches[branch].branch));
             }
 }
 
@@ -197,7 +199,8 @@ TEST(Measured, BranchesOnTheSameSideMustBeNamed) {
     for (auto& branch : scene.branches) branch.steps = 5;
     const Model model = compile(scene);
     const auto both = compare(model);
-    EXPECT_THROW((void)compare_measured(model, both, taken(0, 0, true, false)), std::invalid_argument);
+    EXPECT_THROW((void)compare_measured(model, both, taken(0, 0, true, false)),
+                 std::invalid_argument);
     EXPECT_EQ(compare_measured(model, both, taken(0, 0, true, true)).branch[0], "jounce");
 }
 
@@ -218,7 +221,8 @@ TEST(Measured, AChangeCountsFromTheDesignPosition) {
     const auto found = compare_measured(model, comparison, measured);
     EXPECT_EQ(found.compared, 1);
     EXPECT_NEAR(found.readings[0].rows[0].off[1].signed_max, 0, 1e-9);
-    EXPECT_GT(truth.values[0][static_cast<std::size_t>(find_channel(comparison.channels, "travel"))], 1);
+    EXPECT_GT(
+        truth.values[0][static_cast<std::size_t>(find_channel(comparison.channels, "travel"))], 1);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // Spread of the outputs over bushing formulations.
-#include "compare/formulations.hpp"
+#include "compare/studies/formulations.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "compare/table.hpp"
-#include "models/compile.hpp"
+#include "compare/tables/table.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -34,12 +34,14 @@ TEST(Formulations, AConversionIsOfEveryBushingAndItsEffectIsTheDifferenceOfTheTw
     ASSERT_GT(all.bushings.size(), 3u);
     EXPECT_TRUE(converted(all.scene, target).bushings.empty());
     for (Elastic& elastic : scene.elastics)
-        if (auto* bushing = std::get_if<Bushing>(&elastic.kind); bushing && elastic.name == all.bushings[0]) {
+        if (auto* bushing = std::get_if<Bushing>(&elastic.kind);
+            bushing && elastic.name == all.bushings[0]) {
             bushing->formulation = target;
             bushing->formulation.frame = Formulation::Frame::on_j;
         }
     EXPECT_EQ(converted(scene, target).bushings.size(), all.bushings.size() - 1);
-    const FormulationStudy study = spread_among({{"a", support::scene("multi_link")}, {"b", all.scene}}, 2);
+    const FormulationStudy study =
+        spread_among({{"a", support::scene("multi_link")}, {"b", all.scene}}, 2);
     ASSERT_TRUE(study.conclusive());
     const Model before = compile(support::scene("multi_link")), after = compile(all.scene);
     double most = 0;
@@ -47,8 +49,8 @@ TEST(Formulations, AConversionIsOfEveryBushingAndItsEffectIsTheDifferenceOfTheTw
         const Curve x = run(before, before.branches[b], Leg::equilibrium, {.steps = 2}).curve,
                     y = run(after, after.branches[b], Leg::equilibrium, {.steps = 2}).curve;
         for (const auto& found : study.branches[b].outputs) {
-            const auto c =
-                static_cast<std::size_t>(find_channel(channels(before), study.channels[found.channel].name));
+            const auto c = static_cast<std::size_t>(
+                find_channel(channels(before), study.channels[found.channel].name));
             double largest = 0;
             for (std::size_t k = 0; k < x.a.size(); ++k)
                 largest = std::max(largest, std::abs(x.values[k][c] - y.values[k][c]));
@@ -68,18 +70,22 @@ TEST(Formulations, SpreadIsLargestLessSmallestOfWhatTheLegSaysOfEach) {
         // In the paper's mount the strut is free to spin; a frame in the middle turns half as far,
         // and the mount's force then pushes the idle mode.
         ASSERT_EQ(study.branches[b].not_solved.size(), 1u);
-        EXPECT_TRUE(study.branches[b].not_solved[0].starts_with("frame in the middle: loaded idle mode: "))
+        EXPECT_TRUE(
+            study.branches[b].not_solved[0].starts_with("frame in the middle: loaded idle mode: "))
             << study.branches[b].not_solved[0];
         EXPECT_EQ(study.branches[b].solved.size(), formulations.size() - 1);
-        std::vector<double> low(study.channels.size(), INFINITY), high(study.channels.size(), -INFINITY);
+        std::vector<double> low(study.channels.size(), INFINITY),
+            high(study.channels.size(), -INFINITY);
         for (const auto& [name, formulation] : formulations) {
             if (name == "frame in the middle") continue;
             const Model model = compile(formulation ? reformulated(scene, *formulation) : scene);
             const Curve end = run(model, model.branches[b], Leg::equilibrium).curve;
             for (const auto& found : study.branches[b].outputs)
                 if (found.at == end.a.back()) {
-                    low[found.channel] = std::min(low[found.channel], end.values.back()[found.channel]);
-                    high[found.channel] = std::max(high[found.channel], end.values.back()[found.channel]);
+                    low[found.channel] =
+                        std::min(low[found.channel], end.values.back()[found.channel]);
+                    high[found.channel] =
+                        std::max(high[found.channel], end.values.back()[found.channel]);
                 }
         }
         int at_end = 0;
@@ -103,7 +109,8 @@ TEST(Formulations, ForSmallLoadsAllAgree) {
         ASSERT_TRUE(study.conclusive());
         double spread = 0;
         for (const auto& found : study.branches[0].outputs)
-            if (study.channels[found.channel].unit == Unit::mm) spread = std::max(spread, found.spread);
+            if (study.channels[found.channel].unit == Unit::mm)
+                spread = std::max(spread, found.spread);
         if (load == 1)
             spread_of_one = spread;
         else

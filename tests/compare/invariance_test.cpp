@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -32,8 +32,9 @@ class EveryLeg : public testing::TestWithParam<Stride> {
     static std::vector<std::string> scenes() {
         std::vector<std::string> names = support::small_scene_names();
         if (GetParam().leg == Leg::energy)
-            std::erase_if(names,
-                          [](const auto& name) { return !support::has_potential(support::scene(name)); });
+            std::erase_if(names, [](const auto& name) {
+                return !support::has_potential(support::scene(name));
+            });
         return names;
     }
 
@@ -57,8 +58,9 @@ class EveryLeg : public testing::TestWithParam<Stride> {
             for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
                 for (std::size_t c = 0; c < names_a.size(); ++c) {
                     auto& size = largest[static_cast<int>(names_a[c].unit)];
-                    size = std::max(size, std::abs(run_a.curve.values[p][c] -
-                                                   (names_a[c].kinematic() ? run_a.curve.values[0][c] : 0)));
+                    size = std::max(
+                        size, std::abs(run_a.curve.values[p][c] -
+                                       (names_a[c].kinematic() ? run_a.curve.values[0][c] : 0)));
                 }
             // A moment about a distant point is as accurate as force times distance.
             largest[3] = std::max(largest[3], largest[2]);
@@ -67,9 +69,11 @@ class EveryLeg : public testing::TestWithParam<Stride> {
                     std::ranges::find(names_b, names_a[c].name, &Channel::name) - names_b.begin();
                 double worst = 0;
                 for (std::size_t p = 0; p < run_a.curve.values.size(); ++p)
-                    worst = std::max(worst, std::abs(run_b.curve.values[p][static_cast<std::size_t>(in_b)] -
-                                                     sign(names_a[c].name) * run_a.curve.values[p][c]));
-                EXPECT_LE(worst, bound() * std::max(largest[static_cast<int>(names_a[c].unit)], 1.0))
+                    worst = std::max(
+                        worst, std::abs(run_b.curve.values[p][static_cast<std::size_t>(in_b)] -
+                                        sign(names_a[c].name) * run_a.curve.values[p][c]));
+                EXPECT_LE(worst,
+                          bound() * std::max(largest[static_cast<int>(names_a[c].unit)], 1.0))
                     << scene.name << ", " << a.branches[k].name << ": " << names_a[c].name;
             }
         }
@@ -86,7 +90,8 @@ TEST_P(EveryLeg, DoesNotSeeTheOrderOfBodiesAndJoints) {
 
 TEST_P(EveryLeg, DoesNotSeeTheAxesInWhichABodyIsDescribed) {
     for (const auto& name : scenes())
-        expect_same(support::scene(name), support::with_body_axes(support::scene(name), {R, R.conjugate()}),
+        expect_same(support::scene(name),
+                    support::with_body_axes(support::scene(name), {R, R.conjugate()}),
                     [](const std::string&) { return 1; });
 }
 
@@ -122,9 +127,11 @@ TEST_P(EveryLeg, DoesNotSeeTheGroundFrame) {
                     };
                     const Eigen::Vector3d in_a = vector(run_a, p);
                     const Eigen::Vector3d in_b =
-                        R.conjugate() * Eigen::Vector3d(vector(run_b, p) - (position ? 1e3 : 0) * t);
-                    size = std::max(size,
-                                    (in_a - (position ? vector(run_a, 0) : Eigen::Vector3d::Zero())).norm());
+                        R.conjugate() *
+                        Eigen::Vector3d(vector(run_b, p) - (position ? 1e3 : 0) * t);
+                    size = std::max(
+                        size,
+                        (in_a - (position ? vector(run_a, 0) : Eigen::Vector3d::Zero())).norm());
                     for (std::size_t j = 0; j < list.size(); ++j)
                         if (list[j].joints() == list[c].joints() && !position)
                             size = std::max(size, std::abs(run_a.curve.values[p][j]));

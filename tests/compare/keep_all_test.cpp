@@ -6,11 +6,11 @@
 #include <set>
 #include <tuple>
 
-#include "compare/compare.hpp"
-#include "compare/trim.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "recursive/diagnosis.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -24,7 +24,8 @@ double allowed(Unit unit, double size) {
 }
 
 // Whether the wrenches that the channel reads are active on the branch, and determined.
-std::vector<bool> determined(const Model& model, const std::vector<Channel>& list, const Branch& branch) {
+std::vector<bool> determined(const Model& model, const std::vector<Channel>& list,
+                             const Branch& branch) {
     const Model standing = on_branch(model, branch);
     const auto known = recursive::diagnose(standing).determined;
     std::vector<bool> stands(model.joints.size(), false), result;
@@ -45,8 +46,9 @@ std::string joint_of(const Model& model, const Channel& channel) {
 
 // Message of compile() about a joint that was left out or condensed.
 std::string said_of(const Model& model, const std::string& joint) {
-    for (const auto& [what, why] : model.left_out)
-        if (what == "joint '" + joint + "'" || why.find("joint '" + joint + "'") != std::string::npos)
+    for (const auto& [what, why] : model.omitted)
+        if (what == "joint '" + joint + "'" ||
+            why.find("joint '" + joint + "'") != std::string::npos)
             return what + ": " + why;
     return "";
 }
@@ -56,8 +58,8 @@ struct Tally {
     std::set<std::string> only_in_one;  // joints with a wrench in only one of the two models
 };
 
-void expect_same(const std::string& name, const Model& required, const Model& whole, std::size_t branch,
-                 Tally& tally) {
+void expect_same(const std::string& name, const Model& required, const Model& whole,
+                 std::size_t branch, Tally& tally) {
     const auto some = channels(required), all = channels(whole);
     for (const auto& [list, other, of] :
          {std::tuple{&all, &some, &whole}, std::tuple{&some, &all, &required}})
@@ -65,7 +67,8 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
             if (find_channel(*other, channel.name) >= 0) continue;
             ASSERT_FALSE(channel.kinematic()) << name << ": " << channel.name;
             const std::string joint = joint_of(*of, channel);
-            EXPECT_NE(said_of(required, joint), "") << name << ": nothing is said of joint " << joint;
+            EXPECT_NE(said_of(required, joint), "")
+                << name << ": nothing is said of joint " << joint;
             tally.only_in_one.insert(joint);
         }
     const Branch &less_branch = required.branches[branch], &more_branch = whole.branches[branch];
@@ -86,14 +89,16 @@ void expect_same(const std::string& name, const Model& required, const Model& wh
         double size = 0, apart = 0;
         for (std::size_t k = 0; k < less.curve.a.size(); ++k) {
             const double value = less.curve.values[k][c];
-            if (some[c].may_be_undefined() && value == undefined && more.curve.values[k][other] == undefined)
+            if (some[c].may_be_undefined() && value == undefined &&
+                more.curve.values[k][other] == undefined)
                 continue;
             size = std::max(size, std::abs(value));
             apart = worse(apart, std::abs(value - more.curve.values[k][other]));
             ++(some[c].kinematic() ? tally.kinematic : tally.forces);
         }
         EXPECT_TRUE(apart <= allowed(some[c].unit, size))
-            << name << ", " << less_branch.name << ", " << some[c].name << ": " << apart << " of " << size;
+            << name << ", " << less_branch.name << ", " << some[c].name << ": " << apart << " of "
+            << size;
     }
 }
 
@@ -104,7 +109,8 @@ TEST(KeepAll, EveryOutputOfEverySceneIsTheSameWithNothingLeftOut) {
         Scene scene = trim(support::scene(name)).scene;
         for (auto& branch : scene.branches) branch.steps = 4;
         const Model required = compile(scene), whole = compile(scene, Detail::everything);
-        if (required.bodies.size() < whole.bodies.size() && required.joints.size() < whole.joints.size())
+        if (required.bodies.size() < whole.bodies.size() &&
+            required.joints.size() < whole.joints.size())
             smaller.insert(name);
         ASSERT_EQ(required.branches.size(), whole.branches.size());
         for (std::size_t b = 0; b < required.branches.size(); ++b)
@@ -114,7 +120,8 @@ TEST(KeepAll, EveryOutputOfEverySceneIsTheSameWithNothingLeftOut) {
     EXPECT_GT(tally.forces, 1000);
     // Welded to ground, welded together, redundant; links with a ball at each end.
     EXPECT_EQ(smaller, (std::set<std::string>{"front_axle", "multi_link"}));
-    for (const char* joint : {"subframe", "hub", "trailing_ball", "link_to_arm_left", "drop_link_left"})
+    for (const char* joint :
+         {"subframe", "hub", "trailing_ball", "link_to_arm_left", "drop_link_left"})
         EXPECT_TRUE(tally.only_in_one.contains(joint)) << joint;
 }
 

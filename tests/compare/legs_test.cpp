@@ -1,16 +1,16 @@
 // Continuation of branches: points are passed on when found, in the order of the branch, all or
 // every `every`-th; results without stored points.
-#include "compare/legs.hpp"
+#include "compare/comparison/legs.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -18,46 +18,55 @@ namespace {
 
 // Equal to the last bit.
 bool same(const Equilibrium& a, const Equilibrium& b) {
-    const auto pose = [](const Pose& x, const Pose& y) { return x.r == y.r && x.p.coeffs() == y.p.coeffs(); };
+    const auto pose = [](const Pose& x, const Pose& y) {
+        return x.r == y.r && x.p.coeffs() == y.p.coeffs();
+    };
     const auto wrench = [](const Wrench& x, const Wrench& y) {
         return x.force == y.force && x.moment == y.moment;
     };
     return a.load == b.load && a.constraint_error == b.constraint_error &&
-           std::ranges::equal(a.poses, b.poses, pose) && std::ranges::equal(a.reactions, b.reactions, wrench);
+           std::ranges::equal(a.poses, b.poses, pose) &&
+           std::ranges::equal(a.reactions, b.reactions, wrench);
 }
 
 void expect_same(const std::vector<Equilibrium>& a, const std::vector<Equilibrium>& b,
                  const std::string& where) {
     ASSERT_EQ(a.size(), b.size()) << where;
-    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_TRUE(same(a[k], b[k])) << where << ", point " << k;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        EXPECT_TRUE(same(a[k], b[k])) << where << ", point " << k;
 }
 
-std::vector<Gait> every_gait() {
-    std::vector<Gait> all{{.leg = Leg::equilibrium}, {.leg = Leg::energy}, {.leg = Leg::series}};
+std::vector<SolverSettings> every_gait() {
+    std::vector<SolverSettings> all{
+        {.leg = Leg::equilibrium}, {.leg = Leg::energy}, {.leg = Leg::series}};
     for (const char* method : {"published", "tangent", "adaptive"})
         all.push_back({.recursion = {.method = recursive::find_method(method).value()}});
     return all;
 }
 
-std::string name_of(const Gait& gait) {
-    return gait.leg == Leg::recursive ? std::string(gait.recursion.method.name) : name(gait.leg);
+std::string name_of(const SolverSettings& solver) {
+    return solver.leg == Leg::recursive ? std::string(solver.recursion.method.name)
+                                        : name(solver.leg);
 }
 
 TEST(Visit, TheRecursionHandsOverThePointsThatItWouldKeep) {
     for (const auto& scene : support::scene_names()) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
-            for (const auto& way : ways_of(model, branch, 6))
+            for (const auto& way : sides_of(model, branch, 6))
                 for (const auto& method : recursive::methods) {
-                    const std::string where = scene + ", " + way.name + " by " + std::string(method.name);
+                    const std::string where =
+                        scene + ", " + way.name + " by " + std::string(method.name);
                     // More points than the series evaluates at once.
                     const recursive::Options options{
-                        .method = method, .steps = recursive::has_steps(method) ? 12 : 150, .record = 0};
+                        .method = method,
+                        .steps = recursive::has_steps(method) ? 12 : 150,
+                        .record = 0};
                     const auto kept = recursive::solve(way.model, way.branch, options);
                     std::vector<Equilibrium> visited;
-                    const auto path =
-                        recursive::solve(way.model, way.branch, options,
-                                         [&](const Equilibrium& state) { visited.push_back(state); });
+                    const auto path = recursive::solve(
+                        way.model, way.branch, options,
+                        [&](const Equilibrium& state) { visited.push_back(state); });
                     EXPECT_TRUE(path.points.empty()) << where;
                     EXPECT_EQ(path.outcome, kept.outcome) << where;
                     EXPECT_EQ(path.detail, kept.detail) << where;
@@ -71,14 +80,15 @@ TEST(Visit, TheReferencesHandOverThePointsThatTheyWouldKeep) {
     for (const auto& scene : support::small_scene_names()) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
-            for (const auto& way : ways_of(model, branch, 3)) {
+            for (const auto& way : sides_of(model, branch, 3)) {
                 const auto a = asked_for({way}, 1);
                 std::vector<Equilibrium> by_equilibrium, by_energy;
                 const auto equilibrium = reference::equilibrium::solve(
                     way.model, way.branch, a, {},
                     [&](const auto& state) { by_equilibrium.push_back(state); });
                 const auto energy = reference::energy::solve(
-                    way.model, way.branch, a, {}, [&](const auto& state) { by_energy.push_back(state); });
+                    way.model, way.branch, a, {},
+                    [&](const auto& state) { by_energy.push_back(state); });
                 EXPECT_TRUE(equilibrium.points.empty() && energy.points.empty());
                 const auto kept = reference::equilibrium::solve(way.model, way.branch, a);
                 EXPECT_EQ(equilibrium.outcome, kept.outcome);
@@ -94,11 +104,13 @@ struct Streamed {
     EquilibriumPath path;
     std::vector<Row> rows;
 };
-Streamed streamed(const Model& model, const std::vector<Way>& ways, const Gait& gait) {
+Streamed streamed(const Model& model, const std::vector<BranchSide>& ways,
+                  const SolverSettings& solver) {
     const auto all = channels(model);
     Streamed result;
     result.path = walk(
-        ways, gait, [&](const Equilibrium& state) { return row_of(model, all, ways.front(), gait, state); },
+        ways, solver,
+        [&](const Equilibrium& state) { return row_of(model, all, ways.front(), solver, state); },
         [&](Row row) { result.rows.push_back(std::move(row)); });
     return result;
 }
@@ -106,18 +118,20 @@ Streamed streamed(const Model& model, const std::vector<Way>& ways, const Gait& 
 bool same(const Row& row, const Model& model, const Equilibrium& state) {
     const auto values = evaluate(model, state);
     return row.load == state.load && row.constraint_error == state.constraint_error &&
-           std::ranges::equal(row.values, values,
-                              [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); });
+           std::ranges::equal(row.values, values, [](double a, double b) {
+               return a == b || (std::isnan(a) && std::isnan(b));
+           });
 }
 
 // The sides one by one: the first from its far end back to a = 0, then the second.
-std::vector<Equilibrium> joined_by_hand(const std::vector<Way>& ways, const Gait& gait) {
+std::vector<Equilibrium> joined_by_hand(const std::vector<BranchSide>& ways,
+                                        const SolverSettings& solver) {
     std::vector<Equilibrium> points;
     if (ways.size() == 2) {
-        const auto first = walk(ways[0], gait).points;
+        const auto first = walk(ways[0], solver).points;
         for (std::size_t k = first.size(); k-- > 1;) points.push_back(first[k]);
     }
-    for (const auto& point : walk(ways.back(), gait).points) points.push_back(point);
+    for (const auto& point : walk(ways.back(), solver).points) points.push_back(point);
     return points;
 }
 
@@ -126,19 +140,21 @@ TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
     for (const auto& scene : support::scene_names()) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
-            const auto ways = ways_of(model, branch, 5);
+            const auto ways = sides_of(model, branch, 5);
             both_ways += ways.size() == 2 ? 1 : 0;
-            for (const auto& gait : every_gait()) {
+            for (const auto& solver : every_gait()) {
                 // The references are slow, and one side needs no joining.
-                if ((gait.leg == Leg::energy || gait.leg == Leg::equilibrium) && ways.size() == 1) continue;
-                const std::string where = scene + ", " + branch.name + " by " + name_of(gait);
-                const auto points = joined_by_hand(ways, gait);
-                const auto found = streamed(model, ways, gait);
+                if ((solver.leg == Leg::energy || solver.leg == Leg::equilibrium) &&
+                    ways.size() == 1)
+                    continue;
+                const std::string where = scene + ", " + branch.name + " by " + name_of(solver);
+                const auto points = joined_by_hand(ways, solver);
+                const auto found = streamed(model, ways, solver);
                 EXPECT_TRUE(found.path.points.empty()) << where;
                 ASSERT_EQ(found.rows.size(), points.size()) << where;
                 for (std::size_t k = 0; k < points.size(); ++k)
                     EXPECT_TRUE(same(found.rows[k], model, points[k])) << where << ", row " << k;
-                expect_same(walk(ways, gait).points, points, where);
+                expect_same(walk(ways, solver).points, points, where);
                 if (found.path.outcome != Outcome::converged) continue;
                 const auto a = asked_for(ways, 1);
                 ASSERT_EQ(a.size(), points.size()) << where;
@@ -150,12 +166,13 @@ TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
 }
 
 // Indices of the requested points among all: by sides, from a = 0 outwards.
-std::vector<std::size_t> picked(const std::vector<Way>& ways, int every) {
+std::vector<std::size_t> picked(const std::vector<BranchSide>& ways, int every) {
     std::vector<std::size_t> at;
     const int before = ways.size() == 2 ? ways[0].branch.steps : 0;
     for (std::size_t w = 0; w < ways.size(); ++w) {
         const int steps = ways[w].branch.steps, sign = w + 1 < ways.size() ? -1 : 1;
-        for (int k = 0; k < steps; k += every) at.push_back(static_cast<std::size_t>(before + sign * k));
+        for (int k = 0; k < steps; k += every)
+            at.push_back(static_cast<std::size_t>(before + sign * k));
         at.push_back(static_cast<std::size_t>(before + sign * steps));
     }
     std::ranges::sort(at);
@@ -167,16 +184,18 @@ TEST(Every, PicksTheFirstTheLastAndEveryNthOfTheSameRows) {
     for (const auto* scene : {"bushing_pair", "double_wishbone", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
-            const auto ways = ways_of(model, branch, 20);
+            const auto ways = sides_of(model, branch, 20);
             for (const char* method : {"published", "tangent", "adaptive", "series"}) {
-                Gait gait{.recursion = {.method = recursive::find_method(method).value()}};
-                const auto all = streamed(model, ways, gait);
+                SolverSettings solver{
+                    .recursion = {.method = recursive::find_method(method).value()}};
+                const auto all = streamed(model, ways, solver);
                 if (all.path.outcome != Outcome::converged) continue;
                 for (const int every : {1, 2, 3, 7, 9, 10, 11, 19, 20}) {
-                    gait.every = every;
-                    const auto some = streamed(model, ways, gait);
+                    solver.every = every;
+                    const auto some = streamed(model, ways, solver);
                     const auto at = picked(ways, every);
-                    ASSERT_EQ(some.rows.size(), at.size()) << scene << " " << branch.name << " " << every;
+                    ASSERT_EQ(some.rows.size(), at.size())
+                        << scene << " " << branch.name << " " << every;
                     for (std::size_t k = 0; k < at.size(); ++k) {
                         EXPECT_EQ(some.rows[k].load, all.rows[at[k]].load) << every << " " << k;
                         EXPECT_EQ(some.rows[k].values, all.rows[at[k]].values) << every << " " << k;
@@ -197,7 +216,8 @@ TEST(Every, IsWhatAccountIsGivenOf) {
     branch.to = -100;
     const auto method = recursive::find_method("published").value();
     int points = 0, with_account = 0;
-    recursive::solve(model, branch, {.method = method, .steps = 30, .account = true, .account_every = 7},
+    recursive::solve(model, branch,
+                     {.method = method, .steps = 30, .error_bound = true, .error_bound_every = 7},
                      [&](const Equilibrium& point) {
                          const bool has = std::isfinite(point.bound.length);
                          EXPECT_EQ(has, points % 7 == 0 || points == 30) << points;
@@ -212,7 +232,7 @@ TEST(Every, IsWhatTheReferencesVisit) {
         const Model model = compile(support::scene(scene));
         const auto all_channels = channels(model);
         for (const auto& branch : model.branches) {
-            const auto ways = ways_of(model, branch, 20);
+            const auto ways = sides_of(model, branch, 20);
             for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
                 const auto all = streamed(model, ways, {.leg = leg}),
                            some = streamed(model, ways, {.leg = leg, .every = 6});
@@ -242,16 +262,16 @@ TEST(Rows, ThatCameBeforeAFailureOnEitherSideAreThere) {
     for (const bool fails_first : {true, false}) {
         const Model model = compile(scene);
         for (const Leg leg : {Leg::series, Leg::equilibrium}) {
-            const auto ways = ways_of(model, model.branches[0]);
+            const auto ways = sides_of(model, model.branches[0]);
             const auto found = streamed(model, ways, {.leg = leg});
             EXPECT_NE(found.path.outcome, Outcome::converged);
             ASSERT_EQ(found.rows.size(), 52u) << name(leg);  // -210 to 300 N
             const double sign = fails_first ? 1 : -1;
             for (std::size_t k = 0; k < found.rows.size(); ++k)
-                EXPECT_NEAR(
-                    found.rows[k].load,
-                    fails_first ? -210 + 10.0 * static_cast<double>(k) : 300 - 10.0 * static_cast<double>(k),
-                    1e-9)
+                EXPECT_NEAR(found.rows[k].load,
+                            fails_first ? -210 + 10.0 * static_cast<double>(k)
+                                        : 300 - 10.0 * static_cast<double>(k),
+                            1e-9)
                     << name(leg) << sign;
         }
         std::swap(scene.branches[0].from, scene.branches[0].to);
@@ -263,8 +283,8 @@ TEST(Rows, OfTheStartAreThereOnceWhicheverWaySettles) {
     Branch branch = model.branches[0];
     branch.from = -branch.to;
     branch.steps = 8;
-    const auto good = ways_of(model, branch);
-    const auto starts = [&](const std::vector<Way>& ways) {
+    const auto good = sides_of(model, branch);
+    const auto starts = [&](const std::vector<BranchSide>& ways) {
         const auto rows = streamed(model, ways, {.leg = Leg::equilibrium}).rows;
         return std::pair(rows.size(), std::ranges::count(rows, 0.0, &Row::load));
     };
@@ -277,21 +297,24 @@ TEST(Rows, OfTheStartAreThereOnceWhicheverWaySettles) {
 }
 
 TEST(Landmarks, AreTheEndsTheStartAndTheMiddleOfTheWholePath) {
-    for (const auto* scene : {"bushing_pair", "double_wishbone", "chrono_mcpherson", "pinned_bar"}) {
+    for (const auto* scene :
+         {"bushing_pair", "double_wishbone", "chrono_mcpherson", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
             for (const int steps : {7, 8}) {
-                const auto points = walk(ways_of(model, branch, steps), {.leg = Leg::equilibrium}).points;
+                const auto points =
+                    walk(sides_of(model, branch, steps), {.leg = Leg::equilibrium}).points;
                 if (points.size() != static_cast<std::size_t>(steps) + 1) continue;
                 const LegRun run = compare::run(model, branch, Leg::equilibrium, {.steps = steps});
                 const auto& [front, start, middle, back] = run.landmarks;
                 ASSERT_TRUE(front && start && middle && back);
                 EXPECT_TRUE(same(*front, points.front())) << scene << " " << branch.name;
                 EXPECT_TRUE(same(*start, points[run.curve.start])) << scene << " " << branch.name;
-                EXPECT_TRUE(same(*middle, points[points.size() / 2])) << scene << " " << branch.name;
+                EXPECT_TRUE(same(*middle, points[points.size() / 2]))
+                    << scene << " " << branch.name;
                 EXPECT_TRUE(same(*back, points.back())) << scene << " " << branch.name;
                 // Summaries over all points equal those of the single points.
-                const Model standing = ways_of(model, branch, steps).front().model;
+                const Model standing = sides_of(model, branch, steps).front().model;
                 const Scale whole = scale_of(standing, branch, points);
                 EXPECT_EQ(run.scale.force, whole.force);
                 EXPECT_EQ(run.scale.length, whole.length);

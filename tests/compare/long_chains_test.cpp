@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "compare/compare.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/support/cantilever.hpp"
 #include "tests/support/planar_chain.hpp"
 
@@ -26,11 +26,12 @@ constexpr std::array links{20, 1000};
 
 Model read(const std::string& text, const std::string& name) {
     return compile(parse_scene(
-        "elastocheck: 1\nname: " + name + "\nunits: {length: m, angle: rad, force: N}\n" + text, name));
+        "elastocheck: 1\nname: " + name + "\nunits: {length: m, angle: rad, force: N}\n" + text,
+        name));
 }
 
 EquilibriumPath walked(const Model& model, const Branch& branch, Leg leg) {
-    return walk(ways_of(model, branch),
+    return walk(sides_of(model, branch),
                 {.leg = leg, .recursion = {.method = {"series", 0, recursive::Series{}}}});
 }
 
@@ -47,8 +48,10 @@ RodEnd rod(Real F, Real flexibility) {  // 1/EA
     constexpr int steps = 2000;
     const Real ds = -Real(L) / steps;
     const auto slope = [&](const State& s) {
-        const Real along = F * std::sin(s[0]), across = F * std::cos(s[0]), stretch = 1 + along * flexibility;
-        return State{s[1], -across * stretch / Real(EI), stretch * std::cos(s[0]), stretch * std::sin(s[0])};
+        const Real along = F * std::sin(s[0]), across = F * std::cos(s[0]),
+                   stretch = 1 + along * flexibility;
+        return State{s[1], -across * stretch / Real(EI), stretch * std::cos(s[0]),
+                     stretch * std::sin(s[0])};
     };
     const auto back = [&](Real end) {
         State s{end, 0, 0, 0};
@@ -60,7 +63,8 @@ RodEnd rod(Real F, Real flexibility) {  // 1/EA
             };
             const State a = slope(s), b = slope(ahead(a, ds / 2)), c = slope(ahead(b, ds / 2)),
                         d = slope(ahead(c, ds));
-            for (std::size_t j = 0; j < 4; ++j) s[j] += ds / 6 * (a[j] + 2 * b[j] + 2 * c[j] + d[j]);
+            for (std::size_t j = 0; j < 4; ++j)
+                s[j] += ds / 6 * (a[j] + 2 * b[j] + 2 * c[j] + d[j]);
         }
         return s;
     };
@@ -75,7 +79,8 @@ RodEnd rod(Real F, Real flexibility) {  // 1/EA
 
 TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
     for (const double alpha : {2., 10.})
-        EXPECT_NEAR(static_cast<double>(rod(alpha * EI / (L * L), 0).y), elastica(alpha).y, 1e-12) << alpha;
+        EXPECT_NEAR(static_cast<double>(rod(alpha * EI / (L * L), 0).y), elastica(alpha).y, 1e-12)
+            << alpha;
     std::vector<double> errors;
     for (const int n : segments) {
         const Model model =
@@ -88,7 +93,8 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
         double error = 0;
         for (const Leg leg : {Leg::equilibrium, Leg::series}) {
             const auto path = walked(model, model.branches[0], leg);
-            ASSERT_EQ(path.outcome, Outcome::converged) << n << " " << name(leg) << ": " << path.detail;
+            ASSERT_EQ(path.outcome, Outcome::converged)
+                << n << " " << name(leg) << ": " << path.detail;
             ASSERT_EQ(path.points.size(), 6u);
             for (std::size_t k = 1; k < path.points.size(); ++k) {
                 const auto& point = path.points[k];
@@ -97,10 +103,12 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
                 for (std::size_t i = 0; i < point.poses.size(); ++i) {
                     // The inner nodes, and the tip, in any order.
                     const auto& r = point.poses[i].r;
-                    const auto node =
-                        static_cast<std::size_t>(std::lround(model.bodies[i].design.r.x() * n / L)) - 1;
-                    const double apart = std::hypot(static_cast<double>(r.x() - known.x.at(node)),
-                                                    static_cast<double>(r.y() - known.z.at(node)), r.z());
+                    const auto node = static_cast<std::size_t>(
+                                          std::lround(model.bodies[i].design.r.x() * n / L)) -
+                                      1;
+                    const double apart =
+                        std::hypot(static_cast<double>(r.x() - known.x.at(node)),
+                                   static_cast<double>(r.y() - known.z.at(node)), r.z());
                     if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN propagates
                 }
                 EXPECT_LE(1e3 * off, 1e-8) << n << " " << name(leg) << " at " << point.load << " N";
@@ -114,7 +122,8 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
         errors.push_back(error);
     }
     for (std::size_t k = 1; k < errors.size(); ++k)
-        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.02) << errors[k - 1] << " to " << errors[k];
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.02)
+            << errors[k - 1] << " to " << errors[k];
     EXPECT_LE(1e3 * errors.back(), 500. / segments.back() / segments.back())
         << "mm, of a tip that comes 810 mm across";
 }
@@ -123,7 +132,8 @@ TEST(LongCantilever, StandsAsItsSegmentsDoAndFollowsTheElasticaWithOrderTwo) {
 
 // A rod that shortens under P buckles where P (1 - P/EA) = π² EI/(4L²): length and lever decrease.
 TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
-    const double euler = pi * pi * EI / (4 * L * L), limit = 2 * euler / (1 + std::sqrt(1 - 4 * euler / EA));
+    const double euler = pi * pi * EI / (4 * L * L),
+                 limit = 2 * euler / (1 + std::sqrt(1 - 4 * euler / EA));
     std::vector<double> errors;
     for (const int n : segments) {
         const Model model = read(leaf(n) +
@@ -138,16 +148,17 @@ TEST(LongColumn, BucklesAtTheLoadOfItsSegmentsAndTowardsEulersWithOrderTwo) {
                 const auto path = walked(model, branch, leg);
                 // Within its smallest step the equilibrium leg does not distinguish a bifurcation
                 // from a limit point.
-                const bool ends = path.outcome == Outcome::dividing_point ||
+                const bool ends = path.outcome == Outcome::bifurcation_point ||
                                   (leg == Leg::equilibrium && path.outcome == Outcome::singular);
                 EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
-                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " at " << share
-                    << ": " << path.detail;
+                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " at "
+                    << share << ": " << path.detail;
             }
         errors.push_back(1 - P / limit);
     }
     for (std::size_t k = 1; k < errors.size(); ++k)
-        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.01) << errors[k - 1] << " to " << errors[k];
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.01)
+            << errors[k - 1] << " to " << errors[k];
 }
 
 // ---- The hanging chain.
@@ -188,7 +199,8 @@ struct Rope {
             return x;
         };
         Real low = 0, high = 100 * w * n;
-        for (int i = 0; i < 80; ++i) (reach((low + high) / 2) < span ? low : high) = (low + high) / 2;
+        for (int i = 0; i < 80; ++i)
+            (reach((low + high) / 2) < span ? low : high) = (low + high) / 2;
         at.H = low;
         for (int i = 0; i < n; ++i) at.phi.push_back(std::atan2(at.V - hanging(i), at.H));
         return place(at);
@@ -207,7 +219,8 @@ struct Rope {
                 f[s] = h * ((W - at.V) * cos + at.H * sin);
                 diagonal[s] = h * ((at.V - W) * sin + at.H * cos);
                 if (i > 0) f[s] += k * (at.phi[s] - at.phi[s - 1] - kappa[s]), diagonal[s] += k;
-                if (i + 1 < n) f[s] -= k * (at.phi[s + 1] - at.phi[s] - kappa[s + 1]), diagonal[s] += k;
+                if (i + 1 < n)
+                    f[s] -= k * (at.phi[s + 1] - at.phi[s] - kappa[s + 1]), diagonal[s] += k;
                 by_H[s] = h * sin;
                 by_V[s] = -h * cos;
                 x += h * cos;
@@ -286,17 +299,19 @@ struct HangingChain {
                                   static_cast<double>(drawn.z[static_cast<std::size_t>(i)]));
         for (int i = 1; i <= n; ++i) {
             const auto s = static_cast<std::size_t>(i);
-            points +=
-                fmt::format("  c{}: [{}, 0, {}]\n", i, static_cast<double>((drawn.x[s - 1] + drawn.x[s]) / 2),
-                            static_cast<double>((drawn.z[s - 1] + drawn.z[s]) / 2));
-            bodies += fmt::format("  b{0}: {{origin: p{1}, mass: {2}, centre_of_gravity: c{0}}}\n", i, i - 1,
-                                  static_cast<double>(rope.w / 10));
+            points += fmt::format("  c{}: [{}, 0, {}]\n", i,
+                                  static_cast<double>((drawn.x[s - 1] + drawn.x[s]) / 2),
+                                  static_cast<double>((drawn.z[s - 1] + drawn.z[s]) / 2));
+            bodies += fmt::format("  b{0}: {{origin: p{1}, mass: {2}, centre_of_gravity: c{0}}}\n",
+                                  i, i - 1, static_cast<double>(rope.w / 10));
             const std::string on = i == 1 ? "ground" : fmt::format("b{}", i - 1);
-            joints += fmt::format("  h{0}: {{type: revolute, bodies: [b{0}, {1}], at: p{2}, axis: y}}\n", i,
-                                  on, i - 1);
+            joints +=
+                fmt::format("  h{0}: {{type: revolute, bodies: [b{0}, {1}], at: p{2}, axis: y}}\n",
+                            i, on, i - 1);
             if (i > 1 && rope.k > 0)
-                springs += fmt::format("  s{0}: {{bodies: [b{0}, {1}], at: p{2}, axis: y, rate: {3}}}\n", i,
-                                       on, i - 1, static_cast<double>(rope.k));
+                springs +=
+                    fmt::format("  s{0}: {{bodies: [b{0}, {1}], at: p{2}, axis: y, rate: {3}}}\n",
+                                i, on, i - 1, static_cast<double>(rope.k));
         }
         joints += fmt::format(
             "  height: {{type: in_plane, bodies: [b{0}, ground], at: p{0}, normal: z}}\n"
@@ -331,8 +346,9 @@ TEST(HangingChain, StandsOnTheDiscreteCatenaryAndFollowsItsLoadAndItsEnd) {
                     double off = 0;
                     for (std::size_t i = 0; i < point.poses.size(); ++i) {
                         const auto& r = point.poses[i].r;
-                        const double apart = std::hypot(static_cast<double>(r.x() - known.x[i]), r.y(),
-                                                        static_cast<double>(r.z() - known.z[i]));
+                        const double apart =
+                            std::hypot(static_cast<double>(r.x() - known.x[i]), r.y(),
+                                       static_cast<double>(r.z() - known.z[i]));
                         if (!(apart <= off) && !std::isnan(off)) off = apart;  // NaN propagates
                     }
                     EXPECT_LE(1e3 * off, 1e-8)

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "compare/compare.hpp"
-#include "compare/legs.hpp"
-#include "compare/outlook.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/extrapolation.hpp"
+#include "compare/comparison/legs.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -17,13 +17,14 @@ EquilibriumPath accounted(const Model& model, double to, Leg leg) {
     Branch branch = model.branches[0];
     branch.to = to;
     branch.steps = 20;
-    return walk(ways_of(model, branch),
-                {.leg = leg, .recursion = {.method = *recursive::find_method("chord")}, .account = true});
+    return walk(sides_of(model, branch), {.leg = leg,
+                                          .recursion = {.method = *recursive::find_method("chord")},
+                                          .error_bound = true});
 }
 
 // The squared stiffness is linear in the load only near the limit point: three points at a
 // twentieth of the branch predict the limit to a tenth of the remaining distance.
-TEST(Outlook, ALimitPointIsAnnouncedBeforeItIsMet) {
+TEST(Extrapolation, ALimitPointIsAnnouncedBeforeItIsMet) {
     const Model model = compile(support::scene("two_spring_arch"));  // the limit is at -211.5166 N
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series})
         for (const double to : {-150., -200., -211.}) {
@@ -38,10 +39,11 @@ TEST(Outlook, ALimitPointIsAnnouncedBeforeItIsMet) {
         }
 }
 
-TEST(Outlook, ABucklingLoadIsAnnouncedFromHalfTheWay) {
-    const Model model = compile(read_scene((std::filesystem::path(ELASTOCHECK_SCENES) /
-                                            "../../tests/recursive/found/straight-column-one-body.yaml")
-                                               .string()));
+TEST(Extrapolation, ABucklingLoadIsAnnouncedFromHalfTheWay) {
+    const Model model =
+        compile(read_scene((std::filesystem::path(ELASTOCHECK_SCENES) /
+                            "../../tests/recursive/found/straight-column-one-body.yaml")
+                               .string()));
     for (const Leg leg : {Leg::recursive, Leg::equilibrium, Leg::energy, Leg::series}) {
         const auto path = accounted(model, 1000, leg);  // it buckles at k / L = 1000 / 0.5
         ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
@@ -51,14 +53,15 @@ TEST(Outlook, ABucklingLoadIsAnnouncedFromHalfTheWay) {
     }
 }
 
-TEST(Outlook, IsToldSinceThePointFromWhichOnItIsSaid) {
+TEST(Extrapolation, IsToldSinceThePointFromWhichOnItIsSaid) {
     const Model model = compile(support::scene("two_spring_arch"));
     const auto path = accounted(model, -211, Leg::series);
     const std::span<const Equilibrium> points(path.points);
     const auto from = announced_from(points);
     ASSERT_TRUE(from.has_value());
     for (std::size_t k = 3; k <= points.size(); ++k)
-        EXPECT_EQ(!outlook(points.first(k), ParameterUnit::newton).empty(), points[k - 1].load <= *from)
+        EXPECT_EQ(!outlook(points.first(k), ParameterUnit::newton).empty(),
+                  points[k - 1].load <= *from)
             << points[k - 1].load;
     EXPECT_LT(-211, *from);
     EXPECT_FALSE(announced_from(accounted(model, 150, Leg::series).points).has_value());
@@ -66,13 +69,13 @@ TEST(Outlook, IsToldSinceThePointFromWhichOnItIsSaid) {
 
 // Both sides of a branch start at a = 0: the prediction of the first is reported although the
 // second has none.
-TEST(Outlook, OfABranchIsToldWayByWay) {
+TEST(Extrapolation, OfABranchIsToldWayByWay) {
     const Model model = compile(support::scene("two_spring_arch"));
-    BranchAccount account;
+    BranchErrorBounds error_bound;
     for (const double to : {-211., 150.})
-        for (const auto& point : accounted(model, to, Leg::series).points) add(account, point);
-    EXPECT_EQ(account.ways.size(), 2u);
-    const auto lines = told(account, ParameterUnit::newton);
+        for (const auto& point : accounted(model, to, Leg::series).points) add(error_bound, point);
+    EXPECT_EQ(error_bound.ways.size(), 2u);
+    const auto lines = told(error_bound, ParameterUnit::newton);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_TRUE(lines[0].starts_with("at this rate the stiffness is gone near -211.")) << lines[0];
     EXPECT_NE(lines[0].find(", announced from -"), std::string::npos) << lines[0];
@@ -80,7 +83,7 @@ TEST(Outlook, OfABranchIsToldWayByWay) {
 
 // A comparison reports the prediction of the equilibrium leg for any recursion method, and the
 // tolerance check of a method with a tolerance. Error bounds change no state and no count.
-TEST(Outlook, IsToldByWhoeverCompares) {
+TEST(Extrapolation, IsToldByWhoeverCompares) {
     Scene scene = support::scene("two_spring_arch");
     scene.branches.resize(1);
     scene.branches[0].to = -211, scene.branches[0].steps = 20;
@@ -93,7 +96,8 @@ TEST(Outlook, IsToldByWhoeverCompares) {
         const auto& runs = all.branches[0].runs;
         const LegRun& equilibrium = runs[1];
         ASSERT_EQ(equilibrium.told.size(), 1u) << method;
-        EXPECT_TRUE(equilibrium.told[0].starts_with("at this rate the stiffness is gone near -211."))
+        EXPECT_TRUE(
+            equilibrium.told[0].starts_with("at this rate the stiffness is gone near -211."))
             << equilibrium.told[0];
         const LegRun alone = run(model, model.branches[0], Leg::equilibrium);
         EXPECT_TRUE(alone.told.empty());
@@ -110,32 +114,33 @@ TEST(Outlook, IsToldByWhoeverCompares) {
     for (const auto& run : bushing.branches[0].runs) EXPECT_TRUE(run.told.empty()) << run.told[0];
 }
 
-TEST(Outlook, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {
+TEST(Extrapolation, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {
     const auto promise = promised(*recursive::find_method("adaptive"), 1);
     ASSERT_TRUE(promise.has_value());
     EXPECT_EQ(promise->length, recursive::Adaptive{}.length_tolerance);
     EXPECT_FALSE(promised(*recursive::find_method("published"), 1).has_value());
     std::vector<Equilibrium> points(3);
     for (std::size_t k = 0; k < 3; ++k)
-        points[k].load = 1e3 * static_cast<double>(k), points[k].bound = {promise->length, promise->angle};
+        points[k].load = 1e3 * static_cast<double>(k),
+        points[k].bound = {promise->length, promise->angle};
     EXPECT_EQ(unkept(points, *promise, ParameterUnit::newton), "");
     points[2].bound.length *= 2;
-    EXPECT_TRUE(
-        unkept(points, *promise, ParameterUnit::newton)
-            .starts_with(
-                "promises 0.01 mm and 0.001 deg, which 1 of 3 points do not keep by their own account: "
-                "within 0.02 mm and 0.001 deg at 2000 N"))
+    EXPECT_TRUE(unkept(points, *promise, ParameterUnit::newton)
+                    .starts_with("promises 0.01 mm and 0.001 deg, which 1 of 3 points do not keep "
+                                 "by their own account: "
+                                 "within 0.02 mm and 0.001 deg at 2000 N"))
         << unkept(points, *promise, ParameterUnit::newton);
     points[1].bound = {};
-    EXPECT_TRUE(unkept(points, *promise, ParameterUnit::newton)
-                    .ends_with("; of 1 of 3 points no account can be given: nothing is promised of them"))
+    EXPECT_TRUE(
+        unkept(points, *promise, ParameterUnit::newton)
+            .ends_with("; of 1 of 3 points no account can be given: nothing is promised of them"))
         << unkept(points, *promise, ParameterUnit::newton);
 }
 
-TEST(Outlook, NothingIsAnnouncedOfAStiffnessThatStaysOrThatNobodyTold) {
+TEST(Extrapolation, NothingIsAnnouncedOfAStiffnessThatStaysOrThatNobodyTold) {
     const Model model = compile(support::scene("two_spring_arch"));
     EXPECT_EQ(outlook(accounted(model, 150, Leg::equilibrium).points, ParameterUnit::newton), "");
-    const auto untold = walk(ways_of(model, model.branches[0]), {.leg = Leg::recursive});
+    const auto untold = walk(sides_of(model, model.branches[0]), {.leg = Leg::recursive});
     EXPECT_FALSE(stiffness_gone_near(untold.points).has_value());
     EXPECT_FALSE(stiffness_gone_near({}).has_value());
 }

@@ -4,13 +4,13 @@
 
 #include <functional>
 
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
-#include "recursive/respond.hpp"
-#include "reference/energy/respond.hpp"
-#include "reference/equilibrium/respond.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "recursive/linear_response.hpp"
+#include "reference/energy/linear_response.hpp"
+#include "reference/equilibrium/linear_response.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/slopes.hpp"
 
@@ -26,21 +26,23 @@ using Disturbances = std::vector<Disturbance>;
 
 struct Answering {
     std::string name;
-    std::function<Response(const OneWay&, const Equilibrium&, const Disturbances&)> respond;
+    std::function<Response(const OneWay&, const Equilibrium&, const Disturbances&)> linear_response;
 };
 Answering recursion(const char* method) {
-    return {method, [method](const OneWay& way, const Equilibrium& state, const Disturbances& what) {
-                return recursive::respond(way.model, way.branch, bare(state), what,
-                                          recursive::find_method(method).value());
+    return {method,
+            [method](const OneWay& way, const Equilibrium& state, const Disturbances& what) {
+                return recursive::linear_response(way.model, way.branch, bare(state), what,
+                                                  recursive::find_method(method).value());
             }};
 }
-const Answering by_equilibrium{"equilibrium",
-                               [](const OneWay&way, const Equilibrium&state, const Disturbances&what) {
-                                   return reference::equilibrium::respond(way.model, way.branch, bare(state),
-                                                                          what);
-                               }},
+const Answering by_equilibrium{
+    "equilibrium",
+    [](const OneWay&way, const Equilibrium&state, const Disturbances&what) {
+        return reference::equilibrium::linear_response(way.model, way.branch, bare(state), what);
+    }},
     by_energy{"energy", [](const OneWay&way, const Equilibrium&state, const Disturbances&what) {
-                  return reference::energy::respond(way.model, way.branch, bare(state), what);
+                  return reference::energy::linear_response(way.model, way.branch, bare(state),
+                                                            what);
               }};
 std::vector<Answering> three_legs() { return {by_equilibrium, by_energy, recursion("series")}; }
 
@@ -92,19 +94,21 @@ TEST(Response, TheLegsAgreeOnEverySceneWhereItBeginsAndEnds) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(trim(support::scene(name)).scene);
         for (const auto& branch : model.branches)
-            for (const auto& [way_name, on_way, way] : ways_of(model, branch, 1))
+            for (const auto& [way_name, on_way, way] : sides_of(model, branch, 1))
                 for (const double a : {0.0, way.to}) {
                     const OneWay here{on_way, way};
                     const Equilibrium state = state_at(here, a);
                     const auto& [forces, moments, offsets] = everything(on_way);
                     for (const auto* asked : {&forces, &moments, &offsets}) {
-                        const Response truth = by_equilibrium.respond(here, state, *asked);
-                        for (const auto& other : {by_energy, recursion("series"), recursion("tangent")}) {
-                            const Response response = other.respond(here, state, *asked);
+                        const Response truth = by_equilibrium.linear_response(here, state, *asked);
+                        for (const auto& other :
+                             {by_energy, recursion("series"), recursion("tangent")}) {
+                            const Response response = other.linear_response(here, state, *asked);
                             if (is_not_asked(response.outcome)) continue;
                             const double far = apart(response, truth);
-                            EXPECT_LE(far, 1e-10) << name << ", " << way_name << ", at " << a << ": "
-                                                  << other.name << " " << response.detail << truth.detail;
+                            EXPECT_LE(far, 1e-10)
+                                << name << ", " << way_name << ", at " << a << ": " << other.name
+                                << " " << response.detail << truth.detail;
                             worst = std::max(worst, far);
                             ++answered;
                         }
@@ -115,15 +119,16 @@ TEST(Response, TheLegsAgreeOnEverySceneWhereItBeginsAndEnds) {
     RecordProperty("worst", fmt::format("{:.1e}", worst));
 }
 
-TEST(Response, ThePublishedMatrixAnswersRightWhereNothingIsLoadedAndElsewhereWithoutGeometricStiffness) {
+TEST(Response,
+     ThePublishedMatrixAnswersRightWhereNothingIsLoadedAndElsewhereWithoutGeometricStiffness) {
     for (const char* name : {"bushing_pair", "pinned_bar", "chrono_mcpherson", "two_spring_arch"}) {
         const Scene scene = support::scene(name);
         const OneWay way = way_of(scene, scene.branches[0].name, scene.branches[0].to);
         const auto forces = everything(way.model).forces;
         for (const double a : {0.0, way.branch.to}) {
             const Equilibrium state = state_at(way, a);
-            const double far = apart(recursion("published").respond(way, state, forces),
-                                     by_equilibrium.respond(way, state, forces));
+            const double far = apart(recursion("published").linear_response(way, state, forces),
+                                     by_equilibrium.linear_response(way, state, forces));
             if (a == 0)
                 EXPECT_LE(far, 1e-12) << name;
             else
@@ -137,8 +142,9 @@ TEST(Response, ThePublishedMatrixAnswersRightWhereNothingIsLoadedAndElsewhereWit
 MatrixXd compliance(const OneWay& way, const Equilibrium& state, const Answering& leg) {
     Disturbances wrenches;
     for (int k = 0; k < 3; ++k) wrenches.push_back(at_wheel(way.model, Vector3d::Unit(k)));
-    for (int k = 0; k < 3; ++k) wrenches.push_back(at_wheel(way.model, Vector3d::Zero(), Vector3d::Unit(k)));
-    const Response response = leg.respond(way, state, wrenches);
+    for (int k = 0; k < 3; ++k)
+        wrenches.push_back(at_wheel(way.model, Vector3d::Zero(), Vector3d::Unit(k)));
+    const Response response = leg.linear_response(way, state, wrenches);
     EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
     const Wheel& wheel = way.model.wheels[0];
     const auto body = static_cast<std::size_t>(wheel.body);
@@ -159,7 +165,8 @@ MatrixXd in_one_unit(const MatrixXd& C) {
 double largest(const MatrixXd& C) { return C.cwiseAbs().maxCoeff(); }
 
 TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
-    for (const char* name : {"mcpherson_strut", "double_wishbone", "front_axle", "semi_trailing_arm"}) {
+    for (const char* name :
+         {"mcpherson_strut", "double_wishbone", "front_axle", "semi_trailing_arm"}) {
         const Scene scene = support::scene(name);
         for (const char* branch : {"lateral", "braking"}) {
             const OneWay way = way_of(scene, branch, 1);
@@ -187,7 +194,8 @@ TEST(Response, ADeadMomentThatActsIsWhatReciprocityLacks) {
         const MatrixXd C = compliance(way, state, leg), C_pi = C.rightCols<3>();
         const MatrixXd lacks = in_one_unit(C - C.transpose());
         EXPECT_GT(largest(lacks), 1e-5 * largest(in_one_unit(C))) << leg.name;
-        EXPECT_LE(largest(lacks - in_one_unit(C_pi * skew * C_pi.transpose())), 1e-8 * largest(lacks))
+        EXPECT_LE(largest(lacks - in_one_unit(C_pi * skew * C_pi.transpose())),
+                  1e-8 * largest(lacks))
             << leg.name;
     }
 }
@@ -202,7 +210,7 @@ Response at_the_wheel(const OneWay& way, const Equilibrium& state, const Answeri
         wrenches.push_back(at_wheel(way.model, R * Vector3d::Unit(k)));
         wrenches.push_back(at_wheel(way.model, Vector3d::Zero(), R * Vector3d::Unit(k)));
     }
-    return leg.respond(way, state, wrenches);
+    return leg.linear_response(way, state, wrenches);
 }
 
 TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
@@ -217,10 +225,13 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
 
             Equilibrium turned = state;
             for (Pose& pose : turned.poses) pose = {R * pose.r + t, R * pose.p};
-            Response back = at_the_wheel(way_of(support::moved(scene, R, t), "jounce", 1), turned, leg, R);
+            Response back =
+                at_the_wheel(way_of(support::moved(scene, R, t), "jounce", 1), turned, leg, R);
             for (auto& increments : back.increments)
-                for (Increment& body : increments) body = {R.conjugate() * body.dr, R.conjugate() * body.dpi};
-            EXPECT_LE(apart(back, as_told), 1e-10) << name << ", " << leg.name << ": another ground frame";
+                for (Increment& body : increments)
+                    body = {R.conjugate() * body.dr, R.conjugate() * body.dpi};
+            EXPECT_LE(apart(back, as_told), 1e-10)
+                << name << ", " << leg.name << ": another ground frame";
 
             Equilibrium other_way_round = state;
             std::ranges::reverse(other_way_round.poses);
@@ -236,7 +247,9 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
     const Equilibrium state = state_at(way, way.branch.to);
     const auto forces = everything(way.model).forces;
     for (const auto& leg : three_legs())
-        EXPECT_LE(apart(leg.respond(other, state, forces), leg.respond(way, state, forces)), 1e-10)
+        EXPECT_LE(apart(leg.linear_response(other, state, forces),
+                        leg.linear_response(way, state, forces)),
+                  1e-10)
             << leg.name;
 }
 
@@ -246,9 +259,9 @@ TEST(Response, WhatTheEnergyLegIsNotAskedTheOthersAnswerAlike) {
         const OneWay way = way_of(support::scene(name), branch, 1);
         const Equilibrium state = state_at(way, way.branch.to);
         const auto forces = everything(way.model).forces;
-        EXPECT_EQ(by_energy.respond(way, state, forces).outcome, Outcome::not_conservative);
-        EXPECT_LE(apart(recursion("series").respond(way, state, forces),
-                        by_equilibrium.respond(way, state, forces)),
+        EXPECT_EQ(by_energy.linear_response(way, state, forces).outcome, Outcome::not_conservative);
+        EXPECT_LE(apart(recursion("series").linear_response(way, state, forces),
+                        by_equilibrium.linear_response(way, state, forces)),
                   1e-12)
             << name;
     }

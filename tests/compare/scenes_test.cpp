@@ -6,19 +6,19 @@
 #include <limits>
 #include <map>
 
-#include "compare/compare.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/diagnosis.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
 Scene trimmed(const std::string& name, const std::vector<Setting>& settings = {}) {
-    const auto done =
-        trim(read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml", std::span(settings)));
+    const auto done = trim(
+        read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml", std::span(settings)));
     EXPECT_TRUE(!done.record || done.record->reached()) << name << ": " << done.record->detail;
     return done.scene;
 }
@@ -35,7 +35,8 @@ struct Walk {
     }
 };
 
-Walk walk(const Model& model, const std::string& branch, Leg leg = Leg::equilibrium, int steps = 8) {
+Walk walk(const Model& model, const std::string& branch, Leg leg = Leg::equilibrium,
+          int steps = 8) {
     const auto found = std::ranges::find(model.branches, branch, &Branch::name);
     if (found == model.branches.end()) throw std::logic_error("no branch " + branch);
     recursive::Options how{.steps = steps};
@@ -68,8 +69,10 @@ TEST_P(Family, IsJudgedAlongEveryBranchAndTheSeriesMeetsTheReferences) {
     const auto all = compare(compile(trimmed(GetParam())), options);
     EXPECT_TRUE(all.conclusive());
     for (const auto& branch : all.branches) {
-        for (const auto& why : branch.inconclusive.texts()) ADD_FAILURE() << branch.branch << ": " << why;
-        ASSERT_EQ(branch.deviation.equal_parameter.channels.size(), all.channels.size()) << branch.branch;
+        for (const auto& why : branch.inconclusive.texts())
+            ADD_FAILURE() << branch.branch << ": " << why;
+        ASSERT_EQ(branch.deviation.equal_parameter.channels.size(), all.channels.size())
+            << branch.branch;
         constexpr double series = 1e-9;
         for (std::size_t c = 0; c < all.channels.size(); ++c)
             if (all.channels[c].main && all.channels[c].kinematic()) {
@@ -111,7 +114,9 @@ TEST_P(Family, MovesAsACarDoes) {
     for (const auto& wheel : scene.wheels) {
         const std::string which = wheel.name.empty() ? "" : wheel.name + ".";
         const auto z = moved[which + "wheel_centre_z"], force = moved[which + "jack.drive_force"];
-        const auto rate = [&](std::size_t k) { return (force[k + 1] - force[k]) / (z[k + 1] - z[k]); };
+        const auto rate = [&](std::size_t k) {
+            return (force[k + 1] - force[k]) / (z[k + 1] - z[k]);
+        };
         const std::size_t last = z.size() - 1, design = last / 2;
         EXPECT_GE(z[last] - z[design], 60);
         EXPECT_GE(z[design] - z[0], 60);
@@ -133,7 +138,8 @@ class Told {
         list_ = channels(model_);
         for (const auto& branch : model_.branches) {
             runs_.push_back(run(model_, branch, leg));
-            EXPECT_EQ(runs_.back().outcome, Outcome::converged) << branch.name << ": " << runs_.back().detail;
+            EXPECT_EQ(runs_.back().outcome, Outcome::converged)
+                << branch.name << ": " << runs_.back().detail;
         }
     }
     const std::vector<Channel>& list() const { return list_; }
@@ -189,7 +195,8 @@ void expect_same_turned(const Told& drawn, const Told& moved, const Eigen::Quate
         double worst = 0;
         for (std::size_t b = 0; b < drawn.runs().size(); ++b)
             for (std::size_t p = 0; p < drawn.runs()[b].curve.values.size(); ++p) {
-                const Eigen::Vector3d there = moved.vector(b, p, c) - (channel.kinematic() ? 1e3 : 0) * t;
+                const Eigen::Vector3d there =
+                    moved.vector(b, p, c) - (channel.kinematic() ? 1e3 : 0) * t;
                 const double off = (R.conjugate() * there - drawn.vector(b, p, c)).norm();
                 if (!(off <= worst)) worst = off;
             }
@@ -239,7 +246,8 @@ TEST_P(Axles, StaySymmetricUnderWhatIsAndAreAntisymmetricUnderWhatIsOpposite) {
         const double bound = leg == Leg::energy ? 1e-6 : 1e-8;  // [mm, deg]
         const auto expect = [&](const char* branch, bool opposite) {
             const Walk both = walk(model, branch, leg, 4);
-            for (const char* what : {"toe", "camber", "wheel_centre_x", "wheel_centre_y", "wheel_centre_z"}) {
+            for (const char* what :
+                 {"toe", "camber", "wheel_centre_x", "wheel_centre_y", "wheel_centre_z"}) {
                 const auto left = both[std::string("left.") + what],
                            right = both[std::string("right.") + what];
                 const double sign = std::string_view(what).ends_with("_y") ? -1 : 1;
@@ -255,7 +263,8 @@ TEST_P(Axles, StaySymmetricUnderWhatIsAndAreAntisymmetricUnderWhatIsOpposite) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Axles,
                          testing::Values(Sides{"front_axle",
                                                {"parallel", "vertical", "braking", "traction"},
-                                               {"opposite", "roll", "steering", "lateral", "aligning"}},
+                                               {"opposite", "roll", "steering", "lateral",
+                                                "aligning"}},
                                          Sides{"twist_beam",
                                                {"travel", "vertical", "braking", "traction"},
                                                {"opposite", "roll", "lateral", "aligning"}},
@@ -290,7 +299,8 @@ TEST(Scenes, TheRightSideIsTheMirrorImageOfTheLeft) {
                        b = walk(right, branch.name, Leg::equilibrium, 4);
             for (const auto& channel : a.channels)
                 if (channel.kinematic() && channel.unit != Unit::percent) {
-                    EXPECT_LE(apart(a[channel.name], b[channel.name], channel.name.ends_with("_y") ? -1 : 1),
+                    EXPECT_LE(apart(a[channel.name], b[channel.name],
+                                    channel.name.ends_with("_y") ? -1 : 1),
                               1e-9)
                         << name << " " << branch.name << " " << channel.name;
                 }
@@ -385,7 +395,8 @@ TEST(Scenes, ABushingByProjectedSmallAnglesTurnsByTheMomentAlone) {
             for (std::size_t k = 0; k < turned.curve.a.size(); ++k) {
                 const double F = turned.curve.a[k];
                 const Eigen::Matrix2d A = Eigen::Rotation2Dd(0.02 * F / 250).toRotationMatrix();
-                const Eigen::Vector2d d = 1e3 * F * A * Eigen::Vector2d(1 / 1e5, 1 / 3e5).asDiagonal() *
+                const Eigen::Vector2d d = 1e3 * F * A *
+                                          Eigen::Vector2d(1 / 1e5, 1 / 3e5).asDiagonal() *
                                           A.transpose() * Eigen::Vector2d(0.8, 0.6);
                 EXPECT_NEAR(turned["centre_x"][k], 100 + d.x(), 1e-9) << name(leg) << " " << F;
                 EXPECT_NEAR(turned["centre_y"][k], 200 + d.y(), 1e-9) << name(leg) << " " << F;

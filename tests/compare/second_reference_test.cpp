@@ -7,9 +7,9 @@
 
 #include <cmath>
 
-#include "compare/compare.hpp"
-#include "compare/study.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/studies/study.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -30,8 +30,8 @@ Scene follower() {
 TEST(SecondReference, IsTheSeriesWhereALoadTurnsWithItsBody) {
     const Comparison found = compare(compile(follower()));
     const BranchComparison& branch = found.branches[0];
-    EXPECT_TRUE(found.conclusive()) << (branch.inconclusive.empty() ? ""
-                                                                    : branch.inconclusive.worst.front().what);
+    EXPECT_TRUE(found.conclusive())
+        << (branch.inconclusive.empty() ? "" : branch.inconclusive.worst.front().what);
     EXPECT_EQ(branch.second, Leg::series);
     EXPECT_NE(branch.not_asked.find("'kick'"), std::string::npos) << branch.not_asked;
     ASSERT_EQ(branch.runs.size(), 4u);
@@ -52,7 +52,8 @@ TEST(SecondReference, IsTheSeriesWhereAFormulationHasNoEnergy) {
     scene.branches.resize(1);
     scene.branches[0].steps = 20;
     for (auto& elastic : scene.elastics)
-        if (auto* bushing = std::get_if<Bushing>(&elastic.kind)) bushing->formulation.offset_moment = false;
+        if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
+            bushing->formulation.offset_moment = false;
     const Comparison found = compare(compile(scene));
     EXPECT_EQ(found.branches[0].second, Leg::series);
     EXPECT_TRUE(found.conclusive()) << (found.branches[0].inconclusive.empty()
@@ -84,7 +85,8 @@ TEST(SecondReference, DisagreementWithTheSeriesIsSaid) {
 TEST(SecondReference, StudiesTakeItToo) {
     const Model model = compile(follower());
     const auto all = channels(model);
-    const References known = references(model, all, model.branches[0], ways_of(model, model.branches[0], 10));
+    const References known =
+        references(model, all, model.branches[0], sides_of(model, model.branches[0], 10));
     EXPECT_TRUE(known.failures.empty()) << known.failures.front();
     EXPECT_EQ(known.second_leg, Leg::series);
     EXPECT_NE(known.not_asked.find("'kick'"), std::string::npos);
@@ -100,7 +102,8 @@ const Model& chain() {
         Scene scene;
         scene.name = "chain";
         for (int b = 0; b < n; ++b) {
-            scene.bodies.push_back({fmt::format("b{}", b), {Vector3d(b * h, 0, 0), Quaterniond::Identity()}});
+            scene.bodies.push_back(
+                {fmt::format("b{}", b), {Vector3d(b * h, 0, 0), Quaterniond::Identity()}});
             Matrix6 K = Matrix6::Zero();
             K.diagonal() << Vector3d::Constant(1e6 * n), Vector3d::Constant(100 / h);
             const Marker i{b - 1, Vector3d(b == 0 ? 0 : h, 0, 0), Quaterniond::Identity()},
@@ -131,17 +134,20 @@ TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitn
     EXPECT_TRUE(compared_chain().conclusive())
         << (branch.inconclusive.empty() ? "" : branch.inconclusive.worst.front().what);
     EXPECT_EQ(branch.runs[2].outcome, Outcome::too_large);
-    EXPECT_NE(branch.not_asked.find("operations for 840 coordinates"), std::string::npos) << branch.not_asked;
+    EXPECT_NE(branch.not_asked.find("operations for 840 coordinates"), std::string::npos)
+        << branch.not_asked;
     EXPECT_EQ(branch.second, Leg::series);
     EXPECT_TRUE(energy_bears_witness(branch));
     const Residuals left = witness(branch);
-    EXPECT_TRUE(std::isfinite(left.force) && left.force <= branch.bounds.residual_force) << left.force;
-    EXPECT_TRUE(std::isfinite(left.moment) && left.moment <= branch.bounds.residual_moment) << left.moment;
+    EXPECT_TRUE(std::isfinite(left.force) && left.force <= branch.bounds.residual_force)
+        << left.force;
+    EXPECT_TRUE(std::isfinite(left.moment) && left.moment <= branch.bounds.residual_moment)
+        << left.moment;
 }
 
 TEST(SecondReference, TheWitnessSeesAMicrometre) {
     BranchComparison branch = compared_chain().branches[0];
-    const Way way = ways_of(chain(), chain().branches[0]).front();
+    const BranchSide way = sides_of(chain(), chain().branches[0]).front();
     Equilibrium moved = branch.runs[1].landmarks.back.value();
     moved.poses[70].r.y() += 1e-6;
     witness(branch) = judge(Leg::energy, way, moved);
@@ -157,10 +163,12 @@ TEST(SecondReference, TheWitnessSeesAMicrometre) {
 TEST(SecondReference, AWitnessThatCannotJudgeIsNoPass) {
     BranchComparison branch = compared_chain().branches[0];
     witness(branch).moment = std::nan("");
-    EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count, 1);
+    EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count,
+              1);
     branch = compared_chain().branches[0];
     witness(branch).length = 1e-6;
-    EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count, 1);
+    EXPECT_EQ(disagreements(chain(), compared_chain().channels, chain().branches[0], branch).count,
+              1);
 }
 
 // Without an energy the energy leg judges nothing.

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "compare/legs.hpp"
-#include "compare/order_study.hpp"
-#include "compare/rates.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/outputs/rates.hpp"
+#include "compare/studies/order_study.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -21,10 +21,11 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);
         for (const auto& whole : model.branches) {
-            const Way way = ways_of(model, whole).back();
+            const BranchSide way = sides_of(model, whole).back();
             const Branch& branch = way.branch;
             const auto path = follow(way.model, branch);
-            ASSERT_EQ(path.outcome, Outcome::converged) << name << " " << way.name << " " << path.detail;
+            ASSERT_EQ(path.outcome, Outcome::converged)
+                << name << " " << way.name << " " << path.detail;
             for (const double share : {0.1, 0.45, 0.8}) {
                 const double a = share * branch.to, h = 1e-3 * branch.to;
                 std::vector<Equilibrium> points;
@@ -43,7 +44,8 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
                 for (std::size_t k = 0; k < all.size(); ++k) {
                     EXPECT_EQ(std::isnan(rates[k]), !all[k].kinematic()) << all[k].name;
                     if (all[k].kinematic()) {
-                        EXPECT_NEAR(rates[k], slope(k), 1e-7 * largest) << name << " " << all[k].name;
+                        EXPECT_NEAR(rates[k], slope(k), 1e-7 * largest)
+                            << name << " " << all[k].name;
                     }
                 }
             }
@@ -52,8 +54,8 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
 }
 
 TEST(Rates, ParameterForAnOutputIsTheInverseOfTheOutputForAParameter) {
-    for (const char* name :
-         {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar", "pendulum", "two_spring_arch"}) {
+    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar",
+                             "pendulum", "two_spring_arch"}) {
         const Model model = compile(support::scene(name));
         const auto all = channels(model);
         for (const auto& branch : model.branches) {
@@ -61,7 +63,8 @@ TEST(Rates, ParameterForAnOutputIsTheInverseOfTheOutputForAParameter) {
             const auto sampled = curve(model, all, branch, sample(model, path, branch, 20).points);
             const Channel& by = all[static_cast<std::size_t>(default_abscissa(all, sampled))];
             const auto read = [&](auto place) {
-                return compare::evaluate(model, {&by, 1}, evaluate(model, branch, path, place)).front();
+                return compare::evaluate(model, {&by, 1}, evaluate(model, branch, path, place))
+                    .front();
             };
             for (const double share : {0.0, 1e-6, 0.2, 0.7, 0.999, 1.0}) {
                 const double there = read(*find(path, share * branch.to));

@@ -1,13 +1,13 @@
 // Error decomposition: step error, formulation gap, reference uncertainty, and attribution of the
 // gap.
-#include "compare/study.hpp"
+#include "compare/studies/study.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <tuple>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -65,7 +65,8 @@ TEST(Study, RungsConvergeAtTheirOrderAndHigherOnesHaveNoGap) {
         if (nose.end.behaviour == Behaviour::converging) {
             EXPECT_NEAR(nose.end.order, orders[m], 0.15) << s.branches[0].methods[m].method;
         } else {
-            EXPECT_EQ(nose.end.behaviour, Behaviour::round_off_floor) << s.branches[0].methods[m].method;
+            EXPECT_EQ(nose.end.behaviour, Behaviour::round_off_floor)
+                << s.branches[0].methods[m].method;
         }
         if (m > 0) {
             EXPECT_LE(std::abs(nose.gap), nose.end.band + 1e-9) << s.branches[0].methods[m].method;
@@ -92,7 +93,8 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
             ASSERT_TRUE(branch.not_attributed.empty()) << name << ": " << branch.not_attributed;
             for (const auto* reading : {&branch.equal_parameter, &branch.equal_abscissa})
                 for (const auto& share : *reading) {
-                    EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest, 1e-10)
+                    EXPECT_NEAR(share.whole, share.lever + share.axis + share.load + share.rest,
+                                1e-10)
                         << name;
                     EXPECT_LE(std::abs(share.rest), share.band) << name;
                 }
@@ -102,9 +104,12 @@ TEST(Study, GapPartsAddUpToTheWholeAndNothingIsLeftWhenAllFollow) {
 
 TEST(Study, TheLoadsLeverMattersWhereItHasOne) {
     // On the strut the load acts at the body's origin; on the bar it has a lever.
-    for (const auto& share : attribute_gap(compile(support::scene("chrono_mcpherson")))[0].equal_parameter)
+    for (const auto& share :
+         attribute_gap(compile(support::scene("chrono_mcpherson")))[0].equal_parameter)
         EXPECT_LE(std::abs(share.load), 1e-9);
-    EXPECT_GT(std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_parameter[2].load), 1.0);
+    EXPECT_GT(
+        std::abs(attribute_gap(compile(support::scene("pinned_bar")))[0].equal_parameter[2].load),
+        1.0);
 }
 
 TEST(Study, AMethodThatDivergesIsSaidToAndGetsNoOrder) {
@@ -132,8 +137,10 @@ TEST(Study, WithoutReferencesNothingIsConcluded) {
 
 TEST(Study, FewerThanFiveLevelsOrUnorderedOnesAreRefused) {
     const Model model = compile(support::scene("single_bushing"));
-    for (const std::vector<int>& steps :
-         {std::vector<int>{10, 20, 40, 80}, {10, 20, 40, 80, 80}, {0, 1, 2, 3, 4}, {5, 4, 3, 2, 1}}) {
+    for (const std::vector<int>& steps : {std::vector<int>{10, 20, 40, 80},
+                                          {10, 20, 40, 80, 80},
+                                          {0, 1, 2, 3, 4},
+                                          {5, 4, 3, 2, 1}}) {
         StudyOptions o = options();
         o.steps = steps;
         EXPECT_THROW((void)study(model, o), std::invalid_argument);
@@ -162,7 +169,8 @@ TEST(Study, OutOfBalanceAtDesignThePartsStillAddUpAndNothingIsLeft) {
         EXPECT_EQ(attribution[b].branch, s.branches[b].branch);
         EXPECT_EQ(s.branches[b].abscissa, "travel");
         for (const auto& [shares, studied, why] :
-             {std::tuple{&attribution[b].equal_parameter, &s.branches[b].methods[0].equal_parameter, ""},
+             {std::tuple{&attribution[b].equal_parameter, &s.branches[b].methods[0].equal_parameter,
+                         ""},
               {&attribution[b].equal_abscissa, &s.branches[b].methods[0].equal_abscissa,
                attribution[b].no_abscissa.c_str()}}) {
             ASSERT_EQ(shares->size(), s.channels.size()) << why;
@@ -206,7 +214,8 @@ TEST(Study, ABranchThatMovesNothingIsNotStudied) {
     const Study s = study(compile(scene), options());
     EXPECT_FALSE(s.conclusive());
     ASSERT_FALSE(s.inconclusive.empty());
-    EXPECT_NE(s.inconclusive[0].find("nothing drives branch"), std::string::npos) << s.inconclusive[0];
+    EXPECT_NE(s.inconclusive[0].find("nothing drives branch"), std::string::npos)
+        << s.inconclusive[0];
 }
 
 TEST(Study, IsTheSameFromRunToRun) {

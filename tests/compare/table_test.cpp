@@ -1,12 +1,12 @@
 // Tables of studies: complete, and with a reason for every missing number.
-#include "compare/table.hpp"
+#include "compare/tables/table.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -15,7 +15,8 @@ namespace {
 void expect_whole(const Table& table, std::size_t rows) {
     EXPECT_EQ(table.rows.size(), rows) << table.name;
     std::set<std::string> names;
-    for (const auto& column : table.columns) EXPECT_TRUE(names.insert(column.name).second) << column.name;
+    for (const auto& column : table.columns)
+        EXPECT_TRUE(names.insert(column.name).second) << column.name;
     for (const auto& row : table.rows) {
         ASSERT_EQ(row.size(), table.columns.size()) << table.name;
         for (std::size_t c = 0; c < row.size(); ++c)

@@ -1,5 +1,5 @@
 // Work-precision comparison: recommendations hold, and unjudgeable configurations are not ranked.
-#include "compare/trade.hpp"
+#include "compare/studies/work_precision.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,13 @@
 #include <random>
 #include <stdexcept>
 
-#include "compare/precision.hpp"
-#include "compare/profile.hpp"
-#include "compare/timing.hpp"
-#include "models/compile.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "compare/studies/precision.hpp"
+#include "compare/studies/profile.hpp"
+#include "compare/studies/timing.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/recursive.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -45,7 +45,7 @@ const TradePoint* find(const Trade& trade, std::string_view method, int steps) {
 }
 
 // Error of a recommendation in a new solve with ten times the steps and output points, without code
-// of trade.cpp.
+// of work_precision.cpp.
 Accuracy solved_anew(const Model& model, const Trade& trade) {
     const TradePoint& point = trade.points[trade.recommendation->point];
     const int outputs = 10 * trade.points_per_branch;
@@ -63,8 +63,9 @@ Accuracy solved_anew(const Model& model, const Trade& trade) {
         std::vector<double> loads;
         for (int k = 0; k <= outputs; ++k) loads.push_back(branch.to * k / outputs);
         const auto fast = point.leg == Leg::recursive ? recursive::solve(model, branch, options)
-                          : point.leg == Leg::energy  ? reference::energy::solve(model, branch, loads)
-                                                      : reference::equilibrium::solve(model, branch, loads);
+                          : point.leg == Leg::energy
+                              ? reference::energy::solve(model, branch, loads)
+                              : reference::equilibrium::solve(model, branch, loads);
         const auto truth = point.leg == Leg::equilibrium
                                ? reference::energy::solve(model, branch, loads)
                                : reference::equilibrium::solve(model, branch, loads);
@@ -114,8 +115,9 @@ TEST(Tolerance, AnythingElseIsRefusedWithWhatIsAllowed) {
             ADD_FAILURE() << "'" << text << "' was read";
         } catch (const std::invalid_argument& error) {
             EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-            EXPECT_NE(std::string(error.what()).find("allowed: a length in mm, an angle in deg or both"),
-                      std::string::npos);
+            EXPECT_NE(
+                std::string(error.what()).find("allowed: a length in mm, an angle in deg or both"),
+                std::string::npos);
         }
     }
 }
@@ -131,7 +133,8 @@ TEST(Tolerance, OfForcesIsAShareUnlessGivenOtherwise) {
 }
 
 TEST(Tolerance, NoNumberIsNoShareOfIt) {
-    for (const Tolerance tolerance : {Tolerance{1, 1}, Tolerance{1, infinity}, Tolerance{infinity, 1}})
+    for (const Tolerance tolerance :
+         {Tolerance{1, 1}, Tolerance{1, infinity}, Tolerance{infinity, 1}})
         for (const Accuracy error : {Accuracy{nan, 0}, Accuracy{0, nan}, Accuracy{nan, nan}})
             EXPECT_TRUE(std::isnan(share_of(tolerance, error)))
                 << tolerance.mm << " " << error.mm << " " << error.deg;
@@ -158,19 +161,21 @@ TEST(Front, HasNoDominatedMemberAndLeavesNoOtherOut) {
             for (std::size_t l = 0; l < points.size(); ++l) {
                 const auto &a = points[l], &b = points[k];
                 const bool better = a.work <= b.work && a.error <= b.error &&
-                                    (a.work < b.work || a.error < b.error) && std::isfinite(a.work) &&
-                                    std::isfinite(a.error);
+                                    (a.work < b.work || a.error < b.error) &&
+                                    std::isfinite(a.work) && std::isfinite(a.error);
                 dominated = dominated || better;
                 by_member = by_member || (better && front[l]);
             }
             EXPECT_EQ(front[k], finite && !dominated) << "trial " << trial << " point " << k;
-            EXPECT_EQ(finite && !front[k], finite && by_member) << "trial " << trial << " point " << k;
+            EXPECT_EQ(finite && !front[k], finite && by_member)
+                << "trial " << trial << " point " << k;
         }
     }
 }
 
 TEST(Front, EqualsStandTogetherAndNoNumberIsInNobodysWay) {
-    EXPECT_EQ(pareto_front(std::vector<WorkError>{{1, 1}, {1, 1}, {2, 1}, {nan, 0}, {0, nan}, {0, infinity}}),
+    EXPECT_EQ(pareto_front(std::vector<WorkError>{
+                  {1, 1}, {1, 1}, {2, 1}, {nan, 0}, {0, nan}, {0, infinity}}),
               (std::vector<bool>{true, true, false, false, false, false}));
     EXPECT_TRUE(pareto_front({}).empty());
 }
@@ -210,8 +215,9 @@ TEST(Trade, RecommendationMeetsItsToleranceWhenSolvedAnewAtTenTimesThePoints) {
             if (!result.recommendation) continue;
             const Accuracy found = solved_anew(model, result);
             EXPECT_TRUE(std::isfinite(found.mm) && found.mm <= mm)
-                << name << " " << mm << " mm: " << describe(result.points[result.recommendation->point])
-                << " " << found.mm;
+                << name << " " << mm
+                << " mm: " << describe(result.points[result.recommendation->point]) << " "
+                << found.mm;
             const auto& r = *result.recommendation;
             EXPECT_TRUE(r.confirmed.mm <= mm && r.confirmed.mm <= r.high.mm)
                 << r.confirmed.mm << " " << r.high.mm;
@@ -226,11 +232,13 @@ TEST(Trade, RecommendationMeetsItsToleranceWhenSolvedAnewAtTenTimesThePoints) {
 
 TEST(Trade, RecommendationForTheMcPhersonMeetsLengthAndAngle) {
     const Model model = shipped("chrono_mcpherson");
-    for (const Tolerance tolerance : {Tolerance{0.01, 0.001}, Tolerance{1, 1e-4}, Tolerance{1e-3, 1}}) {
+    for (const Tolerance tolerance :
+         {Tolerance{0.01, 0.001}, Tolerance{1, 1e-4}, Tolerance{1e-3, 1}}) {
         const Trade result = trade(model, quick(tolerance, 320));
         ASSERT_TRUE(result.recommendation);
         const Accuracy found = solved_anew(model, result);
-        EXPECT_TRUE(found.mm <= tolerance.mm && found.deg <= tolerance.deg) << found.mm << " " << found.deg;
+        EXPECT_TRUE(found.mm <= tolerance.mm && found.deg <= tolerance.deg)
+            << found.mm << " " << found.deg;
         const auto& r = *result.recommendation;
         EXPECT_TRUE(r.low.mm <= r.expected.mm && r.expected.mm <= r.high.mm)
             << r.low.mm << " " << r.expected.mm << " " << r.high.mm;
@@ -322,7 +330,8 @@ TEST(Trade, BelowTheReferenceUncertaintyNothingIsRanked) {
     for (const auto& name : {"pinned_bar", "chrono_mcpherson"}) {
         const Trade result = trade(shipped(name), quick({0.01, 0.001}, 40));
         for (const auto& point : result.points)
-            EXPECT_FALSE(point.ranked && !(point.share > share_of(result.tolerance, result.uncertainty)))
+            EXPECT_FALSE(point.ranked &&
+                         !(point.share > share_of(result.tolerance, result.uncertainty)))
                 << describe(point);
     }
 }
@@ -347,7 +356,8 @@ TEST(Trade, NothingIsRecommendedForLessThanTheReferencesKnow) {
 
 // A recommendation whose error by `worse` exceeds that of its rung, and the recommendation at a
 // tolerance between the two.
-std::optional<std::pair<Recommendation, Trade>> squeezed(const Model& model, int points, double Accuracy::*mm,
+std::optional<std::pair<Recommendation, Trade>> squeezed(const Model& model, int points,
+                                                         double Accuracy::*mm,
                                                          Accuracy Recommendation::*worse_than) {
     for (const char* method : {"tangent", "chord", "midpoint", "balanced"})
         for (const double tolerance : {3.0, 1.0, 0.3, 0.1, 0.03, 0.01}) {
@@ -358,8 +368,9 @@ std::optional<std::pair<Recommendation, Trade>> squeezed(const Model& model, int
             const Trade first = trade(model, options);
             if (!first.recommendation) continue;
             const Recommendation& r = *first.recommendation;
-            const double low = worse_than == &Recommendation::high ? std::max(r.expected.*mm, r.confirmed.*mm)
-                                                                   : r.expected.*mm,
+            const double low = worse_than == &Recommendation::high
+                                   ? std::max(r.expected.*mm, r.confirmed.*mm)
+                                   : r.expected.*mm,
                          high = r.*worse_than.*mm;
             if (!(high > 1.002 * low)) continue;
             options.tolerance.mm = std::sqrt(low * high);
@@ -371,12 +382,14 @@ std::optional<std::pair<Recommendation, Trade>> squeezed(const Model& model, int
 TEST(Trade, WhatTheConfirmingRunRefusesIsListedAndNotRecommended) {
     // With one output point at the end, only the confirming run sees the worst error between.
     std::optional<std::pair<Recommendation, Trade>> found;
-    for (const auto& name : {"pendulum", "two_spring_arch", "bushing_pair", "pinned_bar", "chrono_mcpherson"})
+    for (const auto& name :
+         {"pendulum", "two_spring_arch", "bushing_pair", "pinned_bar", "chrono_mcpherson"})
         if (!found) found = squeezed(shipped(name), 1, &Accuracy::mm, &Recommendation::confirmed);
     ASSERT_TRUE(found);
     const auto& [first, result] = *found;
     ASSERT_FALSE(result.rejected.empty());
-    EXPECT_NE(result.rejected.front().find("when run again"), std::string::npos) << result.rejected.front();
+    EXPECT_NE(result.rejected.front().find("when run again"), std::string::npos)
+        << result.rejected.front();
     if (result.recommendation) {
         EXPECT_NE(result.recommendation->point, first.point);
         EXPECT_LE(result.recommendation->confirmed.mm, result.tolerance.mm);
@@ -388,7 +401,9 @@ TEST(Trade, WhatMayLieBeyondTheToleranceAsFarAsItsRungsTellIsNotRecommended) {
         squeezed(shipped("chrono_mcpherson_preload"), 10, &Accuracy::mm, &Recommendation::high);
     ASSERT_TRUE(found);
     const auto& [first, result] = *found;
-    const auto up_to = [](const std::string& line) { return line.find(": up to ") != std::string::npos; };
+    const auto up_to = [](const std::string& line) {
+        return line.find(": up to ") != std::string::npos;
+    };
     EXPECT_TRUE(std::ranges::any_of(result.rejected, up_to));
     if (result.recommendation) {
         EXPECT_NE(result.recommendation->point, first.point);
@@ -418,7 +433,8 @@ TEST(Trade, ASceneWithoutAnglesIgnoresTheirTolerance) {
 
 TEST(Trade, CountsAndErrorsAreTheSameFromRunToRun) {
     for (const auto& name : {"chrono_mcpherson", "pendulum"}) {
-        const Trade a = trade(shipped(name), quick({0.01}, 40)), b = trade(shipped(name), quick({0.01}, 40));
+        const Trade a = trade(shipped(name), quick({0.01}, 40)),
+                    b = trade(shipped(name), quick({0.01}, 40));
         ASSERT_EQ(a.points.size(), b.points.size());
         for (std::size_t k = 0; k < a.points.size(); ++k) {
             const TradePoint &p = a.points[k], &q = b.points[k];
@@ -479,19 +495,23 @@ TEST(Trade, TheRecommendationIsTheSameInEveryRunWhateverTheClockSays) {
             options.rounds = rounds;
             runs.push_back(trade(model, options));
             ASSERT_TRUE(runs.back().recommendation) << name;
-            EXPECT_EQ(runs.back().recommendation->point, runs.front().recommendation->point) << name;
-            EXPECT_EQ(runs.back().recommendation->high.mm, runs.front().recommendation->high.mm) << name;
+            EXPECT_EQ(runs.back().recommendation->point, runs.front().recommendation->point)
+                << name;
+            EXPECT_EQ(runs.back().recommendation->high.mm, runs.front().recommendation->high.mm)
+                << name;
             EXPECT_EQ(runs.back().rejected, runs.front().rejected) << name;
         }
         const Trade& result = runs.front();
         for (const auto& point : result.points)
-            EXPECT_TRUE(std::isnan(point.ratio) && std::isnan(point.work.seconds)) << describe(point);
+            EXPECT_TRUE(std::isnan(point.ratio) && std::isnan(point.work.seconds))
+                << describe(point);
     }
 }
 
 TEST(Trade, WhatIsRecommendedIsToldNoMoreThanIsAskedFor) {
     // A series of high order is accurate at a tolerance of 1 mm too, by chance.
-    for (const Tolerance asked : {Tolerance{0.01, 0.001}, Tolerance{0.01}, Tolerance{infinity, 0.001}}) {
+    for (const Tolerance asked :
+         {Tolerance{0.01, 0.001}, Tolerance{0.01}, Tolerance{infinity, 0.001}}) {
         TradeOptions options = quick(asked, 40);
         options.rounds = 0;
         options.methods = {"adaptive", "series"};
@@ -499,7 +519,8 @@ TEST(Trade, WhatIsRecommendedIsToldNoMoreThanIsAskedFor) {
         ASSERT_TRUE(result.recommendation);
         const TradePoint& chosen = result.points[result.recommendation->point];
         EXPECT_LE(1e3 * chosen.own_tolerance, asked.mm) << describe(chosen);
-        EXPECT_LE(1.745 * chosen.own_tolerance * 180 / std::numbers::pi, asked.deg) << describe(chosen);
+        EXPECT_LE(1.745 * chosen.own_tolerance * 180 / std::numbers::pi, asked.deg)
+            << describe(chosen);
         // and of the rungs of equal cost, the loosest allowed one
         for (const auto& point : result.points)
             if (point.method == chosen.method && point.own_tolerance > chosen.own_tolerance &&
@@ -572,9 +593,10 @@ TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
         ASSERT_EQ(found.a.size(), 41u);
         EXPECT_EQ(found.a.back(), branch.to);
         const auto truth = reference::energy::solve(model, branch, std::vector{0.0, branch.to});
-        const auto path =
-            recursive::solve(model, branch, {.method = *recursive::find_method("tangent"), .steps = 40});
-        const auto u = evaluate(model, truth.points.back()), v = evaluate(model, path.points.back());
+        const auto path = recursive::solve(
+            model, branch, {.method = *recursive::find_method("tangent"), .steps = 40});
+        const auto u = evaluate(model, truth.points.back()),
+                   v = evaluate(model, path.points.back());
         double mm = 0, deg = 0;
         for (std::size_t c = 0; c < channels.size(); ++c)
             if (channels[c].main)
@@ -631,7 +653,8 @@ TEST(Precision, SumsInFloatGetWorseAgainAndSumsInDoubleDoNotYet) {
 
 TEST(Precision, FloorIsWhereMoreStepsStopHelping) {
     const std::vector<int> steps{10, 40, 160, 640, 2560};
-    const auto check = [&](std::vector<double> values, int useful, bool reached, bool reference = false) {
+    const auto check = [&](std::vector<double> values, int useful, bool reached,
+                           bool reference = false) {
         const Floor floor = floor_of(steps, values, 1e-9);
         EXPECT_EQ(floor.useful_steps, useful) << values[0];
         EXPECT_EQ(floor.reached, reached) << values[0];

@@ -1,14 +1,14 @@
 // Trim: closed forms, equilibrium after the trim, and all ill-posed or unreachable cases.
-#include "compare/trim.hpp"
+#include "compare/comparison/trim.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reference/energy/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -19,7 +19,8 @@ namespace {
 Scene block() {
     return parse_scene(
         "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: {origin: high}}\n"
+        "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: {origin: "
+        "high}}\n"
         "joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}\n"
         "springs:\n"
         "  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}\n"
@@ -42,13 +43,16 @@ Trim::Adjustment preload(const Scene& scene, const std::string& spring) {
         }
     throw std::logic_error(spring);
 }
-Trim::Condition height(std::optional<double> value = {}) { return {"top.z", ProbeCoordinate{0, 2}, value}; }
+Trim::Condition height(std::optional<double> value = {}) {
+    return {"top.z", ProbeCoordinate{0, 2}, value};
+}
 
 // The paper's strut under a corner weight, with its original spring.
 Scene mcpherson() {
     Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
-    scene.static_loads.push_back({"weight", DeadForce{{wheel.body, wheel.centre_local}, {0, 0, 3500}}});
+    scene.static_loads.push_back(
+        {"weight", DeadForce{{wheel.body, wheel.centre_local}, {0, 0, 3500}}});
     std::string spring;
     for (const auto& elastic : scene.elastics)
         if (std::holds_alternative<AxialSpring>(elastic.kind)) spring = elastic.name;
@@ -65,7 +69,9 @@ std::string complaint(const Scene& scene) {
     return "";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
 
 TEST(Trim, PreloadOfASpringUnderABlockIsItsWeight) {
     Scene scene = block();
@@ -74,7 +80,8 @@ TEST(Trim, PreloadOfASpringUnderABlockIsItsWeight) {
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record && found.record->reached()) << found.record->detail;
     EXPECT_NEAR(found.record->adjusted[0].by, 500, 1e-6);
-    EXPECT_NEAR(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4 + 500 / 20e3, 1e-10);
+    EXPECT_NEAR(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4 + 500 / 20e3,
+                1e-10);
     EXPECT_TRUE(contains(found.record->adjusted[0].makes, "force 500 N in compression"))
         << found.record->adjusted[0].makes;
     EXPECT_EQ(found.record->confirmed_by, Leg::energy);
@@ -103,10 +110,11 @@ TEST(Trim, LeavesTheWheelAtRestWhereItWasDrawnOnEveryBranchAndByBothReferences) 
         const Settled rest = settled(model, list, branch);
         ASSERT_EQ(rest.outcome, Outcome::converged) << rest.detail;
         EXPECT_LE(std::abs(rest.displacement[travel]), 1e-8) << branch.name;
-        const Way way = ways_of(model, branch).front();
+        const BranchSide way = sides_of(model, branch).front();
         const auto energy = reference::energy::solve(way.model, way.branch, std::vector<double>{0});
         ASSERT_EQ(energy.outcome, Outcome::converged) << energy.detail;
-        EXPECT_LE(std::abs(evaluate(model, list, energy.points.front())[travel]), 1e-6) << branch.name;
+        EXPECT_LE(std::abs(evaluate(model, list, energy.points.front())[travel]), 1e-6)
+            << branch.name;
     }
     EXPECT_LE(std::abs(found.record->conditions[0].confirmed), 1e-6);
 }
@@ -120,7 +128,8 @@ TEST(Trim, SceneWithoutOneIsAsItWas) {
 TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {
     Scene scene = block();
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")}, {height()}};
-    EXPECT_TRUE(contains(complaint(scene), "2 adjusted until 1 conditions hold; as many are needed"));
+    EXPECT_TRUE(
+        contains(complaint(scene), "2 adjusted until 1 conditions hold; as many are needed"));
     scene.trim = Trim{};
     EXPECT_TRUE(contains(complaint(scene), "as many are needed"));
 }
@@ -194,7 +203,8 @@ TEST(Trim, SidesOfASymmetricPairGetTheSame) {
                       {height(), {"other.z", ProbeCoordinate{1, 2}, std::nullopt}}};
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record->reached()) << found.record->detail;
-    for (const auto& adjusted : found.record->adjusted) EXPECT_NEAR(adjusted.by, 500, 1e-6) << adjusted.name;
+    for (const auto& adjusted : found.record->adjusted)
+        EXPECT_NEAR(adjusted.by, 500, 1e-6) << adjusted.name;
 }
 
 }  // namespace

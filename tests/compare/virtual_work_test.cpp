@@ -20,18 +20,18 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/channels.hpp"
-#include "compare/deformation.hpp"
-#include "compare/legs.hpp"
-#include "compare/positions.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/outputs/channels.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "compare/outputs/positions.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/overloaded.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/diagnosis.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/quadrature.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -73,7 +73,8 @@ double energy(const PerAxis& law, const Vector6& x) {
 Vector6 driven_preload(const Branch& branch, std::size_t k, double a) {
     Vector6 sum = Vector6::Zero();
     for (const auto& driver : branch.drivers)
-        if (const auto* p = std::get_if<Preload>(&driver.what); p && p->elastic == static_cast<int>(k))
+        if (const auto* p = std::get_if<Preload>(&driver.what);
+            p && p->elastic == static_cast<int>(k))
             sum += value(driver, a) * p->direction;
     return sum;
 }
@@ -82,7 +83,9 @@ double stored(const Model& model, const Branch& branch, const Equilibrium& state
     double U = 0;
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         U += std::visit(
-            overloaded{[&](const AxialSpring& e) { return energy(e.law, deformation(e, k, branch, state)); },
+            overloaded{[&](const AxialSpring& e) {
+                           return energy(e.law, deformation(e, k, branch, state));
+                       },
                        [&](const Bushing& e) {
                            if (!has_energy(e.formulation)) return 0.0;
                            const Vector6 x = deformation(e, state);
@@ -118,10 +121,11 @@ double power(const LoadKind& load, const Equilibrium& state, const series::Rates
         return m.dot(rates.omega[static_cast<std::size_t>(body)]);
     };
     return std::visit(
-        overloaded{[&](const DeadForce& l) { return force(l.at, l.f); },
-                   [&](const DeadMoment& l) { return moment(l.body, l.m); },
-                   [&](const FollowerForce& l) { return force(l.at, turned(l.at.body, l.f_local)); },
-                   [&](const FollowerMoment& l) { return moment(l.body, turned(l.body, l.m_local)); }},
+        overloaded{
+            [&](const DeadForce& l) { return force(l.at, l.f); },
+            [&](const DeadMoment& l) { return moment(l.body, l.m); },
+            [&](const FollowerForce& l) { return force(l.at, turned(l.at.body, l.f_local)); },
+            [&](const FollowerMoment& l) { return moment(l.body, turned(l.body, l.m_local)); }},
         load);
 }
 
@@ -162,7 +166,8 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
     for (const auto& load : model.static_loads) all.add(power(load.kind, state, rates));
     const auto effort = [&](int joint) {
         for (const auto& channel : channels)
-            if (const auto* reads = std::get_if<Effort>(&channel.reads); reads && reads->joint == joint)
+            if (const auto* reads = std::get_if<Effort>(&channel.reads);
+                reads && reads->joint == joint)
                 return evaluate(model, std::span(&channel, 1), state).front();
         return std::nan("");
     };
@@ -171,8 +176,12 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
     };
     for (const auto& driver : branch.drivers)
         all.add(std::visit(
-            overloaded{[&](const Load& l) { return value(driver, state.load) * power(l.kind, state, rates); },
-                       [&](const Motion& m) { return driver.rate == 0 ? 0 : driver.rate * effort(m.joint); },
+            overloaded{[&](const Load& l) {
+                           return value(driver, state.load) * power(l.kind, state, rates);
+                       },
+                       [&](const Motion& m) {
+                           return driver.rate == 0 ? 0 : driver.rate * effort(m.joint);
+                       },
                        [&](const FreeLength& f) {
                            const auto& e = std::get<AxialSpring>(element(f.elastic));
                            const double x =
@@ -181,7 +190,8 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
                        },
                        [&](const Preload& p) {
                            const auto& e = std::get<Bushing>(element(p.elastic));
-                           return driver.rate * p.direction.dot(deformation(e, state) + e.undeformed);
+                           return driver.rate *
+                                  p.direction.dot(deformation(e, state) + e.undeformed);
                        }},
             driver.what));
     return all;
@@ -196,7 +206,7 @@ struct Sampled {
     bool meets_knots = false;
 };
 
-Sampled sampled(const Way& way, int points_a_piece = 12) {
+Sampled sampled(const BranchSide& way, int points_a_piece = 12) {
     Sampled result;
     result.path = series::follow(way.model, way.branch);
     if (result.path.outcome != Outcome::converged) return result;
@@ -211,7 +221,8 @@ Sampled sampled(const Way& way, int points_a_piece = 12) {
         const double from = piece.load[0], end = from + piece.load[1] * piece.reach;
         const double until = to > 0 ? std::min(to, end) : std::max(to, end);
         if (until != from)
-            for (const auto& [a, weight] : support::gauss(from, until, points_a_piece)) add(a, weight);
+            for (const auto& [a, weight] : support::gauss(from, until, points_a_piece))
+                add(a, weight);
         if (piece.knots > 0 && until != to) result.meets_knots = true;
     }
     add(to, 0);
@@ -223,7 +234,7 @@ struct Books {
     double gap() const { return std::abs(work - gained) / turned_over; }
 };
 
-Books books(const Way& way, const std::vector<Channel>& channels, const Sampled& s,
+Books books(const BranchSide& way, const std::vector<Channel>& channels, const Sampled& s,
             const std::vector<Equilibrium>& states) {
     Books b;
     for (std::size_t k = 0; k < states.size(); ++k) {
@@ -231,12 +242,14 @@ Books books(const Way& way, const std::vector<Channel>& channels, const Sampled&
         for (std::size_t e = 0; e < way.model.elastics.size(); ++e)
             if (const auto* bushing = std::get_if<Bushing>(&way.model.elastics[e].kind);
                 bushing && !has_energy(bushing->formulation))
-                b.gained += s.weight[k] * taken_up(*bushing, driven_preload(way.branch, e, states[k].load),
-                                                   states[k], s.rates[k]);
+                b.gained +=
+                    s.weight[k] * taken_up(*bushing, driven_preload(way.branch, e, states[k].load),
+                                           states[k], s.rates[k]);
         b.work += s.weight[k] * p.sum;
         b.turned_over += std::abs(s.weight[k]) * p.turned_over;
     }
-    b.gained += stored(way.model, way.branch, states.back()) - stored(way.model, way.branch, states.front());
+    b.gained += stored(way.model, way.branch, states.back()) -
+                stored(way.model, way.branch, states.front());
     return b;
 }
 
@@ -245,11 +258,12 @@ struct Apart {
     std::string where_mm, where_deg;
 };
 // Distance of two legs over all positions and angles.
-Apart apart(const Way& way, const std::vector<Channel>& channels, const std::vector<Equilibrium>& x,
-            const std::vector<Equilibrium>& y) {
+Apart apart(const BranchSide& way, const std::vector<Channel>& channels,
+            const std::vector<Equilibrium>& x, const std::vector<Equilibrium>& y) {
     Apart worst;
     for (std::size_t k = 0; k < x.size(); ++k) {
-        const auto of_x = evaluate(way.model, channels, x[k]), of_y = evaluate(way.model, channels, y[k]);
+        const auto of_x = evaluate(way.model, channels, x[k]),
+                   of_y = evaluate(way.model, channels, y[k]);
         for (std::size_t c = 0; c < channels.size(); ++c) {
             // magnifies errors
             if (!channels[c].kinematic() || channels[c].unit == Unit::percent) continue;
@@ -258,7 +272,8 @@ Apart apart(const Way& way, const std::vector<Channel>& channels, const std::vec
             double& most = angle ? worst.deg : worst.mm;
             if (std::isnan(most) || off <= most) continue;
             most = off;
-            (angle ? worst.where_deg : worst.where_mm) = fmt::format("{} at {}", channels[c].name, x[k].load);
+            (angle ? worst.where_deg : worst.where_mm) =
+                fmt::format("{} at {}", channels[c].name, x[k].load);
         }
     }
     return worst;
@@ -273,20 +288,21 @@ TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre
     const auto all = channels(model);
     ASSERT_FALSE(model.branches.empty());
     for (const auto& branch : model.branches)
-        for (const auto& way : ways_of(model, branch)) {
+        for (const auto& way : sides_of(model, branch)) {
             const Sampled s = sampled(way);
             ASSERT_EQ(s.path.outcome, Outcome::converged) << way.name << ": " << s.path.detail;
             const auto equilibrium = reference::equilibrium::solve(way.model, way.branch, s.a);
             const auto energy = reference::energy::solve(way.model, way.branch, s.a);
-            ASSERT_EQ(equilibrium.outcome, Outcome::converged) << way.name << ": " << equilibrium.detail;
+            ASSERT_EQ(equilibrium.outcome, Outcome::converged)
+                << way.name << ": " << equilibrium.detail;
             const bool conservative = energy.outcome != Outcome::not_conservative;
             if (conservative) {
                 ASSERT_EQ(energy.outcome, Outcome::converged) << way.name << ": " << energy.detail;
             }
             std::vector<Equilibrium> polynomial;
             for (const double a : s.a)
-                polynomial.push_back(
-                    series::evaluate(way.model, way.branch, s.path, series::find(s.path, a).value()));
+                polynomial.push_back(series::evaluate(way.model, way.branch, s.path,
+                                                      series::find(s.path, a).value()));
 
             std::vector<std::pair<Leg, const std::vector<Equilibrium>*>> legs{
                 {Leg::equilibrium, &equilibrium.points}, {Leg::series, &polynomial}};
@@ -294,15 +310,15 @@ TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre
             for (const auto& [leg, states] : legs) {
                 const Books b = books(way, all, s, *states);
                 EXPECT_TRUE(b.turned_over > 0 && b.gap() <= 1e-9) << fmt::format(
-                    "{}, {} leg: work {:.12g} J, stored {:.12g} J, apart by {:.2g} of {:.4g} J", way.name,
-                    name(leg), b.work, b.gained, b.gap(), b.turned_over);
+                    "{}, {} leg: work {:.12g} J, stored {:.12g} J, apart by {:.2g} of {:.4g} J",
+                    way.name, name(leg), b.work, b.gained, b.gap(), b.turned_over);
             }
             const auto expect = [&](Leg leg, const std::vector<Equilibrium>& states, double bound) {
                 const Apart off = apart(way, all, equilibrium.points, states);
                 EXPECT_TRUE(off.mm <= bound)
                     << way.name << ", " << name(leg) << ": " << off.mm << " mm, " << off.where_mm;
-                EXPECT_TRUE(off.deg <= bound)
-                    << way.name << ", " << name(leg) << ": " << off.deg << " deg, " << off.where_deg;
+                EXPECT_TRUE(off.deg <= bound) << way.name << ", " << name(leg) << ": " << off.deg
+                                              << " deg, " << off.where_deg;
             };
             if (conservative) expect(Leg::energy, energy.points, s.meets_knots ? 1e-6 : 1e-8);
             expect(Leg::series, polynomial, 1e-9);

@@ -1,6 +1,6 @@
 #include "reports/gate/baseline.hpp"
 
-#include "compare/changes.hpp"
+#include "compare/comparison/changes.hpp"
 #include "reports/files/files.hpp"
 #include "reports/gate/gate_report.hpp"
 #include "tests/fuzz/targets.hpp"
@@ -26,14 +26,15 @@ void judge(const BaselineFile& was, const BaselineFile& is, compare::ToleranceCl
     expect_plain("the summary", step_summary(all));
     expect_plain("the annotations", annotations(all));
     (void)gate_document(all, is.provenance).dump();
-    if (junit(all).size() > reports::most_junit) throw Fault("a JUnit file larger than services take");
+    if (junit(all).size() > reports::most_junit)
+        throw Fault("a JUnit file larger than services take");
 }
 
 }  // namespace
 
 void baseline(std::string_view input) {
-    static const BaselineFile sound =
-        reports::parse_baseline(reports::read_whole(ELASTOCHECK_CORPUS "/baseline/sound.json"), "sound.json");
+    static const BaselineFile sound = reports::parse_baseline(
+        reports::read_whole(ELASTOCHECK_CORPUS "/baseline/sound.json"), "sound.json");
     try {
         const BaselineFile file = reports::parse_baseline(input, "fuzz.json");
         for (const auto kind : compare::tolerance_classes) {

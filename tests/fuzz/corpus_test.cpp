@@ -42,7 +42,8 @@ void run(const Target& target, std::string_view input, const std::string& of) {
         ADD_FAILURE() << of << ": " << error.what() << "\n" << input.substr(0, 4000);
     }
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-    EXPECT_LT(time.count(), 60) << of << ": hangs";  // far above what a busy machine makes of five seconds
+    EXPECT_LT(time.count(), 60)
+        << of << ": hangs";  // far above what a busy machine makes of five seconds
 }
 
 TEST_P(Fuzz, EveryInputOfTheCorpusHasADocumentedAnswer) {

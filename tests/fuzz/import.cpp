@@ -1,8 +1,8 @@
 #include <string>
 
+#include "elastocheck/read_scene.hpp"
 #include "models/import/import.hpp"
-#include "models/reader/property_file.hpp"
-#include "models/reader/scene_file.hpp"
+#include "models/reader/tables/property_file.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace elastocheck::fuzz {
@@ -10,8 +10,8 @@ namespace {
 
 // With what a scene cannot represent, and without; with a wheel that is hardly ever there.
 void import(std::string_view input, const std::string& file) {
-    for (const auto& options :
-         {importer::Options{}, importer::Options{"", true, true}, importer::Options{"wheel", false, true}}) {
+    for (const auto& options : {importer::Options{}, importer::Options{"", true, true},
+                                importer::Options{"wheel", false, true}}) {
         try {
             const importer::Imported result = importer::import_text(input, file, options);
             if (result.yaml.empty()) throw Fault("nothing was written");

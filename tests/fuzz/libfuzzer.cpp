@@ -33,8 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 }
 
 // Half of the inputs as libFuzzer makes them, with the dictionary and what it saw compared; half by the format.
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
-                                               unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned seed) {
     Dice dice{seed};
     if (dice.below(2) == 0) return LLVMFuzzerMutate(data, size, most);
     const std::string made = mutated(*target, text(data, size), dice);

@@ -1,9 +1,9 @@
 #include "reports/document/measurement.hpp"
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reports/document/field.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "reports/json/json_cursor.hpp"
+#include "reports/page/sections.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace elastocheck::fuzz {
@@ -52,7 +52,8 @@ void measurement(std::string_view input) {
             nlohmann::ordered_json scene = nlohmann::ordered_json::object();
             add_measurement(scene, input, "fuzz.csv", suspension.model, suspension.comparison, how);
             expect_plain("the document", scene.dump());
-            if (reports::compared_with_measurement(scene) < 0) throw Fault("fewer than none compared");
+            if (reports::compared_with_measurement(scene) < 0)
+                throw Fault("fewer than none compared");
             const auto written = nlohmann::ordered_json::parse(scene.dump());
             const std::string file = "result.json";
             (void)reports::measured_section({&written, "", &file});

@@ -119,8 +119,8 @@ void change_word(std::string& text, Dice& dice) {
     const auto all = pieces(text, is_of_word);
     if (all.empty()) return;
     const Piece one = all[dice.below(all.size())], other = all[dice.below(all.size())];
-    const std::string by(dice.below(2) == 0 ? word(dice)
-                                            : std::string_view(text).substr(other.begin, other.length));
+    const std::string by(
+        dice.below(2) == 0 ? word(dice) : std::string_view(text).substr(other.begin, other.length));
     text.replace(one.begin, one.length, by);
 }
 
@@ -137,7 +137,9 @@ json bad_value(Dice& dice) {
         case 0: return nullptr;
         case 1: return json::array();
         case 2: return json::object();
-        case 3: return dice.below(2) == 0 ? json(-1e300) : json(static_cast<double>(dice.roll()) / 1e19);
+        case 3:
+            return dice.below(2) == 0 ? json(-1e300)
+                                      : json(static_cast<double>(dice.roll()) / 1e19);
         case 4: return dice.below(2) == 0;
         default: return std::string(word(dice));
     }
@@ -153,12 +155,14 @@ void change_tree(json& root, Dice& dice) {
         case 1: node = other; break;
         case 2:
             if (node.is_structured() && !node.empty()) {
-                const auto at = std::next(node.begin(), static_cast<std::ptrdiff_t>(dice.below(node.size())));
+                const auto at =
+                    std::next(node.begin(), static_cast<std::ptrdiff_t>(dice.below(node.size())));
                 node.erase(at);
             }
             break;
         case 3:
-            if (node.is_array()) node.push_back(node.empty() ? other : node[dice.below(node.size())]);
+            if (node.is_array())
+                node.push_back(node.empty() ? other : node[dice.below(node.size())]);
             if (node.is_object()) node[std::string(word(dice))] = other;
             break;
         default:

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <array>
 
-#include "reports/document/field.hpp"
-#include "reports/page/report.hpp"
+#include "reports/json/json_cursor.hpp"
+#include "reports/page/report/report.hpp"
 #include "reports/text/escape.hpp"
 #include "tests/fuzz/targets.hpp"
 
@@ -14,11 +14,13 @@ void expect_no_formula(std::string_view file, std::string_view csv) {
     bool quoted = false, begins = true;
     for (std::size_t k = 0; k < csv.size(); ++k) {
         const char c = csv[k], next = k + 1 < csv.size() ? csv[k + 1] : ',';
-        const bool digit = (next >= '0' && next <= '9') || next == '.' || next == 'i' || next == 'n';
+        const bool digit =
+            (next >= '0' && next <= '9') || next == '.' || next == 'i' || next == 'n';
         if (begins && (c == '=' || c == '@' || ((c == '+' || c == '-') && !digit)))
             throw Fault(std::string(file) + ": a formula: " + std::string(csv.substr(k, 80)));
         if (c == '"') quoted = !quoted;
-        begins = c == ';' || (!quoted && (c == ',' || c == '\n')) || (begins && (c == '"' || c == ' '));
+        begins =
+            c == ';' || (!quoted && (c == ',' || c == '\n')) || (begins && (c == '"' || c == ' '));
     }
 }
 

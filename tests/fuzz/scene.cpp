@@ -3,9 +3,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "tests/fuzz/targets.hpp"
 #include "tests/support/folder.hpp"
 
@@ -40,7 +40,8 @@ void scene(std::string_view input) {
         for (std::size_t at = 0; at < input.size() && settings.size() < 8;) {
             const std::size_t end = std::min(input.find('\n', at), input.size());
             const std::string_view line = input.substr(at, end - at);
-            if (line.starts_with(marker)) settings.push_back(parse_setting(line.substr(marker.size())));
+            if (line.starts_with(marker))
+                settings.push_back(parse_setting(line.substr(marker.size())));
             at = end + 1;
         }
         use(parse_scene(input, "fuzz.yaml", settings));

@@ -17,8 +17,9 @@ struct Fault : std::logic_error {
 struct Target {
     const char* name;  // of its corpus, too
     void (*run)(std::string_view);
-    bool is_json = false;           // mutated as a tree, not as lines
-    std::string_view samples = {};  // extensions of those among tests/models/import that belong to its corpus
+    bool is_json = false;  // mutated as a tree, not as lines
+    std::string_view samples =
+        {};  // extensions of those among tests/models/import that belong to its corpus
 };
 
 // A scene as text, up to the model that the solvers take. A line `# --set PATH=VALUE` is a setting as well.

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "compare/changes.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/changes.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/files/files.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/scenes.hpp"
@@ -91,8 +91,10 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {"", "the file is empty"},
              {" \n", "is not the JSON of a baseline"},
              {std::string(100'000, '['), "nested more than 64 deep"},
-             {replaced(good, "\"branch\":\"", "\"branch\":\"x\\n::error::"), "control character U+000A"},
-             {replaced(good, "\"branch\":\"", "\"branch\":\"\xE2\x80\xAE"), "turns the direction of writing"},
+             {replaced(good, "\"branch\":\"", "\"branch\":\"x\\n::error::"),
+              "control character U+000A"},
+             {replaced(good, "\"branch\":\"", "\"branch\":\"\xE2\x80\xAE"),
+              "turns the direction of writing"},
              {"{}", "has no schema"},
              {"[]", "has no schema"},
              {"null", "has no schema"},
@@ -102,13 +104,18 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {replaced(good, "baseline/2", "baseline/1"),
               "'elastocheck/baseline/1' cannot be read by this version"},
              {replaced(good, "\"limits\"", "\"limit\""), "'limits' is missing"},
-             {replaced(older, "\"limits\"", "\"numbers\": {}, \"limits\""), "numbers: is not a list"},
+             {replaced(older, "\"limits\"", "\"numbers\": {}, \"limits\""),
+              "numbers: is not a list"},
              {replaced(older, "\"limits\"", R"("numbers": [["a", 1]], "limits")"),
               "numbers[0]: is not [path, value, unit]"},
-             {replaced(older, "\"limits\"", R"("numbers": [["a", "1", "m"]], "limits")"), "is not a number"},
-             {replaced(older, "\"limits\"", R"("numbers": [["a", 1, 2]], "limits")"), "is not a text"},
-             {replaced(good, "\"limits\": []", "\"limits\": [], \"more\": 1"), "'more' is not known"},
-             {replaced(good, "\"limits\": []", R"("limits": [{"of":"recursive","channel":"x","max":1}])"),
+             {replaced(older, "\"limits\"", R"("numbers": [["a", "1", "m"]], "limits")"),
+              "is not a number"},
+             {replaced(older, "\"limits\"", R"("numbers": [["a", 1, 2]], "limits")"),
+              "is not a text"},
+             {replaced(good, "\"limits\": []", "\"limits\": [], \"more\": 1"),
+              "'more' is not known"},
+             {replaced(good, "\"limits\": []",
+                       R"("limits": [{"of":"recursive","channel":"x","max":1}])"),
               "limits.of: 'recursive' is not known"},
              {replaced(good, "\"limits\": []",
                        R"("limits": [{"of":"deviation at equal parameter","channel":"x"}])"),
@@ -117,7 +124,8 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {replaced(good, "\"physical\"", "\"physic\""), "'physical' is missing"},
              {replaced(good, "\"values\":[100.0", "\"values\":[\"0\""), "is not a number"},
              {replaced(good, "\"unit\":\"mm\"", "\"unit\":\"inch\""), "'inch' is not known"},
-             {replaced(good, "\"of\":\"recursive\"", "\"of\":\"recursiv\""), "'recursiv' is not known"},
+             {replaced(good, "\"of\":\"recursive\"", "\"of\":\"recursiv\""),
+              "'recursiv' is not known"},
              {replaced(good, "\"of\":\"equilibrium\"", "\"of\":\"recursive\""), "is there twice"},
          }) {
         try {
@@ -131,8 +139,8 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
 }
 
 TEST(Baseline, ANullIsNoNumber) {
-    const auto file =
-        parse_baseline(replaced(committed("single_bushing"), "\"values\":[100.0", "\"values\":[null"), "b");
+    const auto file = parse_baseline(
+        replaced(committed("single_bushing"), "\"values\":[100.0", "\"values\":[null"), "b");
     EXPECT_TRUE(std::isnan(file.baseline.accepted.series[0].values[0]));
 }
 
@@ -142,7 +150,8 @@ TEST(Baseline, BuildsAreTheSameOnlyWhenNothingThatRoundsDiffers) {
     Provenance other = here;
     other.commit = "another", other.dirty = !here.dirty, other.version = "9";
     EXPECT_EQ(distance(here, other).kind, ToleranceClass::same_build);
-    for (std::string Provenance::*field : {&Provenance::compiler, &Provenance::flags, &Provenance::cpu}) {
+    for (std::string Provenance::*field :
+         {&Provenance::compiler, &Provenance::flags, &Provenance::cpu}) {
         other = here;
         other.*field += "!";
         EXPECT_EQ(distance(here, other).kind, ToleranceClass::cross_build);
@@ -156,9 +165,10 @@ TEST(Baseline, BuildsAreTheSameOnlyWhenNothingThatRoundsDiffers) {
 TEST(Baseline, OnlyWhatIsCommittedCanHaveBeenReviewed) {
     const support::Folder folder;
     const auto git = [&](const std::string& arguments) {
-        return support::says("git -C " + folder.path.string() +
-                             " -c user.name=t -c user.email=t@example.org -c init.defaultBranch=main " +
-                             arguments)
+        return support::says(
+                   "git -C " + folder.path.string() +
+                   " -c user.name=t -c user.email=t@example.org -c init.defaultBranch=main " +
+                   arguments)
             .code;
     };
     const std::string file = folder.write("it's.json", "1");

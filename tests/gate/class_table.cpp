@@ -25,10 +25,10 @@ std::map<std::string, Worst> worst_of(const fs::path& accepted, const fs::path& 
     std::map<std::string, Worst> worst;
     for (const auto& entry : fs::directory_iterator(accepted)) {
         const auto leaf = entry.path().filename();
-        const auto a =
-            reports::parse_baseline(reports::read_whole(entry.path()), entry.path()).baseline.accepted;
-        const auto b =
-            reports::parse_baseline(reports::read_whole(other / leaf), other / leaf).baseline.accepted;
+        const auto a = reports::parse_baseline(reports::read_whole(entry.path()), entry.path())
+                           .baseline.accepted;
+        const auto b = reports::parse_baseline(reports::read_whole(other / leaf), other / leaf)
+                           .baseline.accepted;
         for (std::size_t s = 0; s < a.series.size(); ++s) {
             const auto &was = a.series[s], &is = b.series.at(s);
             if (was.channel != is.channel || was.branch != is.branch || was.quantity != is.quantity)
@@ -53,7 +53,8 @@ int main(int argc, char** argv) {
                argc > 1 ? fs::path(argv[1]).parent_path().filename().string() : "");
     for (int k = 2; k < argc; ++k)
         for (const auto& [unit, worst] : worst_of(argv[1], argv[k]))
-            fmt::print("| {} | {} | {:.2g} | {} |\n", fs::path(argv[k]).parent_path().filename().string(),
-                       unit, worst.difference, worst.where);
+            fmt::print("| {} | {} | {:.2g} | {} |\n",
+                       fs::path(argv[k]).parent_path().filename().string(), unit, worst.difference,
+                       worst.where);
     return argc > 2 ? 0 : 2;
 }

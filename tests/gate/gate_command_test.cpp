@@ -33,7 +33,8 @@ Said gate(const std::string& arguments, const std::string& environment = "CI= GI
 Said crafted(const std::string& baseline, const std::string& measurement) {
     const Folder folder;
     folder.write("single_bushing.json", baseline);
-    return gate(scene + " --baseline " + folder.path.string() + " --from " + folder.write("m", measurement));
+    return gate(scene + " --baseline " + folder.path.string() + " --from " +
+                folder.write("m", measurement));
 }
 
 using Edit = std::function<void(ordered_json&)>;
@@ -66,14 +67,17 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
                 if (s["unit"] == "mm") return void(s["values"][0] = value);
         });
     };
-    const auto truncated = [&](const std::string& text) { return text.substr(0, text.size() * 2 / 3); };
+    const auto truncated = [&](const std::string& text) {
+        return text.substr(0, text.size() * 2 / 3);
+    };
     const std::string nan = edited([](auto& f) { first_moving(f)["values"].back() = nullptr; });
     const std::string less = edited([](auto& f) { f["series"].erase(f["series"].begin()); });
     const std::string fewer = edited([](auto& f) { first_moving(f)["values"].erase(3); });
     const std::string swapped = edited([](auto& f) {
         auto& moving = first_moving(f);
         for (auto& s : f["series"])
-            if (s["unit"] == moving["unit"] && s["of"] == moving["of"] && s["values"] != moving["values"])
+            if (s["unit"] == moving["unit"] && s["of"] == moving["of"] &&
+                s["values"] != moving["values"])
                 return std::swap(s["values"], moving["values"]);
     });
     const std::string older = edited([](auto& f) { f["schema"] = "elastocheck/baseline/1"; });
@@ -110,11 +114,13 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
         {"an infinite bound", 3,  // 1e999 is no JSON number that a double holds
          std::string(good).replace(good.find("\"atol\":"), 7, "\"atol\":1e999,\"x\":"), good},
         {"a limit that holds", 0, edited([](auto& f) {
-             f["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
+             f["limits"] = {
+                 {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
          }),
          good},
         {"a limit on nothing", 3, edited([](auto& f) {
-             f["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre"}, {"max", 1e6}}};
+             f["limits"] = {
+                 {{"of", "deviation at equal parameter"}, {"channel", "centre"}, {"max", 1e6}}};
          }),
          good},
         {"a NaN and a broken bound", 1, edited(set_to_zero), edited([](auto& f) {
@@ -127,7 +133,8 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
         const Said said = crafted(baseline, measurement);
         EXPECT_EQ(said.code, code) << what << "\n" << said.out << said.err;
         EXPECT_EQ(contains(said.out, "passed:"), code == 0) << what << "\n" << said.out;
-        EXPECT_TRUE(code != 3 || contains(said.out, "could not judge: ")) << what << "\n" << said.out;
+        EXPECT_TRUE(code != 3 || contains(said.out, "could not judge: ")) << what << "\n"
+                                                                          << said.out;
     }
 }
 
@@ -140,7 +147,8 @@ TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
     EXPECT_EQ(gate(there).code, 3);  // a folder without baselines
     EXPECT_EQ(gate("--baseline /nowhere/at/all").code, 3);
     EXPECT_EQ(gate("nowhere.yaml" + there).code, 2);
-    EXPECT_EQ(gate(scene + there + " --from /nowhere").code, 3);  // no baseline, so not even looked for
+    EXPECT_EQ(gate(scene + there + " --from /nowhere").code,
+              3);  // no baseline, so not even looked for
     folder.write("single_bushing.json", committed);
     EXPECT_EQ(gate(scene + there + " --from /nowhere").code, 2);
     EXPECT_EQ(gate(scene + " --from x " + scene).code, 2);
@@ -174,7 +182,8 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     said = gate(own);
     EXPECT_EQ(said.code, 0) << said.out;
     EXPECT_TRUE(contains(said.out, "same-build")) << said.out;
-    EXPECT_EQ(gate("--baseline " + (folder.path / "baselines").string()).code, 0);  // finds its scene
+    EXPECT_EQ(gate("--baseline " + (folder.path / "baselines").string()).code,
+              0);  // finds its scene
 
     // The same again is no reason to touch the file.
     EXPECT_EQ(gate(own + " --accept --reason 'again'").code, 0);
@@ -220,11 +229,13 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     // Accepting prints the difference first, and keeps what was set by hand.
     ordered_json file = ordered_json::parse(text_of(baseline));
     file["tolerances"]["physical"]["mm"]["atol"] = 0.5;
-    file["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
+    file["limits"] = {
+        {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
     folder.write("baselines/own.json", file.dump());
     said = gate(own + " --accept --reason 'stiffer'");
     EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_TRUE(contains(said.out, "numbers out of tolerance, same-build (every change beyond rounding)"));
+    EXPECT_TRUE(
+        contains(said.out, "numbers out of tolerance, same-build (every change beyond rounding)"));
     const auto accepted = reports::parse_baseline(text_of(baseline), "").baseline;
     EXPECT_EQ(accepted.reason, "stiffer");
     EXPECT_EQ(accepted.limits.size(), 1u);
@@ -238,7 +249,8 @@ TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
                       baseline = folder.path / "baselines/own.json";
     ASSERT_EQ(gate(own + " --accept --reason first").code, 0);
     ordered_json file = ordered_json::parse(text_of(baseline));
-    file["limits"] = {{{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", -0.0}}};
+    file["limits"] = {
+        {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", -0.0}}};
     std::string channel;
     for (const auto& s : file["series"])
         if (s["of"] == "deviation at equal parameter" && s["unit"] == "mm" && s["values"][0] > 0)
@@ -289,7 +301,8 @@ TEST(GateCommand, OneBadSceneDoesNotHideTheOthers) {
     const Folder folder;
     folder.write("bad.yaml", "elastocheck: 1\n");
     folder.write("good.yaml", text_of(scene));
-    const std::string good = (folder.path / "good.yaml").string(), bad = (folder.path / "bad.yaml").string();
+    const std::string good = (folder.path / "good.yaml").string(),
+                      bad = (folder.path / "bad.yaml").string();
     ASSERT_EQ(gate(good + " --accept --reason first").code, 0);
     const Said said = gate(bad + " " + good);
     EXPECT_EQ(said.code, 2);

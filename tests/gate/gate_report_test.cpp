@@ -76,15 +76,18 @@ TEST(GateReport, ExitCodesAreRanked) {
 
 TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
     EXPECT_EQ(story(offence(0.5)),
-              "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, difference -0.5, "
+              "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, "
+              "difference -0.5, "
               "2 times the tolerance of 0.25, 1 times what an engineer notices");
     compare::Offence limit = offence(0.007);
     limit.of_limit = true, limit.a = {}, limit.was = limit.tolerance = 0.005;
     limit.quantity = Quantity::deviation_at_equal_abscissa;
     EXPECT_EQ(story(limit),
-              "branch 'jounce', deviation at equal abscissa: toe: 0.007 deg is over its limit of 0.005 deg");
+              "branch 'jounce', deviation at equal abscissa: toe: 0.007 deg is over its limit of "
+              "0.005 deg");
     const std::string table = gate_table(failed());
-    EXPECT_TRUE(contains(table, "scenes/bad.yaml: FAILED: 2 of 7 numbers out of tolerance, same-build"))
+    EXPECT_TRUE(
+        contains(table, "scenes/bad.yaml: FAILED: 2 of 7 numbers out of tolerance, same-build"))
         << table;
     EXPECT_TRUE(contains(table, "+2.5          5         10        2\n")) << table;
     EXPECT_FALSE(contains(table, "1.5")) << table;  // of the same channel and not the worst
@@ -97,7 +100,9 @@ TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
     pugi::xml_document document;
     ASSERT_TRUE(document.load_string(xml.c_str())) << xml;
     const auto suites = document.child("testsuites");
-    const auto suite = [&](const char* file) { return suites.find_child_by_attribute("name", file); };
+    const auto suite = [&](const char* file) {
+        return suites.find_child_by_attribute("name", file);
+    };
     EXPECT_EQ(suite("scenes/good.yaml").attribute("tests").as_int(), 2);
     EXPECT_EQ(suite("scenes/good.yaml").attribute("failures").as_int(), 0);
     EXPECT_EQ(suite("scenes/bad.yaml").attribute("failures").as_int(), 1);
@@ -107,32 +112,37 @@ TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
     const auto failure =
         suite("scenes/bad.yaml").find_child_by_attribute("name", "branch jounce").child("failure");
     EXPECT_TRUE(contains(failure.text().get(), "accepted 1 deg, measured 3.5 deg"));
-    EXPECT_TRUE(contains(failure.text().get(), "; 2 numbers of it in all\n")) << failure.text().get();
+    EXPECT_TRUE(contains(failure.text().get(), "; 2 numbers of it in all\n"))
+        << failure.text().get();
     const auto error = suite("scenes/new.yaml").child("testcase").child("error");
     EXPECT_STREQ(error.attribute("message").value(), "there is no baseline");
     EXPECT_TRUE(contains(error.text().get(), "<nothing>"));
     for (const auto& of_suite : suites)
-        EXPECT_EQ(of_suite.attribute("tests").as_int(), std::distance(of_suite.begin(), of_suite.end()));
+        EXPECT_EQ(of_suite.attribute("tests").as_int(),
+                  std::distance(of_suite.begin(), of_suite.end()));
 }
 
 TEST(GateReport, TheFieldsOfTheSceneThatChangedAreNamedEverywhere) {
     GatedScene scene = failed();
-    scene.changed = {
-        {Number{"points.tie_rod_inner.z", -0.06, "m"}, Number{"points.tie_rod_inner.z", -0.055, "m"}},
-        {std::nullopt, Number{"springs.coil.preload", 300, "N"}},
-        {Number{"factor", 2, ""}, std::nullopt}};
+    scene.changed = {{Number{"points.tie_rod_inner.z", -0.06, "m"},
+                      Number{"points.tie_rod_inner.z", -0.055, "m"}},
+                     {std::nullopt, Number{"springs.coil.preload", 300, "N"}},
+                     {Number{"factor", 2, ""}, std::nullopt}};
     EXPECT_EQ(story(scene.changed[1]), "springs.coil.preload: 300 N, is new");
     EXPECT_EQ(story(scene.changed[2]), "factor: is gone, was 2");
     const std::string first = "points.tie_rod_inner.z: -0.055 m, was -0.06 m";
     EXPECT_TRUE(contains(gate_table(scene), "  changed: " + first + "\n")) << gate_table(scene);
     EXPECT_TRUE(contains(junit({scene}), "changed: " + first)) << junit({scene});
-    EXPECT_TRUE(contains(annotations({scene}), "; changed in the scene: " + first + " and 2 more\n"))
+    EXPECT_TRUE(
+        contains(annotations({scene}), "; changed in the scene: " + first + " and 2 more\n"))
         << annotations({scene});
     const std::string page = step_summary({scene});
-    EXPECT_TRUE(contains(page, "- scenes/bad.yaml: points.tie\\_rod\\_inner.z: -0.055 m, was -0.06 m\n"))
+    EXPECT_TRUE(
+        contains(page, "- scenes/bad.yaml: points.tie\\_rod\\_inner.z: -0.055 m, was -0.06 m\n"))
         << page;
     scene.changed.assign(25, scene.changed[0]);
-    EXPECT_TRUE(contains(gate_table(scene), "... and 15 more numbers of the scene")) << gate_table(scene);
+    EXPECT_TRUE(contains(gate_table(scene), "... and 15 more numbers of the scene"))
+        << gate_table(scene);
 }
 
 TEST(GateReport, TheOrderOverAllScenesIsTheOneOfEach) {
@@ -150,7 +160,8 @@ TEST(GateReport, TheOrderOverAllScenesIsTheOneOfEach) {
 
 // Everything of everything is wrong, under names as long as they may be.
 TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
-    const auto wrong = [](std::size_t scenes, std::size_t branches, std::size_t numbers, std::size_t length) {
+    const auto wrong = [](std::size_t scenes, std::size_t branches, std::size_t numbers,
+                          std::size_t length) {
         GatedScene scene = unjudged();
         scene.accepted.series.clear();
         scene.verdict.reasons.assign(numbers, std::string(length, '<'));
@@ -162,7 +173,8 @@ TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
             }
         scene.changed.assign(numbers, {Number{std::string(length, 'x'), 1, "m"}, std::nullopt});
         std::vector<GatedScene> all(scenes, scene);
-        for (std::size_t k = 0; k < scenes; ++k) all[k].file = std::to_string(k) + std::string(length, '"');
+        for (std::size_t k = 0; k < scenes; ++k)
+            all[k].file = std::to_string(k) + std::string(length, '"');
         all.insert(all.begin(), passed());
         return all;
     };
@@ -182,8 +194,8 @@ TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
         EXPECT_EQ(contains(xml, left), shown < tests)
             << scenes << " scenes, " << shown << " shown of " << tests;
         EXPECT_EQ(contains(xml, "scenes/good.yaml"), shown == tests) << "what passes goes first";
-        EXPECT_TRUE(contains(xml, "more: elastocheck gate --json") || scenes * branches * numbers < 100 ||
-                    shown < tests);
+        EXPECT_TRUE(contains(xml, "more: elastocheck gate --json") ||
+                    scenes * branches * numbers < 100 || shown < tests);
     }
     // What fits is all there: the worst number of each channel, and how many there are.
     GatedScene scene = failed();
@@ -202,18 +214,21 @@ TEST(GateReport, JUnitIsWellFormedWhateverTheTextsHold) {
     for (int c = 1; c < 128; ++c) odd.verdict.reasons[0] += static_cast<char>(c);
     odd.file += "<&\"'>]]>";
     const support::Folder folder;
-    const auto said = support::says("xmllint --noout " + folder.write("j.xml", junit({failed(), odd})));
+    const auto said =
+        support::says("xmllint --noout " + folder.write("j.xml", junit({failed(), odd})));
     EXPECT_EQ(said.code, 0) << said.err;
 }
 
 TEST(GateReport, TheSummarySaysTheVerdictFirstAndFoldsTheRest) {
     const std::string page = step_summary({passed(), failed(), unjudged()});
-    EXPECT_TRUE(
-        page.starts_with("# elastocheck gate: FAILED\n\nFAILED: 2 of 14 numbers out of tolerance, in 1 of 3"))
+    EXPECT_TRUE(page.starts_with(
+        "# elastocheck gate: FAILED\n\nFAILED: 2 of 14 numbers out of tolerance, in 1 of 3"))
         << page;
-    EXPECT_LT(page.find("| scenes/bad.yaml | jounce | recursive | toe \\[deg\\] | 3000 N | 1 | 3.5 | +2.5 | "
-                        "5 | 10 | 2 |"),
-              page.find("<details>"))
+    EXPECT_LT(
+        page.find(
+            "| scenes/bad.yaml | jounce | recursive | toe \\[deg\\] | 3000 N | 1 | 3.5 | +2.5 | "
+            "5 | 10 | 2 |"),
+        page.find("<details>"))
         << page;
     EXPECT_GT(page.find("| scenes/good.yaml | passed | 7 |"), page.find("<details>")) << page;
     EXPECT_TRUE(contains(page, "\\<nothing\\> \\| \"compared\"")) << page;
@@ -256,7 +271,8 @@ TEST(GateReport, AnnotationsAreAtMostTenWorstFirstAndEscaped) {
     EXPECT_TRUE(lines.starts_with(
         "::error file=a%3Ab%2Cc.yaml,title=elastocheck gate%3A out of tolerance::branch "
         "'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 21 deg, difference "
-        "+20, 80 times the tolerance of 0.25, 40 times what an engineer notices; 2 numbers of it in all\n"))
+        "+20, 80 times the tolerance of 0.25, 40 times what an engineer notices; 2 numbers of it "
+        "in all\n"))
         << lines;
     EXPECT_TRUE(contains(annotations({other}), "::100 %25%0Aand a%0Dline\n"));
     EXPECT_EQ(annotations({passed()}), "");

@@ -5,8 +5,8 @@
 #include <functional>
 #include <limits>
 
-#include "compare/changes.hpp"
-#include "compare/gate.hpp"
+#include "compare/comparison/changes.hpp"
+#include "compare/gate/gate.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -38,7 +38,9 @@ Baseline baseline() {
     return b;
 }
 
-Verdict judged(const Baseline& b, const Measurement& m) { return judge(b, m, ToleranceClass::same_build); }
+Verdict judged(const Baseline& b, const Measurement& m) {
+    return judge(b, m, ToleranceClass::same_build);
+}
 
 double& value(Measurement& m, Quantity quantity, const std::string& channel, std::size_t k) {
     for (auto& s : m.series)
@@ -89,7 +91,8 @@ TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
 
 TEST(Gate, ADeviationsRelativeToleranceIsAShareOfTheReferencesRange) {
     Baseline b = baseline();
-    b.tolerances[ToleranceClass::same_build]["deg"] = {0, 0.25};  // the equilibrium leg's toe spans 2
+    b.tolerances[ToleranceClass::same_build]["deg"] = {0,
+                                                       0.25};  // the equilibrium leg's toe spans 2
     Measurement m = measurement();
     value(m, Quantity::deviation_at_equal_abscissa, "toe", 0) = 1;
     EXPECT_EQ(judged(b, m).judgement(), Judgement::passed);
@@ -122,8 +125,10 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
         std::function<void(Baseline&, Measurement&)> inflict;
     };
     const std::vector<Damage> damages{
-        {"not a finite number", [](auto&, auto& m) { value(m, Quantity::recursive, "toe", 1) = nan; }},
-        {"not a finite number", [](auto&, auto& m) { value(m, Quantity::recursive, "toe", 1) = infinity; }},
+        {"not a finite number",
+         [](auto&, auto& m) { value(m, Quantity::recursive, "toe", 1) = nan; }},
+        {"not a finite number",
+         [](auto&, auto& m) { value(m, Quantity::recursive, "toe", 1) = infinity; }},
         {"not a finite number in the baseline",
          [](auto& b, auto&) { value(b.accepted, Quantity::recursive, "toe", 1) = nan; }},
         {"not a finite number in the baseline",
@@ -133,7 +138,8 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
          }},
         {"was not measured", [](auto&, auto& m) { m.series.erase(m.series.begin()); }},
         {"toe is new", [](auto& b, auto&) { b.accepted.series.erase(b.accepted.series.begin()); }},
-        {"3 numbers in the baseline, 2 were measured", [](auto&, auto& m) { m.series[0].values.pop_back(); }},
+        {"3 numbers in the baseline, 2 were measured",
+         [](auto&, auto& m) { m.series[0].values.pop_back(); }},
         {"2 numbers in the baseline, 3 were measured",
          [](auto& b, auto&) { b.accepted.series[0].values.pop_back(); }},
         {"no numbers in the baseline",
@@ -147,12 +153,15 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
         {"branch 'out' is in the baseline", [](auto&, auto& m) { m.branches.pop_back(); }},
         {"branch 'out' is new", [](auto& b, auto&) { b.accepted.branches.pop_back(); }},
         {"was in deg and is in mm", [](auto&, auto& m) { m.series[0].unit = "mm"; }},
-        {"nothing was compared", [](auto& b, auto& m) { b.accepted.series.clear(), m.series.clear(); }},
-        {"the references disagree", [](auto&, auto& m) { m.inconclusive = {"the references disagree"}; }},
+        {"nothing was compared",
+         [](auto& b, auto& m) { b.accepted.series.clear(), m.series.clear(); }},
+        {"the references disagree",
+         [](auto&, auto& m) { m.inconclusive = {"the references disagree"}; }},
         {"no reason for its acceptance", [](auto& b, auto&) { b.reason = " \n"; }},
         {"of scene 's', this is 't'", [](auto&, auto& m) { m.scene = "t"; }},
         {"no usable tolerance", [](auto& b, auto&) { b.tolerances.clear(); }},
-        {"no usable tolerance", [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build].erase("mm"); }},
+        {"no usable tolerance",
+         [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build].erase("mm"); }},
         {"no usable tolerance",
          [](auto& b, auto&) { b.tolerances[ToleranceClass::same_build]["mm"].atol = nan; }},
         {"no usable tolerance",
@@ -183,7 +192,8 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
         const Verdict verdict = judged(b, m);
         EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge) << what;
         bool said = false;
-        for (const auto& reason : verdict.reasons) said = said || reason.find(what) != std::string::npos;
+        for (const auto& reason : verdict.reasons)
+            said = said || reason.find(what) != std::string::npos;
         EXPECT_TRUE(said) << what << ": " << (verdict.reasons.empty() ? "" : verdict.reasons[0]);
     }
 }
@@ -248,7 +258,8 @@ TEST(Gate, WhatAnEngineerNoticesComesFirst) {
     Baseline b = baseline();
     for (const char* channel : {"bush.force_z", "coil.force_z"})
         for (const char* branch : {"in", "out"})
-            b.accepted.series.push_back({branch, Quantity::equilibrium, channel, "N", {0, 100, 200}});
+            b.accepted.series.push_back(
+                {branch, Quantity::equilibrium, channel, "N", {0, 100, 200}});
     b.tolerances[ToleranceClass::same_build] = {
         {"deg", {1e-9, 0}}, {"mm", {1e-9, 0}}, {"N", {1e-9, 0}}, {"count", {0, 0}}};
     b.tolerances[ToleranceClass::physical] = {
@@ -258,7 +269,7 @@ TEST(Gate, WhatAnEngineerNoticesComesFirst) {
     value(m, Quantity::recursive, "travel", 1) += 0.005;         // half of it
     value(m, Quantity::equilibrium, "bush.force_z", 1) += 0.9;   // 9e8 tolerances, and not noticed
     value(m, Quantity::equilibrium, "coil.force_z", 1) += 1000;  // noticed, within the suspension
-    value(m, Quantity::work_recursive, "steps", 0) += 1;         // nothing is tolerated, and not noticed
+    value(m, Quantity::work_recursive, "steps", 0) += 1;  // nothing is tolerated, and not noticed
     const Verdict verdict = judged(b, m);
     EXPECT_EQ(order(verdict),
               (std::vector<std::string>{"toe", "coil.force_z", "travel", "bush.force_z", "steps"}));
@@ -287,8 +298,10 @@ TEST(Gate, WhereABaselineDoesNotSayWhatIsNoticedTheUsualIs) {
     value(m, Quantity::recursive, "travel", 1) = 0;
     const Verdict verdict = judged(b, m);
     ASSERT_EQ(verdict.offences.size(), 2u);
-    EXPECT_DOUBLE_EQ(verdict.offences[0].noticeable, 0.01 + 1e-3 * 32) << verdict.offences[0].channel;
-    EXPECT_DOUBLE_EQ(verdict.offences[1].noticeable, 0.001 + 1e-3 * 2) << verdict.offences[1].channel;
+    EXPECT_DOUBLE_EQ(verdict.offences[0].noticeable, 0.01 + 1e-3 * 32)
+        << verdict.offences[0].channel;
+    EXPECT_DOUBLE_EQ(verdict.offences[1].noticeable, 0.001 + 1e-3 * 2)
+        << verdict.offences[1].channel;
 }
 
 TEST(Changes, AreNamedWithOldAndNewAndWhatCameOrWent) {

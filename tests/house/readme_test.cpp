@@ -18,17 +18,20 @@ const std::string root = ELASTOCHECK_ROOT;
 
 TEST(Readme, WhatItsWorkflowChecksOutIsThere) {
     const std::string git = "git -c safe.directory='*' -C '" + root + "' ";
-    if (says(git + "rev-parse --show-prefix").out != "\n") GTEST_SKIP() << "not a checkout of its own";
+    if (says(git + "rev-parse --show-prefix").out != "\n")
+        GTEST_SKIP() << "not a checkout of its own";
     if (says(git + "rev-parse --is-shallow-repository").out != "false\n")
         GTEST_SKIP() << "a checkout without history";
     const std::string page = text_of(root + "/tests/gate/README.md");
     static const std::regex reference("\\bref: ([^ ,}\n]+)");
     int references = 0;
-    for (std::sregex_iterator at(page.begin(), page.end(), reference), end; at != end; ++at, ++references) {
+    for (std::sregex_iterator at(page.begin(), page.end(), reference), end; at != end;
+         ++at, ++references) {
         const std::string name = (*at)[1];
         bool there = false;
         for (const std::string place : {"", "origin/"})
-            there = there || says(git + "rev-parse --verify -q '" + place + name + "^{commit}'").code == 0;
+            there = there ||
+                    says(git + "rev-parse --verify -q '" + place + name + "^{commit}'").code == 0;
         EXPECT_TRUE(there) << "ref: " << name;
     }
     EXPECT_GT(references, 0);
@@ -41,7 +44,8 @@ std::vector<std::filesystem::path> pages() {
     for (const char* room : {"models", "recursive", "reference", "compare", "reports", "tests"})
         for (const auto& entry : fs::recursive_directory_iterator(fs::path(root) / room))
             if (entry.path().extension() == ".md") found.push_back(entry.path());
-    for (const char* page : {"README.md", "CONTRIBUTING.md"}) found.push_back(fs::path(root) / page);
+    for (const char* page : {"README.md", "CONTRIBUTING.md"})
+        found.push_back(fs::path(root) / page);
     return found;
 }
 
@@ -50,7 +54,8 @@ TEST(Readme, LinksBetweenPagesLeadToFiles) {
     int links = 0;
     for (const auto& page : pages()) {
         const std::string text = text_of(page);
-        for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at, ++links) {
+        for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end;
+             ++at, ++links) {
             const std::string target = (*at)[1].matched ? (*at)[1] : (*at)[3];
             EXPECT_TRUE(std::filesystem::exists(page.parent_path() / target))
                 << page << " links to " << target;
@@ -67,7 +72,8 @@ TEST(Readme, HeadersThatTheRoomsPagesNameExist) {
         const std::filesystem::path folder = std::filesystem::path(root) / room;
         const std::string text = text_of(folder / "README.md");
         std::filesystem::path last = folder;
-        for (std::sregex_iterator at(text.begin(), text.end(), file), end; at != end; ++at, ++named) {
+        for (std::sregex_iterator at(text.begin(), text.end(), file), end; at != end;
+             ++at, ++named) {
             const std::string name = (*at)[1];
             // From the room, from the repository, or beside the file that is named before.
             bool exists = false;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/mistakes.hpp"
 
 namespace elastocheck {
@@ -79,9 +79,9 @@ Vector6 tip_motion(const Scene& scene, const Vector6& wrench) {
 
 // Przemieniecki's 12×12 beam matrix, with x along the beam.
 TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
-    const Scene scene = parse_scene(
-        cantilever("through: [root, bend], segments: 1, " + section + ", shear_y: 0.5, shear_z: 0.7, up: z"),
-        "b.yaml");
+    const Scene scene = parse_scene(cantilever("through: [root, bend], segments: 1, " + section +
+                                               ", shear_y: 0.5, shear_z: 0.7, up: z"),
+                                    "b.yaml");
     Scene moved = scene;  // moves the tip's origin to the end of the beam
     auto b = std::get<Bushing>(moved.elastics.at(0).kind);
     const double L = 3, EA = 10, EI_y = 14, EI_z = 22, GJ = 39, GA_y = 1.5, GA_z = 2.1;
@@ -116,9 +116,10 @@ TEST(Beam, OneSegmentIsTheTimoshenkoBeam) {
 TEST(Beam, AnyNumberOfSegmentsBendsAndTwistsLikeTheWholeBeam) {
     const double a = 3, b = 2, EI_y = 14, EI_z = 22, EA = 10, GJ = 39;
     for (const int n : {2, 3, 5, 12, 40}) {
-        const Scene scene = parse_scene(
-            cantilever(fmt::format("through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
-            "b.yaml");
+        const Scene scene =
+            parse_scene(cantilever(fmt::format(
+                            "through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
+                        "b.yaml");
         ASSERT_EQ(scene.bodies.size(), static_cast<std::size_t>(n));
         ASSERT_EQ(scene.elastics.size(), static_cast<std::size_t>(n));
         // F normal to the plane (z): w = F (a³ + b³)/(3EI_y) + F b² a/(GJ)
@@ -139,8 +140,8 @@ TEST(Beam, ADiameterIsTheRoundSection) {
     const double L = 3e-3, E = 2000e9, G = 800e9, D = 20e-3;
     Vector6 k;
     const double I = pi * std::pow(D, 4) / 64, A = pi * D * D / 4;
-    k << E * A / L, 12 * E * I / std::pow(L, 3), 12 * E * I / std::pow(L, 3), 2 * G * I / L, E * I / L,
-        E * I / L;
+    k << E * A / L, 12 * E * I / std::pow(L, 3), 12 * E * I / std::pow(L, 3), 2 * G * I / L,
+        E * I / L, E * I / L;
     EXPECT_LE(((K_of(segment(rod, 0)).diagonal() - k).array() / k.array()).abs().maxCoeff(), 1e-14);
 
     const auto text = [](const std::string& wall) {
@@ -148,7 +149,8 @@ TEST(Beam, ADiameterIsTheRoundSection) {
     };
     const Matrix6 tube = K_of(segment(parse_scene(text(", wall: 0.002"), "b.yaml"), 0));
     EXPECT_NEAR(tube(0, 0) / (2 * pi / 4 * (0.02 * 0.02 - 0.016 * 0.016) / 3), 1, 1e-13);
-    EXPECT_NEAR(tube(3, 3) / (8 * pi / 32 * (std::pow(0.02, 4) - std::pow(0.016, 4)) / 3), 1, 1e-13);
+    EXPECT_NEAR(tube(3, 3) / (8 * pi / 32 * (std::pow(0.02, 4) - std::pow(0.016, 4)) / 3), 1,
+                1e-13);
     const Matrix6 solid = K_of(segment(parse_scene(text(""), "b.yaml"), 0));
     const Matrix6 thick = K_of(segment(parse_scene(text(", wall: 0.01"), "b.yaml"), 0));
     EXPECT_LE((solid - thick).cwiseAbs().maxCoeff(), 1e-12 * solid.maxCoeff());
@@ -156,8 +158,9 @@ TEST(Beam, ADiameterIsTheRoundSection) {
 
 TEST(Beam, UnitsOfTheSectionAreThoseOfTheScene) {
     const Scene mm = parse_scene(
-        cantilever("through: [root, bend], segments: 1, E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13, up: z",
-                   "length: mm, angle: deg, force: kN"),
+        cantilever(
+            "through: [root, bend], segments: 1, E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13, up: z",
+            "length: mm, angle: deg, force: kN"),
         "b.yaml");
     const double E = 2e9, G = 3e9, L = 3e-3;
     const Vector6 k = K_of(segment(mm, 0)).diagonal();
@@ -172,13 +175,14 @@ TEST(Beam, UnitsOfTheSectionAreThoseOfTheScene) {
 
 TEST(Beam, SegmentsAreSharedOutByLengthWithOneALegAtLeast) {
     const auto nodes = [](int n) {
-        const Scene scene = parse_scene(
-            cantilever(fmt::format("through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
-            "b.yaml");
+        const Scene scene =
+            parse_scene(cantilever(fmt::format(
+                            "through: [root, bend, tip], segments: {}, {}, up: z", n, section)),
+                        "b.yaml");
         std::string places;
         for (std::size_t b = 1; b < scene.bodies.size(); ++b)
-            places += fmt::format("{} {:.4g},{:.4g}  ", scene.bodies[b].name, scene.bodies[b].design.r.x(),
-                                  scene.bodies[b].design.r.y());
+            places += fmt::format("{} {:.4g},{:.4g}  ", scene.bodies[b].name,
+                                  scene.bodies[b].design.r.x(), scene.bodies[b].design.r.y());
         return places;
     };
     EXPECT_EQ(nodes(2), "bar.1 3,0  ");
@@ -187,10 +191,11 @@ TEST(Beam, SegmentsAreSharedOutByLengthWithOneALegAtLeast) {
 }
 
 TEST(Beam, ANodeIsABodyForTheRestOfTheScene) {
-    const std::string text = cantilever("through: [root, bend, tip], segments: 5, " + section + ", up: z") +
-                             "bushings: {clamp: {bodies: [bar.bend, ground], at: bend, rates: [1, 1, 1]}, "
-                             "other: {bodies: [bar.1, bar.4], "
-                             "at: bend, rates: [1, 1, 1]}}\n";
+    const std::string text =
+        cantilever("through: [root, bend, tip], segments: 5, " + section + ", up: z") +
+        "bushings: {clamp: {bodies: [bar.bend, ground], at: bend, rates: [1, 1, 1]}, "
+        "other: {bodies: [bar.1, bar.4], "
+        "at: bend, rates: [1, 1, 1]}}\n";
     const Scene scene = parse_scene(text, "b.yaml");
     const auto& clamp = std::get<Bushing>(scene.elastics.at(0).kind);
     EXPECT_EQ(scene.bodies.at(static_cast<std::size_t>(clamp.i.body)).name, "bar.3");
@@ -201,8 +206,9 @@ TEST(Beam, ANodeIsABodyForTheRestOfTheScene) {
 
 TEST(Beam, ARingBeginsAndEndsOnOneBody) {
     const Scene scene = parse_scene(
-        replaced(cantilever("through: [root, bend, tip, root], segments: 9, " + section + ", up: z"),
-                 "[ground, tip]", "[tip, tip]"),
+        replaced(
+            cantilever("through: [root, bend, tip, root], segments: 9, " + section + ", up: z"),
+            "[ground, tip]", "[tip, tip]"),
         "b.yaml");
     EXPECT_EQ(scene.elastics.size(), 9U);
     EXPECT_EQ(segment(scene, 0).i.body, segment(scene, 8).j.body);
@@ -238,8 +244,9 @@ std::string body_name(const Scene& scene, BodyId body) {
     return body == ground ? "ground" : scene.bodies.at(static_cast<std::size_t>(body)).name;
 }
 Vector3d place(const Scene& scene, const Marker& m) {
-    return m.s_local + (m.body == ground ? Vector3d(Vector3d::Zero())
-                                         : scene.bodies.at(static_cast<std::size_t>(m.body)).design.r);
+    return m.s_local + (m.body == ground
+                            ? Vector3d(Vector3d::Zero())
+                            : scene.bodies.at(static_cast<std::size_t>(m.body)).design.r);
 }
 
 TEST(BeamMirror, NodesOfASharedBeamAreEachOthersTwins) {
@@ -252,19 +259,22 @@ TEST(BeamMirror, NodesOfASharedBeamAreEachOthersTwins) {
     for (const auto& [left, right] : pairs) {
         const auto& l = std::get<Bushing>(named(scene, left).kind);
         const auto& r = std::get<Bushing>(named(scene, right).kind);
-        EXPECT_LE(
-            (scene.bodies[static_cast<std::size_t>(l.i.body)].design.r.cwiseProduct(Vector3d(1, -1, 1)) -
-             scene.bodies[static_cast<std::size_t>(r.i.body)].design.r)
-                .norm(),
-            1e-15);
+        EXPECT_LE((scene.bodies[static_cast<std::size_t>(l.i.body)].design.r.cwiseProduct(
+                       Vector3d(1, -1, 1)) -
+                   scene.bodies[static_cast<std::size_t>(r.i.body)].design.r)
+                      .norm(),
+                  1e-15);
         EXPECT_NE(l.i.body, r.i.body);
-        EXPECT_LE((place(scene, l.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, r.i)).norm(), 1e-15);
+        EXPECT_LE((place(scene, l.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, r.i)).norm(),
+                  1e-15);
     }
-    EXPECT_EQ(body_name(scene, std::get<Bushing>(named(scene, "near_right").kind).i.body), "antiroll.7");
+    EXPECT_EQ(body_name(scene, std::get<Bushing>(named(scene, "near_right").kind).i.body),
+              "antiroll.7");
     for (int k = 1; k <= 9; ++k) {  // the segments are mirror images of each other
         const auto& a = std::get<Bushing>(named(scene, fmt::format("antiroll.{}", k)).kind);
         const auto& b = std::get<Bushing>(named(scene, fmt::format("antiroll.{}", 10 - k)).kind);
-        EXPECT_LE((place(scene, a.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, b.i)).norm(), 1e-15)
+        EXPECT_LE((place(scene, a.i).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, b.i)).norm(),
+                  1e-15)
             << k;
         EXPECT_LE((K_of(a) - K_of(b)).cwiseAbs().maxCoeff(), 1e-12 * K_of(a).maxCoeff()) << k;
     }
@@ -276,13 +286,17 @@ TEST(BeamMirror, ABeamOfOneSideHasATwinWithBodiesOfItsOwn) {
         const auto& l = std::get<Bushing>(named(scene, fmt::format("torsion_left.{}", k)).kind);
         const auto& r = std::get<Bushing>(named(scene, fmt::format("torsion_right.{}", k)).kind);
         const std::string left = body_name(scene, l.j.body);
-        EXPECT_EQ(body_name(scene, r.j.body), k == 3 ? "ground" : fmt::format("torsion_right.{}", k));
+        EXPECT_EQ(body_name(scene, r.j.body),
+                  k == 3 ? "ground" : fmt::format("torsion_right.{}", k));
         EXPECT_EQ(left, k == 3 ? "ground" : fmt::format("torsion_left.{}", k));
         for (const auto& [m_l, m_r] : {std::pair{l.i, r.i}, std::pair{l.j, r.j}}) {
-            EXPECT_LE((place(scene, m_l).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, m_r)).norm(), 1e-15);
+            EXPECT_LE(
+                (place(scene, m_l).cwiseProduct(Vector3d(1, -1, 1)) - place(scene, m_r)).norm(),
+                1e-15);
             const Eigen::Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
-            EXPECT_LE((S * m_l.A_local.toRotationMatrix() * S - m_r.A_local.toRotationMatrix()).norm(),
-                      1e-14);
+            EXPECT_LE(
+                (S * m_l.A_local.toRotationMatrix() * S - m_r.A_local.toRotationMatrix()).norm(),
+                1e-14);
         }
     }
 }
@@ -299,7 +313,8 @@ TEST(Beam, SaysWhatIsWrong) {
         {{"segments: 5", "segment: 5",
           "beams.bar: unknown field 'segment', did you mean 'segments'? allowed: " + names},
          {"segments: 5, ", "", "beams.bar.segments: missing, it must be given"},
-         {"segments: 5", "segments: 1", "beams.bar.segments: '1' for 2 legs; allowed: at least one a leg"},
+         {"segments: 5", "segments: 1",
+          "beams.bar.segments: '1' for 2 legs; allowed: at least one a leg"},
          {"segments: 5", "segments: 1001",
           "beams.bar.segments: expected a whole number from 1 to 1000, found '1001'"},
          {"[root, bend, tip]", "[root]",
@@ -307,37 +322,44 @@ TEST(Beam, SaysWhatIsWrong) {
          {"[root, bend, tip]", "root",
           "beams.bar.through: expected a list of two hardpoints or more, found 'root'"},
          {"[root, bend, tip]", "[root, bent, tip]",
-          "beams.bar.through: no hardpoint is called 'bent', did you mean 'bend'? defined: bend, root, tip, "
+          "beams.bar.through: no hardpoint is called 'bent', did you mean 'bend'? defined: bend, "
+          "root, tip, "
           "up"},
          {"[root, bend, tip]", "[root, bend, bend]",
           "beams.bar.through: 'bend' is where the hardpoint before it is; each leg needs a length"},
          {"bodies: [ground, tip], through: [root, bend, tip], segments: 5",
           "bodies: [tip, tip], through: [root, bend], segments: 1",
-          "beams.bar.bodies: 'tip' twice, with nothing between; one segment needs two different bodies"},
+          "beams.bar.bodies: 'tip' twice, with nothing between; one segment needs two different "
+          "bodies"},
          {"E: 2", "E: 0", "beams.bar.E: '0' is too small; allowed: above zero"},
          {"J: 13", "J: -1", "beams.bar.J: '-1' is too small; allowed: above zero"},
          {", J: 13", "", "beams.bar.J: missing, it must be given"},
          {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "up: z",
           "beams.bar: no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J"},
          {"A: 5", "diameter: 1",
-          "beams.bar.I_y: given together with diameter; allowed: diameter and wall, or A, I_y, I_z and J"},
-         {"A: 5", "wall: 1, A: 5", "beams.bar.wall: of a tube without a diameter; give its diameter"},
+          "beams.bar.I_y: given together with diameter; allowed: diameter and wall, or A, I_y, I_z "
+          "and J"},
+         {"A: 5", "wall: 1, A: 5",
+          "beams.bar.wall: of a tube without a diameter; give its diameter"},
          {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "diameter: 1, wall: 0.6",
           "beams.bar.wall: '0.6' is more than half the diameter"},
          {", up: z", "",
-          "beams.bar: up is missing: y and z of its cross-section are not the same, and it says where z "
+          "beams.bar: up is missing: y and z of its cross-section are not the same, and it says "
+          "where z "
           "points"},
          {"up: z", "up: x", "beams.bar.up: along one of the legs, across which z must be"},
          {"bodies: {tip", "bodies: {bar.3: {origin: bend}, tip",
-          "beams.bar: needs a body of its own called 'bar.3', but there is one already; call that one "
+          "beams.bar: needs a body of its own called 'bar.3', but there is one already; call that "
+          "one "
           "something else"}});
-    expect_complaints(axle, {{"segments: 9", "segments: 8",
-                              "beams.antiroll.segments: '8' cannot be shared out evenly over the two sides; "
-                              "one more or one less can"},
-                             {"clamp_left, clamp_right, corner_right, end_right", "clamp_left",
-                              "beams.antiroll: shared by both sides, as 'left' is not in its name, but "
-                              "refers to 'clamp_left' and not "
-                              "to 'clamp_right'"}});
+    expect_complaints(
+        axle, {{"segments: 9", "segments: 8",
+                "beams.antiroll.segments: '8' cannot be shared out evenly over the two sides; "
+                "one more or one less can"},
+               {"clamp_left, clamp_right, corner_right, end_right", "clamp_left",
+                "beams.antiroll: shared by both sides, as 'left' is not in its name, but "
+                "refers to 'clamp_left' and not "
+                "to 'clamp_right'"}});
 }
 
 }  // namespace

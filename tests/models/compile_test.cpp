@@ -1,5 +1,5 @@
 // Model reduction: what compile() keeps of a scene, what it removes and the reported reason.
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <map>
 #include <random>
 
+#include "elastocheck/read_scene.hpp"
 #include "models/lowering.hpp"
-#include "models/reader/scene_file.hpp"
 
 namespace elastocheck {
 namespace {
@@ -23,7 +23,8 @@ using Eigen::Vector3d;
 Scene bodies(int count) {
     Scene scene;
     for (int n = 0; n < count; ++n)
-        scene.bodies.push_back({std::string(1, static_cast<char>('a' + n % 26)), {.r = Vector3d(n, 0, 0)}});
+        scene.bodies.push_back(
+            {std::string(1, static_cast<char>('a' + n % 26)), {.r = Vector3d(n, 0, 0)}});
     scene.probes.push_back({"output", {.body = 0}});
     return scene;
 }
@@ -43,7 +44,8 @@ void ball(Scene& scene, const std::string& name, BodyId i, BodyId j) {
     scene.joints.push_back({name, Spherical{p_i, p_j}});
 }
 
-void spring(Scene& scene, const std::string& name, BodyId i, BodyId j, double k, double preload = 0) {
+void spring(Scene& scene, const std::string& name, BodyId i, BodyId j, double k,
+            double preload = 0) {
     const double length = 0.5;
     const Point p_i{i, Vector3d::Zero()},
         p_j{j, origin(scene, i) - origin(scene, j) + Vector3d(0, 0, length)};
@@ -69,7 +71,8 @@ Load twist(const std::string& name, BodyId on, double m = 1) {
     return {name, DeadMoment{on, Vector3d(m, 0, 0)}};
 }
 
-Branch branch(const std::string& name, const std::vector<Load>& loads, double to = 1, int steps = 1) {
+Branch branch(const std::string& name, const std::vector<Load>& loads, double to = 1,
+              int steps = 1) {
     Branch result;
     result.name = name, result.to = to, result.steps = steps;
     for (const Load& load : loads) result.drivers.push_back({.what = load, .start = 0, .rate = 1});
@@ -85,7 +88,8 @@ std::vector<Load> loads_of(const Branch& branch) {
 
 void hinge(Scene& scene, const std::string& name, BodyId i, BodyId j) {
     const auto [p_i, p_j] = at_origin_of_i(scene, i, j);
-    scene.joints.push_back({name, Revolute{p_i, p_j, {i, Vector3d::UnitY()}, {j, Vector3d::UnitY()}}});
+    scene.joints.push_back(
+        {name, Revolute{p_i, p_j, {i, Vector3d::UnitY()}, {j, Vector3d::UnitY()}}});
 }
 
 // A chain a, b, c, ... of hinged bodies, the first on ground.
@@ -102,15 +106,16 @@ std::string kept(const Model& model) {
     return names;
 }
 
-std::map<std::string, std::string> left_out(const Model& model) {
+std::map<std::string, std::string> omitted(const Model& model) {
     std::map<std::string, std::string> reasons;
-    for (const auto& [what, why] : model.left_out)
+    for (const auto& [what, why] : model.omitted)
         EXPECT_TRUE(reasons.emplace(what, why).second) << what << " twice";
     return reasons;
 }
 
 const std::string unconnected = "no output is connected to it";
-const std::string follower = "it hangs on one other body and carries no load, no preload and no output";
+const std::string follower =
+    "it hangs on one other body and carries no load, no preload and no output";
 const std::string with_its_body = "a body it connects is left out";
 
 // ---- Removed parts.
@@ -122,7 +127,8 @@ TEST(Compile, LeavesOutOfTheShippedScenesWhatTwoOfThemHaveTooMuch) {
     };
     const std::map<std::string, Fewer> part_by_part{
         {"multi_link",
-         {.bodies = 2, .joints = 3}},  // the subframe, the hub; their joints, and one that is there twice
+         {.bodies = 2,
+          .joints = 3}},  // the subframe, the hub; their joints, and one that is there twice
         {"front_axle",
          {.bodies = 2, .joints = 2}}};  // drop links: two balls and a body each are one distance
     for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
@@ -131,7 +137,7 @@ TEST(Compile, LeavesOutOfTheShippedScenesWhatTwoOfThemHaveTooMuch) {
         const Model model = compile(scene);
         const auto found = part_by_part.find(entry.path().stem());
         const Fewer fewer = found == part_by_part.end() ? Fewer{} : found->second;
-        EXPECT_EQ(model.left_out.empty(), found == part_by_part.end()) << entry.path();
+        EXPECT_EQ(model.omitted.empty(), found == part_by_part.end()) << entry.path();
         EXPECT_EQ(model.bodies.size() + fewer.bodies, scene.bodies.size()) << entry.path();
         EXPECT_EQ(model.joints.size() + fewer.joints, scene.joints.size()) << entry.path();
         EXPECT_EQ(model.elastics.size(), scene.elastics.size());
@@ -157,13 +163,13 @@ TEST(Compile, LeavesOutWhatNoOutputIsConnectedTo) {
     scene.branches = {branch("up", {push("load", 1), push("elsewhere", 2)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "ab");
-    EXPECT_EQ(left_out(model), (std::map<std::string, std::string>{
-                                   {"body 'c'", unconnected},
-                                   {"body 'd'", unconnected},
-                                   {"joint 'cd'", with_its_body},
-                                   {"element 'd_ground'", with_its_body},
-                                   {"load 'weight'", "its body is left out"},
-                                   {"load 'elsewhere'", "its body is left out (branch 'up')"}}));
+    EXPECT_EQ(omitted(model), (std::map<std::string, std::string>{
+                                  {"body 'c'", unconnected},
+                                  {"body 'd'", unconnected},
+                                  {"joint 'cd'", with_its_body},
+                                  {"element 'd_ground'", with_its_body},
+                                  {"load 'weight'", "its body is left out"},
+                                  {"load 'elsewhere'", "its body is left out (branch 'up')"}}));
     EXPECT_EQ(model.branches.at(0).drivers.size(), 1U);
 }
 
@@ -181,19 +187,19 @@ TEST(Compile, DoesNotConnectThroughAZeroElement) {
     spring(scene, "b_ground", 1, ground, 1e3);
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "a");
-    EXPECT_EQ(left_out(model),
-              (std::map<std::string, std::string>{{"body 'b'", unconnected},
-                                                  {"body 'c'", unconnected},
-                                                  {"element 'ab'", "its rates and preload are zero"},
-                                                  {"element 'ac'", "its rates and preload are zero"},
-                                                  {"element 'b_ground'", with_its_body}}));
+    EXPECT_EQ(omitted(model), (std::map<std::string, std::string>{
+                                  {"body 'b'", unconnected},
+                                  {"body 'c'", unconnected},
+                                  {"element 'ab'", "its rates and preload are zero"},
+                                  {"element 'ac'", "its rates and preload are zero"},
+                                  {"element 'b_ground'", with_its_body}}));
 }
 
 TEST(Compile, LeavesOutAFreeChainFromItsLooseEndInwards) {
     for (int count = 2; count <= 26; ++count) {
         const Model model = compile(chain(count));
         EXPECT_EQ(kept(model), "a");
-        const auto reasons = left_out(model);
+        const auto reasons = omitted(model);
         EXPECT_EQ(reasons.size(), 2U * static_cast<std::size_t>(count - 1));
         for (const auto& [what, why] : reasons)
             EXPECT_EQ(why, what.starts_with("body") ? follower : with_its_body);
@@ -230,7 +236,8 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
         {"the wheel", [](Scene& s) { s.wheels.emplace_back().body = 2; }},
         {"the lower end of a steering axis",
          [](Scene& s) {
-             s.wheels.push_back({.name = "w", .body = 0, .steering_axis = SteeringAxis{{2}, {ground}}});
+             s.wheels.push_back(
+                 {.name = "w", .body = 0, .steering_axis = SteeringAxis{{2}, {ground}}});
          }},
         {"the upper end of a steering axis",
          [](Scene& s) {
@@ -249,8 +256,10 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
         {"a joint to another body", [](Scene& s) { ball(s, "loop", 2, 0); }},
         {"a preloaded spring", [](Scene& s) { spring(s, "coil", 2, 1, 1e3, 1e-3); }},
         {"a spring in tension", [](Scene& s) { spring(s, "coil", 1, 2, 1e3, -1e-3); }},
-        {"a bushing with a preload", [](Scene& s) { bushing(s, "rubber", 2, 1, 1e3).preload[4] = 1e-9; }},
-        {"a bushing of nothing but preload", [](Scene& s) { bushing(s, "rubber", 2, 1, 0).preload[0] = 1; }},
+        {"a bushing with a preload",
+         [](Scene& s) { bushing(s, "rubber", 2, 1, 1e3).preload[4] = 1e-9; }},
+        {"a bushing of nothing but preload",
+         [](Scene& s) { bushing(s, "rubber", 2, 1, 0).preload[0] = 1; }},
         {"a bushing between points apart",
          [](Scene& s) { bushing(s, "rubber", 1, 2, 1e3).j.s_local.y() += 1e-9; }},
         {"a bushing between frames apart",
@@ -264,8 +273,8 @@ TEST(Compile, KeepsAFollowerThatHasSomethingToSay) {
         give(scene);
         const Model model = compile(scene);
         EXPECT_EQ(kept(model), "abc") << "for " << name;
-        EXPECT_EQ(left_out(model), (std::map<std::string, std::string>{{"body 'd'", follower},
-                                                                       {"joint 'joint_3'", with_its_body}}))
+        EXPECT_EQ(omitted(model), (std::map<std::string, std::string>{
+                                      {"body 'd'", follower}, {"joint 'joint_3'", with_its_body}}))
             << "for " << name;
     }
 }
@@ -276,7 +285,7 @@ TEST(Compile, LeavesOutAFollowerWhoseLoadIsZero) {
     scene.branches = {branch("up", {push("load", 0), twist("none", 1, 0)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "a");
-    const auto reasons = left_out(model);
+    const auto reasons = omitted(model);
     EXPECT_EQ(reasons.at("load 'nothing'"), "it is zero");
     EXPECT_EQ(reasons.at("load 'none'"), "it is zero (branch 'up')");
     EXPECT_EQ(model.static_loads.size(), 0U);
@@ -315,12 +324,12 @@ TEST(Compile, IsQuickForThousandsOfBodies) {
 // ---- Drivers.
 
 // A jack: the body's origin stays in a plane of ground.
-int jack(Scene& scene, const std::string& name, BodyId body, bool only_where_driven = true) {
+int jack(Scene& scene, const std::string& name, BodyId body, bool active_only_where_driven = true) {
     scene.joints.push_back({name,
                             InPlane{.i = {body, Vector3d::Zero()},
                                     .j = {ground, origin(scene, body)},
                                     .normal_j = {ground, Vector3d::UnitZ()}},
-                            only_where_driven});
+                            active_only_where_driven});
     return static_cast<int>(scene.joints.size()) - 1;
 }
 
@@ -339,7 +348,7 @@ TEST(Compile, KeepsAFollowerOnAJackThatIsDrivenOrHeld) {
         EXPECT_EQ(kept(model), "abc") << start << " " << rate;
         ASSERT_EQ(model.joints.size(), 4U);
         EXPECT_EQ(model.joints[3].name, "jack");
-        EXPECT_TRUE(model.joints[3].only_where_driven);
+        EXPECT_TRUE(model.joints[3].active_only_where_driven);
         const int constraint = model.joints[3].driven;
         ASSERT_GE(constraint, 0);
         EXPECT_EQ(model.constraints[static_cast<std::size_t>(constraint)].joint, 3);
@@ -353,7 +362,7 @@ TEST(Compile, LeavesOutAJackThatNoBranchDrives) {
     scene.branches = {branch("up", {push("p", 0)})};
     const Model model = compile(scene);
     EXPECT_EQ(kept(model), "a");
-    EXPECT_EQ(left_out(model).at("joint 'jack'"), "no branch drives it");
+    EXPECT_EQ(omitted(model).at("joint 'jack'"), "no branch drives it");
 
     Scene held = chain(4);
     jack(held, "support", 2, false);
@@ -427,7 +436,7 @@ TEST(Compile, NamesABranchOfWhichNothingIsLeft) {
     const Model model = compile(scene);
     ASSERT_EQ(model.branches.size(), scene.branches.size());
     std::map<std::string, int> named;
-    for (const Omission& omission : model.left_out)
+    for (const Omission& omission : model.omitted)
         if (omission.what.starts_with("branch")) ++named[omission.what];
     for (const Branch& b : model.branches) {
         const bool is_sound = b.name == "sound";
@@ -473,7 +482,8 @@ struct RandomScene {
     Scene scene() {
         Scene scene;
         const int count = 2 + below(9);
-        for (int n = 0; n < count; ++n) scene.bodies.push_back({fmt::format("body_{}", n), {.r = vector()}});
+        for (int n = 0; n < count; ++n)
+            scene.bodies.push_back({fmt::format("body_{}", n), {.r = vector()}});
         const auto any = [&] { return below(count + 1) - 1; };  // or ground
         for (int n = 0; n < count + below(4); ++n) {
             const BodyId i = any(), j = any();
@@ -482,8 +492,8 @@ struct RandomScene {
                 scene.joints.push_back({fmt::format("joint_{}", n), joint(i, j)});
             } else if (one_in(2)) {
                 const double k = one_in(4) ? 0 : 1e3;
-                scene.elastics.push_back(
-                    {fmt::format("spring_{}", n), AxialSpring{point(i), point(j), LinearRate{k}, 0.3}});
+                scene.elastics.push_back({fmt::format("spring_{}", n),
+                                          AxialSpring{point(i), point(j), LinearRate{k}, 0.3}});
             } else {
                 // Both markers at the origin of ground: unloaded unless preloaded.
                 Bushing b;
@@ -494,14 +504,17 @@ struct RandomScene {
             }
         }
         const auto load = [&](const std::string& name) {
-            return one_in(2) ? push(name, below(count), below(3)) : twist(name, below(count), below(3));
+            return one_in(2) ? push(name, below(count), below(3))
+                             : twist(name, below(count), below(3));
         };
         if (one_in(2)) scene.static_loads.push_back(load("static"));
         for (int n = 0; n <= below(3); ++n)
-            scene.branches.push_back(
-                branch(fmt::format("branch_{}", n), {load("load_1"), load("load_2")}, 100.0 * n + 1, n + 1));
+            scene.branches.push_back(branch(fmt::format("branch_{}", n),
+                                            {load("load_1"), load("load_2")}, 100.0 * n + 1,
+                                            n + 1));
         if (one_in(2)) scene.wheels.emplace_back().body = below(count);
-        if (scene.wheels.empty() || one_in(2)) scene.probes.push_back({"probe", point(below(count))});
+        if (scene.wheels.empty() || one_in(2))
+            scene.probes.push_back({"probe", point(below(count))});
         return scene;
     }
 };
@@ -514,12 +527,16 @@ std::string body_name(const Owner& owner, BodyId body) {
 template <class Owner, class Part>
 std::string ends(const Owner& owner, const Part& part) {
     return std::visit(
-        [&](const auto& s) { return body_name(owner, s.i.body) + "-" + body_name(owner, s.j.body); }, part);
+        [&](const auto& s) {
+            return body_name(owner, s.i.body) + "-" + body_name(owner, s.j.body);
+        },
+        part);
 }
 
 template <class Owner>
 std::string target(const Owner& owner, const Load& load) {
-    if (const auto* force = std::get_if<DeadForce>(&load.kind)) return body_name(owner, force->at.body);
+    if (const auto* force = std::get_if<DeadForce>(&load.kind))
+        return body_name(owner, force->at.body);
     return body_name(owner, std::get<DeadMoment>(load.kind).body);
 }
 
@@ -565,7 +582,8 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
                 constraint.kind);
         }
         for (const Elastic& elastic : model.elastics)
-            EXPECT_EQ(ends(scene, find(scene.elastics, elastic.name)->kind), ends(model, elastic.kind));
+            EXPECT_EQ(ends(scene, find(scene.elastics, elastic.name)->kind),
+                      ends(model, elastic.kind));
         for (const Load& load : model.static_loads)
             EXPECT_EQ(target(scene, *find(scene.static_loads, load.name)), target(model, load));
         ASSERT_EQ(model.branches.size(), scene.branches.size());
@@ -573,14 +591,17 @@ TEST(Compile, RefersToTheSameBodiesAsTheScene) {
             EXPECT_EQ(model.branches[b].to, scene.branches[b].to);
             EXPECT_EQ(model.branches[b].steps, scene.branches[b].steps);
             for (const Load& load : loads_of(model.branches[b]))
-                EXPECT_EQ(target(scene, *find(loads_of(scene.branches[b]), load.name)), target(model, load));
+                EXPECT_EQ(target(scene, *find(loads_of(scene.branches[b]), load.name)),
+                          target(model, load));
         }
         ASSERT_EQ(model.wheels.size(), scene.wheels.size());
         for (std::size_t k = 0; k < model.wheels.size(); ++k)
-            EXPECT_EQ(body_name(model, model.wheels[k].body), body_name(scene, scene.wheels[k].body));
+            EXPECT_EQ(body_name(model, model.wheels[k].body),
+                      body_name(scene, scene.wheels[k].body));
         ASSERT_EQ(model.probes.size(), scene.probes.size());
         for (std::size_t k = 0; k < model.probes.size(); ++k)
-            EXPECT_EQ(body_name(model, model.probes[k].at.body), body_name(scene, scene.probes[k].at.body));
+            EXPECT_EQ(body_name(model, model.probes[k].at.body),
+                      body_name(scene, scene.probes[k].at.body));
     }
 }
 
@@ -589,24 +610,29 @@ TEST(Compile, AccountsForEveryPartOfTheScene) {
     for (int n = 0; n < scenes; ++n) {
         const Scene scene = random.scene();
         const Model model = compile(scene);
-        std::size_t loads = scene.static_loads.size(), kept_loads = model.static_loads.size(), joint_rows = 0;
+        std::size_t loads = scene.static_loads.size(), kept_loads = model.static_loads.size(),
+                    joint_rows = 0;
         for (const auto& branch : scene.branches) loads += branch.drivers.size();
         for (const auto& branch : model.branches) kept_loads += branch.drivers.size();
-        const auto parts = scene.bodies.size() + scene.joints.size() + scene.elastics.size() + loads;
+        const auto parts =
+            scene.bodies.size() + scene.joints.size() + scene.elastics.size() + loads;
         const auto kept_parts =
             model.bodies.size() + model.joints.size() + model.elastics.size() + kept_loads;
-        const auto is_branch = [](const Omission& omission) { return omission.what.starts_with("branch"); };
+        const auto is_branch = [](const Omission& omission) {
+            return omission.what.starts_with("branch");
+        };
         // A branch is kept even without drivers.
-        const auto branches = std::ranges::count_if(model.left_out, is_branch);
-        EXPECT_EQ(parts + static_cast<std::size_t>(branches), kept_parts + model.left_out.size());
+        const auto branches = std::ranges::count_if(model.omitted, is_branch);
+        EXPECT_EQ(parts + static_cast<std::size_t>(branches), kept_parts + model.omitted.size());
         for (const Branch& left : model.branches)
-            EXPECT_EQ(std::ranges::count(model.left_out, "branch '" + left.name + "'", &Omission::what),
-                      left.drivers.empty() ? 1 : 0);
+            EXPECT_EQ(
+                std::ranges::count(model.omitted, "branch '" + left.name + "'", &Omission::what),
+                left.drivers.empty() ? 1 : 0);
         for (const ModelJoint& joint : model.joints)
             for (const auto& constraint : lower(find(scene.joints, joint.name)->kind, scene.bodies))
                 joint_rows += static_cast<std::size_t>(rows(constraint));
         EXPECT_EQ(joint_rows, static_cast<std::size_t>(constraint_rows(model)));
-        for (const auto& omission : model.left_out)
+        for (const auto& omission : model.omitted)
             EXPECT_FALSE(omission.what.empty() || omission.why.empty());
     }
 }
@@ -643,7 +669,8 @@ std::string kept_by_the_rule(const Scene& scene) {
     }
     std::vector<bool> is_output(scene.bodies.size()), is_loaded(scene.bodies.size());
     for (const auto& wheel : scene.wheels) is_output[static_cast<std::size_t>(wheel.body)] = true;
-    for (const auto& probe : scene.probes) is_output[static_cast<std::size_t>(probe.at.body)] = true;
+    for (const auto& probe : scene.probes)
+        is_output[static_cast<std::size_t>(probe.at.body)] = true;
     const auto mark = [&](const Load& load) {
         if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
             if (force->f.norm() > 0) is_loaded[static_cast<std::size_t>(force->at.body)] = true;
@@ -697,9 +724,10 @@ TEST(Compile, KeepsWhatTheRuleKeeps) {
 
 TEST(ModelJoint, ReportsAtItsPointOrAtTheOriginOfItsFirstBody) {
     Scene scene = bodies(2);
-    scene.joints = {{"rod", Distance{{0, Vector3d(1, 2, 3)}, {1, Vector3d(4, 5, 6)}, 1}},
-                    {"square", Perpendicular{{1, Vector3d::UnitX()}, {0, Vector3d::UnitY()}}},
-                    {"ground_first", Spherical{{ground, Vector3d(7, 8, 9)}, {0, Vector3d::Zero()}}}};
+    scene.joints = {
+        {"rod", Distance{{0, Vector3d(1, 2, 3)}, {1, Vector3d(4, 5, 6)}, 1}},
+        {"square", Perpendicular{{1, Vector3d::UnitX()}, {0, Vector3d::UnitY()}}},
+        {"ground_first", Spherical{{ground, Vector3d(7, 8, 9)}, {0, Vector3d::Zero()}}}};
     scene.probes.push_back({"other", {.body = 1}});
     const Model model = compile(scene);
     ASSERT_EQ(model.joints.size(), 3U);

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "models/model.hpp"
+#include "elastocheck/model.hpp"
 
 namespace elastocheck {
 
@@ -37,7 +37,8 @@ inline void append(const DistanceBetween& c, const Poses& q, std::vector<double>
     Phi.push_back((at(c.i, q) - at(c.j, q)).norm() - c.length);
 }
 inline void append(const DirectionAtAngle& c, const Poses& q, std::vector<double>& Phi) {
-    Phi.push_back(along(c.i, q).dot(std::cos(c.angle) * along(c.y_j, q) - std::sin(c.angle) * along(c.j, q)));
+    Phi.push_back(
+        along(c.i, q).dot(std::cos(c.angle) * along(c.y_j, q) - std::sin(c.angle) * along(c.j, q)));
 }
 
 inline Eigen::VectorXd Phi(const std::vector<ConstraintKind>& constraints, const Poses& poses) {

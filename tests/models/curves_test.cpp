@@ -9,7 +9,7 @@
 #include <random>
 
 #include "models/curve.hpp"
-#include "models/reader/interpolant.hpp"
+#include "models/reader/tables/interpolant.hpp"
 #include "tests/models/laws_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
 #include "tests/support/folder.hpp"
@@ -42,8 +42,12 @@ std::vector<Points> tables() {
     return all;
 }
 
-double value(const std::array<double, 4>& c, double t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
-double slope(const std::array<double, 4>& c, double t) { return c[1] + t * (2 * c[2] + t * 3 * c[3]); }
+double value(const std::array<double, 4>& c, double t) {
+    return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+}
+double slope(const std::array<double, 4>& c, double t) {
+    return c[1] + t * (2 * c[2] + t * 3 * c[3]);
+}
 
 double width(const Curve& curve, std::size_t k) { return curve.knots[k + 1] - curve.knots[k]; }
 
@@ -160,8 +164,12 @@ TEST(Interpolant, HasTheEnergyThatQuadratureFinds) {
 
 // ---- Curves in the file.
 
-Curve curve_of(const Scene& scene) { return std::get<Curve>(element<AxialSpring>(scene, "coil").law); }
-Curve curve_of(const std::string& curve) { return curve_of(laws(spring_with("curve: {" + curve + "}"))); }
+Curve curve_of(const Scene& scene) {
+    return std::get<Curve>(element<AxialSpring>(scene, "coil").law);
+}
+Curve curve_of(const std::string& curve) {
+    return curve_of(laws(spring_with("curve: {" + curve + "}")));
+}
 
 // Sample positions: on both sides of all knots and far beyond them [m].
 std::vector<double> positions() {
@@ -173,7 +181,8 @@ std::vector<double> positions() {
 void expect_equal(const Curve& a, const std::function<double(double)>& b, double tolerance) {
     double worst = 0, where = 0;
     for (const double x : positions())
-        if (const double gap = std::abs(force(a, x) - b(x)); !(gap <= worst)) worst = gap, where = x;
+        if (const double gap = std::abs(force(a, x) - b(x)); !(gap <= worst))
+            worst = gap, where = x;
     EXPECT_TRUE(std::isfinite(worst) && worst <= tolerance) << worst << " N at " << where << " m";
 }
 
@@ -194,7 +203,8 @@ TEST(Curve, OutsideGoesOnWithTheSlopeOfItsEnd) {
         EXPECT_NEAR(force(curve, -x), -900 - curve.pieces.front()[1] * (x - 0.05), 1e-9);
     }
     EXPECT_GT(curve.pieces.back()[1], 28e3);  // steeper than the last secant
-    EXPECT_FALSE(curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown").known_outside);
+    EXPECT_FALSE(
+        curve_of("table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown").known_outside);
 }
 
 TEST(Curve, InterpolationIsMonotoneUnlessItSaysLinear) {
@@ -206,8 +216,8 @@ TEST(Curve, InterpolationIsMonotoneUnlessItSaysLinear) {
     expect_equal(
         smooth, [&](double x) { return force(curve_of(table), x); }, 0);
     EXPECT_THROW(curve_of(table + ", interpolation: cubic"), SceneError);
-    const Curve odd =
-        curve_of("table: [[0, 0], [20, 100], [50, 900]], symmetric: true, scale: 2, interpolation: linear");
+    const Curve odd = curve_of(
+        "table: [[0, 0], [20, 100], [50, 900]], symmetric: true, scale: 2, interpolation: linear");
     EXPECT_NEAR(force(odd, -0.035), -1000, 1e-9);
 }
 
@@ -216,9 +226,11 @@ TEST(Curve, SymmetricIsOdd) {
     expect_equal(
         curve, [&](double x) { return -force(curve, -x); }, 2e-12);
     const Curve half = curve_of(one_sided);
-    for (const double x : {0.01, 0.02, 0.03, 0.05}) EXPECT_DOUBLE_EQ(force(curve, x), force(half, x));
+    for (const double x : {0.01, 0.02, 0.03, 0.05})
+        EXPECT_DOUBLE_EQ(force(curve, x), force(half, x));
     const Curve whole = curve_of(
-        "table: [[-50, -9500], [-35, -4000], [-20, -4000], [-10, -900], [0, 0], [10, 900], [20, 4000], [35, "
+        "table: [[-50, -9500], [-35, -4000], [-20, -4000], [-10, -900], [0, 0], [10, 900], [20, "
+        "4000], [35, "
         "4000], "
         "[50, 9500]]");
     expect_equal(
@@ -240,25 +252,31 @@ TEST(Curve, ScaleMultipliesTheForceAndOffsetMovesTheTable) {
 
 // The same law with lengths in mm or m, angles in deg or rad, forces in N or kN.
 TEST(Curve, IsTheSameInAnyUnits) {
-    const auto in = [](const char* length, double L, const char* angle, double A, const char* f, double F) {
+    const auto in = [](const char* length, double L, const char* angle, double A, const char* f,
+                       double F) {
         const auto row = [](double x, double y) { return fmt::format("[{:.17g}, {:.17g}]", x, y); };
-        const std::string rows = row(-0.05 * L, -900 * F) + ", " + row(0, 0) + ", " + row(0.05 * L, 1400 * F);
-        const std::string angles =
-            row(-0.2 * A, -30 * F * L) + ", " + row(0.1 * A, 11 * F * L) + ", " + row(0.3 * A, 12 * F * L);
-        const std::string end = row(0, 0) + ", " + row(0.01 * L, 900 * F) + ", " + row(0.02 * L, 4000 * F);
+        const std::string rows =
+            row(-0.05 * L, -900 * F) + ", " + row(0, 0) + ", " + row(0.05 * L, 1400 * F);
+        const std::string angles = row(-0.2 * A, -30 * F * L) + ", " + row(0.1 * A, 11 * F * L) +
+                                   ", " + row(0.3 * A, 12 * F * L);
+        const std::string end =
+            row(0, 0) + ", " + row(0.01 * L, 900 * F) + ", " + row(0.02 * L, 4000 * F);
         std::string text = laws_scene(
             fmt::format(
-                "springs:\n  coil: {{bodies: [arm, ground], from: p, to: t, curve: {{table: [{}], offset: "
+                "springs:\n  coil: {{bodies: [arm, ground], from: p, to: t, curve: {{table: [{}], "
+                "offset: "
                 "{:.17g}}}, "
                 "preload: {:.17g}, bump_stop: {{clearance: {:.17g}, curve: {{table: [{}]}}}}, "
                 "rebound_stop: {{clearance: 0, rate: {:.17g}}}}}\n"
-                "torsion_springs:\n  bar: {{bodies: [arm, ground], at: p, axis: y, curve: {{table: [{}]}}, "
+                "torsion_springs:\n  bar: {{bodies: [arm, ground], at: p, axis: y, curve: {{table: "
+                "[{}]}}, "
                 "preload_moment: {:.17g}}}\n"
-                "bushings:\n  mount: {{bodies: [arm, ground], at: p, curves: {{x: {{table: [{}]}}, ry: "
+                "bushings:\n  mount: {{bodies: [arm, ground], at: p, curves: {{x: {{table: [{}]}}, "
+                "ry: "
                 "{{table: "
                 "[{}]}}}}, undeformed: [{:.17g}, 0, 0], undeformed_angles: [0, {:.17g}, 0]}}",
-                rows, 0.002 * L, 500 * F, 0.01 * L, end, 3e5 * F / L, angles, 7 * F * L, rows, angles,
-                0.001 * L, 0.01 * A),
+                rows, 0.002 * L, 500 * F, 0.01 * L, end, 3e5 * F / L, angles, 7 * F * L, rows,
+                angles, 0.001 * L, 0.01 * A),
             fmt::format("length: {}, angle: {}, force: {}", length, angle, f),
             "drive: springs.coil.free_length, to: 1, steps: 1");
         for (const auto& [from, to] :
@@ -271,14 +289,16 @@ TEST(Curve, IsTheSameInAnyUnits) {
         return numbers(scene);
     };
     const auto si = in("m", 1, "rad", 1, "N", 1);
-    for (const auto& other : {in("mm", 1e3, "rad", 1, "kN", 1e-3), in("mm", 1e3, "deg", 180 / M_PI, "N", 1),
-                              in("m", 1, "deg", 180 / M_PI, "kN", 1e-3)}) {
+    for (const auto& other :
+         {in("mm", 1e3, "rad", 1, "kN", 1e-3), in("mm", 1e3, "deg", 180 / M_PI, "N", 1),
+          in("m", 1, "deg", 180 / M_PI, "kN", 1e-3)}) {
         ASSERT_EQ(other.size(), si.size());
         for (std::size_t k = 0; k < si.size(); ++k) {
             ASSERT_EQ(si[k].first, other[k].first);
             // Coefficients are differences of forces divided by lengths: round-off of the larger
             // ones.
-            const double size = si[k].first.find(".c_") == std::string::npos ? std::abs(si[k].second) : 1e8;
+            const double size =
+                si[k].first.find(".c_") == std::string::npos ? std::abs(si[k].second) : 1e8;
             EXPECT_NEAR(si[k].second, other[k].second, 1e-14 * size) << si[k].first;
         }
     }
@@ -299,7 +319,8 @@ TEST(CurveFile, IsTheTableBesideTheScene) {
     for (const std::string csv :
          {"0,0\n10,900\n20,4000\n35,4000\n50,9500\n", "0, 0\n10,\t900\n20 ,4e3\n+35,4000\n50,9500",
           "deflection [mm], force [N]\n0,0\n10,900\n20,4000\n35,4000\n50,9500\n",
-          "# measured\n\n  # twice\nx,f\n0,0\n10,900\n\n20,4000\n# the end stop\n35,4000\n50,9500\n\n",
+          "# measured\n\n  # twice\nx,f\n0,0\n10,900\n\n20,4000\n# the end "
+          "stop\n35,4000\n50,9500\n\n",
           "x,f\r\n0,0\r\n10,900\r\n20,4000\r\n35,4000\r\n50,9500\r\n",
           "\xEF\xBB\xBF"
           "0,0\n10,900\n20,4000\n35,4000\n50,9500\n"}) {
@@ -330,24 +351,30 @@ TEST(CurveFile, HasNoNumbersThatCanBeSet) {
 TEST(CurveFile, IsRefusedWithItsOwnLine) {
     const std::pair<std::string, std::string> cases[] = {
         {"x,f\n0,0\n10,900\n20,800\n",
-         ":4: springs.coil.curve.file: row 3: force '800' is below that of the row before; it may stay, but "
+         ":4: springs.coil.curve.file: row 3: force '800' is below that of the row before; it may "
+         "stay, but "
          "not fall"},
         {"0,0\n# note\n10,900\n10,901\n",
          ":4: springs.coil.curve.file: row 3: deflection '10' is not above that of the row before"},
         {"0,0\n10,900,3\n",
-         ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a list of 3"},
+         ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a "
+         "list of 3"},
         {"0,0\n10;900\n",
-         ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a list of 1"},
+         ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a "
+         "list of 1"},
         {"0,0\n10,many\n", ":2: springs.coil.curve.file: expected a number, found 'many'"},
         {"x,f\nx,f\n0,0\n10,900\n", ":2: springs.coil.curve.file: expected a number, found 'x'"},
         {"0,0\n10,\n", ":2: springs.coil.curve.file: expected a number, found ''"},
         {"0,nan\n10,900\n", ":1: springs.coil.curve.file: expected a number, found 'nan'"},
         {"0,0\n10,1e31\n",
-         ":2: springs.coil.curve.file: '1e31' is out of range; allowed: 0, or 1e-30 to 1e+30 in size"},
+         ":2: springs.coil.curve.file: '1e31' is out of range; allowed: 0, or 1e-30 to 1e+30 in "
+         "size"},
         {"x,f\n10,900\n",
-         ":1: springs.coil.curve.file: expected at least two rows [deflection, force], found a list of 1"},
+         ":1: springs.coil.curve.file: expected at least two rows [deflection, force], found a "
+         "list of 1"},
         {"",
-         ":1: springs.coil.curve.file: expected at least two rows [deflection, force], found a list of 0"},
+         ":1: springs.coil.curve.file: expected at least two rows [deflection, force], found a "
+         "list of 0"},
     };
     for (const auto& [csv, message] : cases) {
         const Beside beside(csv);
@@ -380,16 +407,18 @@ TEST(CurveFile, IsARegularFileInTheFolderOfTheScene) {
     EXPECT_EQ(refusal(beside), "read");
     fs::remove(curve);
     fs::create_symlink(elsewhere.path / "coil.csv", curve);
-    EXPECT_NE(refusal(beside).find(
-                  ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that leads out of the "
-                  "scene's folder; allowed: a file in it, or in a folder below"),
-              std::string::npos)
+    EXPECT_NE(
+        refusal(beside).find(
+            ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that leads out of the "
+            "scene's folder; allowed: a file in it, or in a folder below"),
+        std::string::npos)
         << refusal(beside);
     fs::remove(curve);
     const support::Pipe pipe(curve);
     ASSERT_TRUE(pipe.is_there());
     const std::string said = refusal(beside);
-    EXPECT_NE(said.find("'coil.csv': a pipe or a device; a regular file is needed"), std::string::npos)
+    EXPECT_NE(said.find("'coil.csv': a pipe or a device; a regular file is needed"),
+              std::string::npos)
         << said;
 }
 
@@ -400,14 +429,17 @@ TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
         {"none.csv", "", ":11: springs.coil.curve.file: 'none.csv': no such file"},
         {".", "", ":11: springs.coil.curve.file: '.': a directory; a file is needed"},
         {"../coil.csv", "0,0\n1,1\n",
-         ":11: springs.coil.curve.file: '../coil.csv' leads out of the scene's folder; allowed: a file in "
+         ":11: springs.coil.curve.file: '../coil.csv' leads out of the scene's folder; allowed: a "
+         "file in "
          "it, or in a "
          "folder below"},
         {"/tmp/coil.csv", "0,0\n1,1\n",
-         ":11: springs.coil.curve.file: '/tmp/coil.csv' leads out of the scene's folder; allowed: a file in "
+         ":11: springs.coil.curve.file: '/tmp/coil.csv' leads out of the scene's folder; allowed: "
+         "a file in "
          "it, or in a "
          "folder below"},
-        {"coil.csv", "0,0\n1,\xFF\n", ":11: springs.coil.curve.file: 'coil.csv': not plain text (UTF-8)"},
+        {"coil.csv", "0,0\n1,\xFF\n",
+         ":11: springs.coil.curve.file: 'coil.csv': not plain text (UTF-8)"},
         {"coil.csv", std::string((1 << 20) + 1, '#'),
          ":11: springs.coil.curve.file: 'coil.csv': larger than 1 MiB, which no table is"},
     };
@@ -426,8 +458,9 @@ TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
         read_scene(beside.folder.path / "scene.yaml");
         ADD_FAILURE();
     } catch (const SceneError& error) {
-        EXPECT_EQ(error.what(), (beside.folder.path / "coil.csv").string() +
-                                    ":1: springs.coil.curve.file: 10001 rows; a table has 10000 at most");
+        EXPECT_EQ(error.what(),
+                  (beside.folder.path / "coil.csv").string() +
+                      ":1: springs.coil.curve.file: 10001 rows; a table has 10000 at most");
     }
 }
 
@@ -458,7 +491,8 @@ TEST(CurveFile, DamagedGivesACurveOrAnError) {
             }
         } catch (const SceneError& error) {
             ++errors;
-            ASSERT_TRUE(std::string(error.what()).starts_with(beside.folder.path.string())) << error.what();
+            ASSERT_TRUE(std::string(error.what()).starts_with(beside.folder.path.string()))
+                << error.what();
         }
     }
     EXPECT_GT(curves, 60);
@@ -467,16 +501,20 @@ TEST(CurveFile, DamagedGivesACurveOrAnError) {
 
 // ---- Springs with curves: f(ℓ - ℓ₀) = -P at the design length ℓ = 400 mm.
 
-double design_force(const AxialSpring& spring) { return force(spring.law, 0.4 - spring.free_length); }
+double design_force(const AxialSpring& spring) {
+    return force(spring.law, 0.4 - spring.free_length);
+}
 
 TEST(SpringCurve, AFreeLengthOrNoneCountsTheDeflectionFromThere) {
     const std::string curve = "curve: {table: [[-50, -900], [0, 10], [50, 1400]]}";
     EXPECT_DOUBLE_EQ(element<AxialSpring>(laws(spring_with(curve)), "coil").free_length, 0.4);
     EXPECT_DOUBLE_EQ(design_force(element<AxialSpring>(laws(spring_with(curve)), "coil")), 10);
-    EXPECT_EQ(element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil").free_length,
-              0.45);
-    EXPECT_NEAR(design_force(element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil")),
-                -900, 1e-9);
+    EXPECT_EQ(
+        element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil").free_length,
+        0.45);
+    EXPECT_NEAR(
+        design_force(element<AxialSpring>(laws(spring_with(curve + ", free_length: 450")), "coil")),
+        -900, 1e-9);
 }
 
 TEST(SpringCurve, APreloadIsMetWhereverTheCurveHasIt) {
@@ -485,12 +523,13 @@ TEST(SpringCurve, APreloadIsMetWhereverTheCurveHasIt) {
         for (const double preload :
              {9500.0, 8000.0, 6000.0, 3500.0, 900.0, 700.1, 11.0, 1.0, 0.0, -1.0, -30.0, -5000.0}) {
             const auto spring = element<AxialSpring>(
-                laws(spring_with(fmt::format("curve: {{table: {}}}, preload: {}", table, preload))), "coil");
+                laws(spring_with(fmt::format("curve: {{table: {}}}, preload: {}", table, preload))),
+                "coil");
             EXPECT_NEAR(design_force(spring), -preload, 1e-11 * 9500) << table;
         }
     const auto edge = element<AxialSpring>(
-        laws(
-            spring_with("curve: {table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown}, preload: 900")),
+        laws(spring_with(
+            "curve: {table: [[-50, -900], [0, 0], [50, 1400]], outside: unknown}, preload: 900")),
         "coil");
     EXPECT_DOUBLE_EQ(edge.free_length, 0.45);
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "tests/models/constraint_values.hpp"
 
 namespace elastocheck {
@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 // Two bodies, all kinds of driven joints, elements, a wheel. `branches` is the text of one or more
 // branches.
-std::string rig(const std::string& branches, const std::string& units = "length: mm, angle: deg, force: N") {
+std::string rig(const std::string& branches,
+                const std::string& units = "length: mm, angle: deg, force: N") {
     return "elastocheck: 1\nname: rig\nunits: {" + units + R"(}
 points: {o: [0, 0, 0], a: [100, 20, 0], b: [0, 200, 50], c: [30, 40, 500], patch: [100, 20, -300]}
 bodies: {arm: {origin: o}, hub: {origin: a}}
@@ -69,7 +70,7 @@ TEST(Driven, TravelIsAJackUnderTheWheelCentre) {
     EXPECT_EQ(branch.drivers[0].start, 0);
     const Joint& joint = joint_of(scene, branch.drivers[0]);
     EXPECT_EQ(joint.name, "jack");
-    EXPECT_TRUE(joint.only_where_driven);
+    EXPECT_TRUE(joint.active_only_where_driven);
     const auto& jack = std::get<InPlane>(joint.kind);
     EXPECT_EQ(jack.i.body, 1);
     EXPECT_EQ(jack.i.s_local, Vector3d::Zero());
@@ -89,9 +90,9 @@ TEST(Driven, PatchTravelIsAJackUnderTheContactPatch) {
 }
 
 TEST(Driven, BranchesShareAJack) {
-    const Scene scene =
-        parsed(rig("  a: {drive: travel, to: 100, steps: 1}\n  b: {drive: travel, to: -100, steps: 1}\n"
-                   "  c: {drive: patch_travel, to: 100, steps: 1, hold: {joints.slide: 2}}"));
+    const Scene scene = parsed(
+        rig("  a: {drive: travel, to: 100, steps: 1}\n  b: {drive: travel, to: -100, steps: 1}\n"
+            "  c: {drive: patch_travel, to: 100, steps: 1, hold: {joints.slide: 2}}"));
     EXPECT_EQ(scene.joints.size(), 6U + 3U);
     EXPECT_EQ(joint_of(scene, scene.branches[0].drivers[0]).name,
               joint_of(scene, scene.branches[1].drivers[0]).name);
@@ -99,9 +100,10 @@ TEST(Driven, BranchesShareAJack) {
 
 TEST(Driven, WheelsHaveJacksOfTheirOwnNames) {
     std::string text = rig("  up: {drive: [left.travel, right.patch_travel], to: 100, steps: 1}");
-    text.replace(text.find("wheel: {body"), std::string::npos,
-                 "wheels:\n  left: {body: hub, centre: a, contact_patch: patch, spin_axis: y, side: left}\n"
-                 "  right: {body: arm, centre: o, spin_axis: -y, side: right}\n");
+    text.replace(
+        text.find("wheel: {body"), std::string::npos,
+        "wheels:\n  left: {body: hub, centre: a, contact_patch: patch, spin_axis: y, side: left}\n"
+        "  right: {body: arm, centre: o, spin_axis: -y, side: right}\n");
     const Scene scene = parsed(text);
     ASSERT_EQ(scene.wheels.size(), 2U);
     EXPECT_EQ(scene.wheels[0].name, "left");
@@ -116,7 +118,7 @@ TEST(Driven, DisplacementOfASlideIsThatOfItsFirstBodyAlongTheAxis) {
     const Scene scene = parsed(rig("  out: {drive: joints.slide, to: 30, steps: 3}"));
     const Joint& joint = joint_of(scene, scene.branches.at(0).drivers.at(0));
     EXPECT_EQ(joint.name, "slide.drive");
-    EXPECT_TRUE(joint.only_where_driven);
+    EXPECT_TRUE(joint.active_only_where_driven);
     const auto& drive = std::get<InPlane>(joint.kind);
     EXPECT_EQ(drive.i.body, 1);
     EXPECT_EQ(drive.j.body, 0);
@@ -129,7 +131,8 @@ TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
     const std::pair<const char*, Vector3d> joints[] = {{"hinge", Vector3d(1, 2, -2) / 3},
                                                        {"tube", {0, 0, -1}}};
     for (const auto& [name, axis] : joints) {
-        const Scene scene = parsed(rig(fmt::format("  turn: {{drive: joints.{}, to: 90, steps: 3}}", name)));
+        const Scene scene =
+            parsed(rig(fmt::format("  turn: {{drive: joints.{}, to: 90, steps: 3}}", name)));
         const Branch& branch = scene.branches.at(0);
         EXPECT_EQ(branch.unit, ParameterUnit::radian);
         EXPECT_DOUBLE_EQ(branch.to, std::numbers::pi / 2);
@@ -144,13 +147,16 @@ TEST(Driven, AngleIsThatOfTheFirstBodyAboutTheAxisAsWritten) {
                 return u_i.dot(std::cos(a) * drive.y_j.u_local - std::sin(a) * drive.j.u_local);
             };
             EXPECT_NEAR(Phi(alpha), 0, 1e-15) << name;
-            EXPECT_GT(u_i.dot(std::cos(alpha) * drive.j.u_local + std::sin(alpha) * drive.y_j.u_local), 0.99);
+            EXPECT_GT(
+                u_i.dot(std::cos(alpha) * drive.j.u_local + std::sin(alpha) * drive.y_j.u_local),
+                0.99);
         }
     }
 }
 
 TEST(Driven, RodsAndPlanesAreDrivenThemselves) {
-    const Scene scene = parsed(rig("  out: {drive: {joints.rod: 1, joints.plane: -0.5}, to: 30, steps: 3}"));
+    const Scene scene =
+        parsed(rig("  out: {drive: {joints.rod: 1, joints.plane: -0.5}, to: 30, steps: 3}"));
     EXPECT_EQ(scene.joints.size(), 6U);
     const auto& drivers = scene.branches.at(0).drivers;
     EXPECT_EQ(joint_of(scene, drivers.at(0)).name, "rod");
@@ -166,16 +172,16 @@ TEST(Driven, HeldJointsStandOnEveryBranchAndMayBeDriven) {
     const Scene scene = parsed(text);
     ASSERT_EQ(scene.joints.size(), 7U);
     EXPECT_EQ(scene.joints[6].name, "slide.drive");
-    EXPECT_FALSE(scene.joints[6].only_where_driven);
+    EXPECT_FALSE(scene.joints[6].active_only_where_driven);
     EXPECT_EQ(std::get<Motion>(scene.branches.at(1).drivers.at(0).what).joint, 6);
 }
 
 TEST(Driven, ElementsMoveByTheirFreeLengthOrPreload) {
-    const Scene scene =
-        parsed(rig("  length: {drive: springs.coil.free_length, to: 20, steps: 1}\n"
-                   "  force: {drive: springs.coil.preload, to: 200, steps: 1}\n"
-                   "  rubber: {drive: {bushings.mount.preload.y: 2, bushings.mount.preload_moment.z: 3}, to: "
-                   "10, steps: 1}"));
+    const Scene scene = parsed(rig(
+        "  length: {drive: springs.coil.free_length, to: 20, steps: 1}\n"
+        "  force: {drive: springs.coil.preload, to: 200, steps: 1}\n"
+        "  rubber: {drive: {bushings.mount.preload.y: 2, bushings.mount.preload_moment.z: 3}, to: "
+        "10, steps: 1}"));
     const auto& b = scene.branches;
     EXPECT_EQ(std::get<FreeLength>(b[0].drivers[0].what).elastic, 0);
     EXPECT_EQ(b[0].to, 0.02);
@@ -198,9 +204,9 @@ TEST(Driven, TheFirstQuantityGivesTheParameterItsUnit) {
 }
 
 TEST(Driven, WhatIsHeldIsThereAtTheBeginning) {
-    const Scene scene =
-        parsed(rig("  up: {drive: travel, to: 50, steps: 1, hold: {joints.slide: -12, joints.hinge: 90, "
-                   "springs.coil.preload: 400}, static_loads: {brake: 500, twist: 3000}}"));
+    const Scene scene = parsed(
+        rig("  up: {drive: travel, to: 50, steps: 1, hold: {joints.slide: -12, joints.hinge: 90, "
+            "springs.coil.preload: 400}, static_loads: {brake: 500, twist: 3000}}"));
     const auto& drivers = scene.branches.at(0).drivers;
     ASSERT_EQ(drivers.size(), 6U);
     for (std::size_t k = 1; k < 6; ++k) EXPECT_EQ(drivers[k].rate, 0);
@@ -220,7 +226,8 @@ TEST(Driven, LoadsHaveWeights) {
     ASSERT_EQ(drivers.size(), 4U);
     EXPECT_EQ(drivers[1].rate, 0.4);
     EXPECT_EQ(drivers[2].rate, -30);
-    EXPECT_EQ(std::get<DeadMoment>(std::get<Load>(drivers[2].what).kind).m, Vector3d(0, 0.001, 0));  // mm
+    EXPECT_EQ(std::get<DeadMoment>(std::get<Load>(drivers[2].what).kind).m,
+              Vector3d(0, 0.001, 0));  // mm
     EXPECT_EQ(drivers[3].start, 1);
     EXPECT_EQ(scene.branches[0].unit, ParameterUnit::newton);
 }
@@ -229,7 +236,8 @@ TEST(Driven, LoadsHaveWeights) {
 
 const std::string allowed_here =
     "allowed: bushings.mount.preload.x, bushings.mount.preload.y, bushings.mount.preload.z, "
-    "bushings.mount.preload_moment.x, bushings.mount.preload_moment.y, bushings.mount.preload_moment.z, "
+    "bushings.mount.preload_moment.x, bushings.mount.preload_moment.y, "
+    "bushings.mount.preload_moment.z, "
     "joints.hinge, joints.plane, joints.rod, joints.slide, joints.tube, patch_travel, "
     "springs.coil.free_length, "
     "springs.coil.preload, travel";
@@ -239,12 +247,15 @@ TEST(Driven, WhatCannotBeIsRefused) {
         {"{drive: travell, to: 1, steps: 1}",
          "drive: 'travell' is nothing that can be driven, did you mean 'travel'? " + allowed_here},
         {"{drive: {joints.rack: 1}, to: 1, steps: 1}",
-         "drive.joints.rack: 'joints.rack' is nothing that can be driven, did you mean 'joints.rod'? " +
+         "drive.joints.rack: 'joints.rack' is nothing that can be driven, did you mean "
+         "'joints.rod'? " +
              allowed_here},
         {"{drive: joints.square, to: 1, steps: 1}",
-         "drive: 'joints.square' is a perpendicular joint, which has nothing to drive; allowed: the length "
+         "drive: 'joints.square' is a perpendicular joint, which has nothing to drive; allowed: "
+         "the length "
          "of a "
-         "distance, the offset of an in_plane, the displacement of a translational, the angle of a revolute "
+         "distance, the offset of an in_plane, the displacement of a translational, the angle of a "
+         "revolute "
          "or "
          "cylindrical joint"},
         {"{drive: travel, load: push, to: 1, steps: 1}",
@@ -254,21 +265,26 @@ TEST(Driven, WhatCannotBeIsRefused) {
          " drives and holds the same thing twice; allowed: once"},
         {"{drive: [springs.coil.preload, springs.coil.free_length], to: 1, steps: 1}",
          " drives the same thing twice; allowed: once"},
-        {"{load: push, hold: {springs.coil.preload: 1, springs.coil.free_length: 1}, to: 1, steps: 1}",
+        {"{load: push, hold: {springs.coil.preload: 1, springs.coil.free_length: 1}, to: 1, steps: "
+         "1}",
          " holds the same thing twice; allowed: once"},
         {"{drive: [travel, travel], to: 1, steps: 1}", "drive: 'travel' is listed twice"},
         {"{drive: {travel: 0}, to: 1, steps: 1}",
-         "drive.travel: zero, which drives nothing: a value that is kept goes into hold; leave it out"},
+         "drive.travel: zero, which drives nothing: a value that is kept goes into hold; leave it "
+         "out"},
         {"{drive: {}, to: 1, steps: 1}", "drive: empty; what is driven is needed"},
         {"{drive: travel, hold: joints.slide, to: 1, steps: 1}",
          "hold: expected a map of what is held to its value, found 'joints.slide'"},
         {"{drive: travel, hold: {joints.slide: far}, to: 1, steps: 1}",
          "hold.joints.slide: expected a number, found 'far'"},
         {"{drive: travel, static_loads: [psuh], to: 1, steps: 1}",
-         "static_loads: no load is called 'psuh', did you mean 'push'? defined: brake, push, twist"},
-        {"{drive: travel, from: -1, to: 0, steps: 1}", "to: zero leads nowhere; allowed: any other value"},
+         "static_loads: no load is called 'psuh', did you mean 'push'? defined: brake, push, "
+         "twist"},
+        {"{drive: travel, from: -1, to: 0, steps: 1}",
+         "to: zero leads nowhere; allowed: any other value"},
         {"{drive: travel, from: -2, to: -3, steps: 4}",
-         "from: '-2' and `to` are on the same side of 0, where the branch begins; allowed: the other side, "
+         "from: '-2' and `to` are on the same side of 0, where the branch begins; allowed: the "
+         "other side, "
          "or 0"},
         {"{drive: travel, from: -2, to: 3, steps: 1}",
          "steps: expected a whole number from 2 to 1000000, found '1'"},
@@ -284,17 +300,18 @@ TEST(Driven, WhatCannotBeIsRefused) {
 TEST(Driven, ATakenNameIsRefused) {
     std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
     text.replace(text.find("  square:"), 9, "  jack:");
-    EXPECT_EQ(
-        complaint(text),
-        "rig.yaml:22: branches.up.drive: needs a joint of its own called 'jack', but there is one already; "
-        "call that one something else");
+    EXPECT_EQ(complaint(text),
+              "rig.yaml:22: branches.up.drive: needs a joint of its own called 'jack', but there "
+              "is one already; "
+              "call that one something else");
 }
 
 TEST(Driven, OnlyJointsWithAFreeCoordinateAreHeld) {
     std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
     text.replace(text.find("length: 230"), 11, "held: true");
-    EXPECT_EQ(complaint(text),
-              "rig.yaml:10: joints.rod: unknown field 'held'; allowed: type, bodies, from, to, length");
+    EXPECT_EQ(
+        complaint(text),
+        "rig.yaml:10: joints.rod: unknown field 'held'; allowed: type, bodies, from, to, length");
     text = rig("  up: {drive: travel, to: 1, steps: 1}");
     text.replace(text.find("axis: -z"), 8, "axis: -z, held: maybe");
     EXPECT_EQ(complaint(text),
@@ -304,7 +321,8 @@ TEST(Driven, OnlyJointsWithAFreeCoordinateAreHeld) {
 TEST(Driven, ALengthOtherThanDrawnIsAboveZero) {
     std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
     text.replace(text.find("length: 230"), 11, "length: -1");
-    EXPECT_EQ(complaint(text), "rig.yaml:10: joints.rod.length: '-1' is not a length; allowed: above zero");
+    EXPECT_EQ(complaint(text),
+              "rig.yaml:10: joints.rod.length: '-1' is not a length; allowed: above zero");
 }
 
 TEST(Limits, TooManyPositionsAreRefused) {
@@ -316,18 +334,21 @@ TEST(Limits, TooManyPositionsAreRefused) {
         for (int n = 0; n < count; ++n) result += fmt::format("  b{}: {{origin: o}}\n", n);
         result += "joints:\n";
         for (int n = 0; n < count; ++n)
-            result += fmt::format("  j{}: {{type: spherical, bodies: [b{}, ground], at: o}}\n", n, n);
+            result +=
+                fmt::format("  j{}: {{type: spherical, bodies: [b{}, ground], at: o}}\n", n, n);
         return result +
-               "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, steps: " +
+               "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, "
+               "steps: " +
                std::to_string(steps) + "}}\nprobes: {p: {on: b0, at: o}}\n";
     };
     EXPECT_EQ(complaint(chain(20, 500'000)), "none");
-    EXPECT_EQ(
-        complaint(chain(20, 500'001)),
-        "rig.yaml:48: branches.up.steps: 500001 steps of 20 bodies are too many positions to keep; allowed: "
-        "500000");
+    EXPECT_EQ(complaint(chain(20, 500'001)),
+              "rig.yaml:48: branches.up.steps: 500001 steps of 20 bodies are too many positions to "
+              "keep; allowed: "
+              "500000");
     EXPECT_EQ(complaint(chain(10'000, 1)), "none");
-    EXPECT_EQ(complaint(chain(10'001, 1)), "rig.yaml:5: bodies: 10001 bodies; a scene has 10000 at most");
+    EXPECT_EQ(complaint(chain(10'001, 1)),
+              "rig.yaml:5: bodies: 10001 bodies; a scene has 10000 at most");
 }
 
 // ---- Branches whose driven parts are removed by the reduction.
@@ -367,17 +388,18 @@ TEST(Branch, ThatMovesNothingOfInterestIsRefused) {
               begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
     EXPECT_EQ(complaint(two_parts("{load: [lost, push], to: 1, steps: 1}")), "none");
     EXPECT_EQ(complaint(two_parts("{drive: springs.zero.preload, to: 1, steps: 1}")),
-              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is of a spring of zero rate, which it "
+              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is of a spring of zero rate, "
+              "which it "
               "does not "
               "move");
 }
 
 TEST(Branch, LoadsThatNoneUsesAreNamed) {
     const Scene scene = parsed(two_parts("{load: push, to: 1, steps: 1, static_loads: [lost]}"));
-    ASSERT_EQ(scene.left_out.size(), 1U);
-    EXPECT_EQ(scene.left_out[0].what, "load 'spare'");
-    EXPECT_EQ(scene.left_out[0].why, "no branch uses it");
-    EXPECT_EQ(compile(scene).left_out.at(0).what, "load 'spare'");
+    ASSERT_EQ(scene.omitted.size(), 1U);
+    EXPECT_EQ(scene.omitted[0].what, "load 'spare'");
+    EXPECT_EQ(scene.omitted[0].why, "no branch uses it");
+    EXPECT_EQ(compile(scene).omitted.at(0).what, "load 'spare'");
 }
 
 // ---- The model on a branch.
@@ -413,11 +435,11 @@ TEST(Ways, OfAOneWayBranchAreOne) {
 }
 
 TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
-    const Scene scene =
-        parsed(rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
-                   // in parallel with an inactive jack
-                   "  slide: {drive: joints.slide, to: 9, steps: 1}\n"
-                   "  both: {drive: joints.slide, to: 9, steps: 1, hold: {travel: 0}}"));
+    const Scene scene = parsed(
+        rig("  load: {load: push, to: 9, steps: 1}\n  jack: {drive: travel, to: 9, steps: 1}\n"
+            // in parallel with an inactive jack
+            "  slide: {drive: joints.slide, to: 9, steps: 1}\n"
+            "  both: {drive: joints.slide, to: 9, steps: 1, hold: {travel: 0}}"));
     const Model model = compile(scene);
     ASSERT_EQ(model.joints.size(), 8U);
     for (const Branch& branch : model.branches) {
@@ -432,14 +454,15 @@ TEST(OnBranch, AJackStandsWhereItIsDrivenOnly) {
         EXPECT_EQ(constraint_rows(here), constraint_rows(model) - 2 + standing) << branch.name;
         for (std::size_t k = 0; k < here.joints.size(); ++k) {
             const int driven = here.joints[k].driven;
-            const bool stands = !model.joints[k].only_where_driven || driven >= 0;
+            const bool stands = !model.joints[k].active_only_where_driven || driven >= 0;
             EXPECT_EQ(here.joints[k].name, model.joints[k].name);
             if (model.joints[k].driven < 0 || !stands) {
                 EXPECT_EQ(driven, -1);
             } else {
                 ASSERT_GE(driven, 0);
                 ASSERT_LT(static_cast<std::size_t>(driven), here.constraints.size()) << branch.name;
-                EXPECT_EQ(here.constraints[static_cast<std::size_t>(driven)].joint, static_cast<int>(k));
+                EXPECT_EQ(here.constraints[static_cast<std::size_t>(driven)].joint,
+                          static_cast<int>(k));
             }
         }
         for (const Driver& driver : here.branches[0].drivers) {
@@ -454,7 +477,8 @@ TEST(OnBranch, ATwoWayBranchIsNoneThatALegWalks) {
     const Scene scene = parsed(rig("  up: {drive: travel, from: -9, to: 9, steps: 2}"));
     const Model model = compile(scene);
     EXPECT_FALSE(stands_on(model, model.branches[0]));
-    for (const Branch& way : ways(model.branches[0])) EXPECT_TRUE(stands_on(on_branch(model, way), way));
+    for (const Branch& way : ways(model.branches[0]))
+        EXPECT_TRUE(stands_on(on_branch(model, way), way));
 }
 
 // ---- Shipped mechanism scenes: the closed forms in their heads satisfy their constraints.
@@ -486,7 +510,8 @@ TEST(SliderCrank, MovesAsItsHeadSays) {
     for (int phi = 0; phi <= 360; ++phi) {
         const double a = phi * degree;
         const double x = r * std::cos(a) + std::sqrt(l * l - std::pow(r * std::sin(a), 2));
-        const Poses poses{{Vector3d::Zero(), about_y(a)}, {Vector3d(x, 0, 0), Quaterniond::Identity()}};
+        const Poses poses{{Vector3d::Zero(), about_y(a)},
+                          {Vector3d(x, 0, 0), Quaterniond::Identity()}};
         EXPECT_LE(worst_constraint(model, poses, a), 1e-15) << phi;
         EXPECT_GT(worst_constraint(model, poses, a + 0.01), 1e-3) << "the drive holds the angle";
     }

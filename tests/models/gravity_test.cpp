@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/mistakes.hpp"
 
 namespace elastocheck {
@@ -58,11 +58,12 @@ TEST(Gravity, EveryBodyWithAMassHangsOnItsCentreOfGravity) {
 }
 
 TEST(Gravity, AMassWithoutGravityIsNamed) {
-    const Scene scene = parse_scene(replaced(scene_text, "gravity: [1, 0, -9.81]\n", ""), "scene.yaml");
+    const Scene scene =
+        parse_scene(replaced(scene_text, "gravity: [1, 0, -9.81]\n", ""), "scene.yaml");
     EXPECT_TRUE(scene.static_loads.empty());
-    ASSERT_EQ(scene.left_out.size(), 3U);
-    EXPECT_EQ(scene.left_out[0].what, "mass of body 'arm_left'");
-    EXPECT_EQ(scene.left_out[0].why, "the scene has no gravity");
+    ASSERT_EQ(scene.omitted.size(), 3U);
+    EXPECT_EQ(scene.omitted[0].what, "mass of body 'arm_left'");
+    EXPECT_EQ(scene.omitted[0].why, "the scene has no gravity");
 }
 
 TEST(Gravity, IsInMetresPerSecondSquaredWhateverTheUnits) {
@@ -78,14 +79,18 @@ TEST(Gravity, SaysWhatIsWrong) {
     expect_complaints(
         scene_text,
         {{"[1, 0, -9.81]", "[1, 0.1, -9.81]",
-          "gravity: has a part along y, and a scene that mirrors itself is pulled to neither side; allowed: "
+          "gravity: has a part along y, and a scene that mirrors itself is pulled to neither side; "
+          "allowed: "
           "[x, 0, z]"},
          {"[1, 0, -9.81]", "-9.81", "gravity: expected a list of 3 numbers, found '-9.81'"},
          {"mass: 20", "mass: -20", "bodies.beam.mass: negative mass '-20'; allowed: zero or more"},
          {"mass: 2, ", "",
-          "bodies.rack.centre_of_gravity: of a body without a mass; give its mass or leave this out"},
-         {"loads:", "static_loads: {gravity.beam: {on: beam, at: middle, force: [0, 0, 1]}}\nloads:",
-          "bodies.beam: its weight is a load called 'gravity.beam', but there is one already; call that one "
+          "bodies.rack.centre_of_gravity: of a body without a mass; give its mass or leave this "
+          "out"},
+         {"loads:",
+          "static_loads: {gravity.beam: {on: beam, at: middle, force: [0, 0, 1]}}\nloads:",
+          "bodies.beam: its weight is a load called 'gravity.beam', but there is one already; call "
+          "that one "
           "something "
           "else"}});
     std::string text = scene_text;

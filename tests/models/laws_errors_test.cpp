@@ -19,7 +19,9 @@ struct Mistake {
 void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
 
 std::string curve(const std::string& fields) { return spring_with("curve: {" + fields + "}"); }
-std::string bump(const std::string& fields) { return spring_with("rate: 5, bump_stop: {" + fields + "}"); }
+std::string bump(const std::string& fields) {
+    return spring_with("rate: 5, bump_stop: {" + fields + "}");
+}
 std::string torsion(const std::string& fields) {
     return "torsion_springs:\n  bar: {bodies: [arm, ground], at: p, " + fields + "}";
 }
@@ -38,30 +40,36 @@ const std::string second = "; give a second one";
 const std::vector<Mistake> mistakes{
     // ---- curves
     {"CurveIsAList", spring_with("curve: [[0, 0], [1, 1]]"),
-     "11: springs.coil.curve: expected a map with the fields table, file, scale, offset, symmetric, "
+     "11: springs.coil.curve: expected a map with the fields table, file, scale, offset, "
+     "symmetric, "
      "interpolation, outside, "
      "found a "
      "list of 2"},
     {"UnknownFieldOfCurve", curve("tabel: [[0, 0], [1, 1]]"),
-     "11: springs.coil.curve: unknown field 'tabel', did you mean 'table'? allowed: table, file, scale, "
+     "11: springs.coil.curve: unknown field 'tabel', did you mean 'table'? allowed: table, file, "
+     "scale, "
      "offset, "
      "symmetric, interpolation, outside"},
-    {"CurveWithoutPoints", curve("scale: 2"), "11: springs.coil.curve: no points; allowed: table or file"},
+    {"CurveWithoutPoints", curve("scale: 2"),
+     "11: springs.coil.curve: no points; allowed: table or file"},
     {"TableAndFile", curve(table + ", file: coil.csv"),
      "11: springs.coil.curve.file: given together with table; " + one_of_two},
     {"FileOfAText", curve("file: coil.csv"),
-     "11: springs.coil.curve.file: read from beside the scene's file, which there is none of here; give a "
+     "11: springs.coil.curve.file: read from beside the scene's file, which there is none of here; "
+     "give a "
      "table"},
     {"FileIsAList", curve("file: [coil.csv]"),
      "11: springs.coil.curve.file: expected the name of a file, found a list of 1"},
     {"TableIsANumber", curve("table: 5"),
      "11: springs.coil.curve.table: expected at least two rows [deflection, force], found '5'"},
     {"TableOfOneRow", curve("table: [[0, 0]]"),
-     "11: springs.coil.curve.table: expected at least two rows [deflection, force], found a list of 1"},
+     "11: springs.coil.curve.table: expected at least two rows [deflection, force], found a list "
+     "of 1"},
     {"TableIsAMap", curve("table: {0: 0, 1: 1}"),
      "11: springs.coil.curve.table: expected at least two rows [deflection, force], found a map"},
     {"RowOfOneNumber", curve("table: [[0, 0], [5]]"),
-     "11: springs.coil.curve.table: row 2: expected two numbers, deflection and force, found a list of 1"},
+     "11: springs.coil.curve.table: row 2: expected two numbers, deflection and force, found a "
+     "list of 1"},
     {"RowIsANumber", curve("table: [0, 5]"),
      "11: springs.coil.curve.table: row 1: expected two numbers, deflection and force, found '0'"},
     {"RowOfAWord", curve("table: [[0, 0], [5, much]]"),
@@ -73,7 +81,8 @@ const std::vector<Mistake> mistakes{
     {"DeflectionFalling", curve("table: [[0, 0], [-5, 10]]"),
      "11: springs.coil.curve.table: row 2: deflection '-5' is not above that of the row before"},
     {"ForceFalling", curve("table: [[0, 0], [5, 20], [10, 19]]"),
-     "11: springs.coil.curve.table: row 3: force '19' is below that of the row before; it may stay, but not "
+     "11: springs.coil.curve.table: row 3: force '19' is below that of the row before; it may "
+     "stay, but not "
      "fall"},
     {"ScaleOfZero", curve(table + ", scale: 0"),
      "11: springs.coil.curve.scale: '0' is no scale; allowed: above zero"},
@@ -82,11 +91,13 @@ const std::vector<Mistake> mistakes{
     {"OffsetTooLarge", curve(table + ", offset: 1e20"),
      "11: springs.coil.curve.offset: '1e20' is so large that rows of the table fall together"},
     {"SymmetricOfBothSides", curve(table + ", symmetric: true"),
-     "11: springs.coil.curve.symmetric: the table of a symmetric curve begins with [0, 0], and the other "
+     "11: springs.coil.curve.symmetric: the table of a symmetric curve begins with [0, 0], and the "
+     "other "
      "half is made "
      "from it"},
     {"SymmetricWithAForceAtZero", curve("table: [[0, 1], [1, 2]], symmetric: true"),
-     "11: springs.coil.curve.symmetric: the table of a symmetric curve begins with [0, 0], and the other "
+     "11: springs.coil.curve.symmetric: the table of a symmetric curve begins with [0, 0], and the "
+     "other "
      "half is made "
      "from it"},
     {"SymmetricPerhaps", curve(table + ", symmetric: perhaps"),
@@ -95,43 +106,53 @@ const std::vector<Mistake> mistakes{
      "11: springs.coil.curve.outside: 'constant' is not a way to go on; allowed: linear, unknown"},
     {"RateAndCurve", spring_with("rate: 5, curve: {" + table + "}"),
      "11: springs.coil.curve: given together with rate; " + one_of_two},
-    {"NeitherRateNorCurve", spring_with("preload: 5"), "11: springs.coil: no law; allowed: rate or curve"},
+    {"NeitherRateNorCurve", spring_with("preload: 5"),
+     "11: springs.coil: no law; allowed: rate or curve"},
     // ---- preload of a spring with a curve
-    {"PreloadBeyondAnUnknownEnd", spring_with("curve: {" + table + ", outside: unknown}, preload: 901"),
+    {"PreloadBeyondAnUnknownEnd",
+     spring_with("curve: {" + table + ", outside: unknown}, preload: 901"),
      "11: springs.coil.preload: the curve never has -901 N; its table goes from -900 to 1400"},
-    {"TensionBeyondAnUnknownEnd", spring_with("curve: {" + table + ", outside: unknown}, preload: -1401"),
+    {"TensionBeyondAnUnknownEnd",
+     spring_with("curve: {" + table + ", outside: unknown}, preload: -1401"),
      "11: springs.coil.preload: the curve never has 1401 N; its table goes from -900 to 1400"},
-    {"PreloadBeyondAFlatEnd", spring_with("curve: {table: [[-50, -900], [-40, -900], [0, 0]]}, preload: 901"),
+    {"PreloadBeyondAFlatEnd",
+     spring_with("curve: {table: [[-50, -900], [-40, -900], [0, 0]]}, preload: 901"),
      "11: springs.coil.preload: the curve never has -901 N; its table goes from -900 to 0"},
     {"PreloadOnAFlatEnd", spring_with("curve: {table: [[-50, 0], [0, 0], [40, 1000]]}, preload: 0"),
      "11: springs.coil.preload: the curve has 0 N at more than one deflection; give a free_length"},
     {"PreloadOnAFlatPiece",
      spring_with("curve: {table: [[-50, -900], [-40, -500], [-20, -500], [0, 0]]}, preload: 500"),
-     "11: springs.coil.preload: the curve has -500 N at more than one deflection; give a free_length"},
+     "11: springs.coil.preload: the curve has -500 N at more than one deflection; give a "
+     "free_length"},
     {"PreloadThatNeedsNoLength", spring_with("curve: {" + table + "}, preload: -30e3"),
-     "11: springs.coil.preload: needs a free length of -516.667 mm; a free length must be above zero"},
+     "11: springs.coil.preload: needs a free length of -516.667 mm; a free length must be above "
+     "zero"},
     {"FreeLengthAndPreload", spring_with("curve: {" + table + "}, free_length: 400, preload: 5"),
      "11: springs.coil.preload: given together with free_length; " + one_of_two},
     // ---- stops
     {"StopWithoutClearance", bump("rate: 5"),
      "11: springs.coil.bump_stop.clearance: missing, it must be given"},
-    {"StopWithoutLaw", bump("clearance: 5"), "11: springs.coil.bump_stop: no law; allowed: rate or curve"},
+    {"StopWithoutLaw", bump("clearance: 5"),
+     "11: springs.coil.bump_stop: no law; allowed: rate or curve"},
     {"StopOfRateAndCurve", bump("clearance: 5, rate: 5, curve: {table: [[0, 0], [1, 1]]}"),
      "11: springs.coil.bump_stop.curve: given together with rate; " + one_of_two},
     {"StopOfNegativeRate", bump("clearance: 5, rate: -5"),
      "11: springs.coil.bump_stop.rate: negative rate '-5'; allowed: zero or more"},
     {"UnknownFieldOfStop", bump("clearence: 5, rate: 5"),
-     "11: springs.coil.bump_stop: unknown field 'clearence', did you mean 'clearance'? allowed: clearance, "
+     "11: springs.coil.bump_stop: unknown field 'clearence', did you mean 'clearance'? allowed: "
+     "clearance, "
      "rate, curve"},
     {"StopWithForceWhereItTouches", bump("clearance: 5, curve: {table: [[0, 10], [1, 20]]}"),
      "11: springs.coil.bump_stop.curve: the table of a stop begins with [0, 0], where it touches"},
     {"StopThatTouchesLater", bump("clearance: 5, curve: {table: [[1, 0], [2, 20]]}"),
      "11: springs.coil.bump_stop.curve: the table of a stop begins with [0, 0], where it touches"},
     {"StopWithOffset", bump("clearance: 5, curve: {table: [[0, 0], [1, 20]], offset: 1}"),
-     "11: springs.coil.bump_stop.curve: unknown field 'offset'; allowed: table, file, scale, interpolation, "
+     "11: springs.coil.bump_stop.curve: unknown field 'offset'; allowed: table, file, scale, "
+     "interpolation, "
      "outside"},
     {"StopTooFar", bump("clearance: 1e20, curve: {table: [[0, 0], [1, 20]]}"),
-     "11: springs.coil.bump_stop.clearance: '1e20' is so large that rows of the curve fall together"},
+     "11: springs.coil.bump_stop.clearance: '1e20' is so large that rows of the curve fall "
+     "together"},
     {"StopsWithoutAny", stops("from: p, to: t"), "11: stops.axle: no stop; allowed: bump, rebound"},
     {"UnknownStop", stops("from: p, to: t, bump_stop: {clearance: 5, rate: 5}"),
      "11: stops.axle: unknown field 'bump_stop'; allowed: bodies, from, to, bump, rebound"},
@@ -140,13 +161,15 @@ const std::vector<Mistake> mistakes{
     {"StopOfATakenName",
      "springs:\n  axle.bump: {bodies: [arm, ground], from: p, to: t, rate: 5}\n" +
          stops("from: p, to: t, bump: {clearance: 5, rate: 5}"),
-     "13: stops.axle.bump: needs an element of its own called 'axle.bump', but there is one already; call "
+     "13: stops.axle.bump: needs an element of its own called 'axle.bump', but there is one "
+     "already; call "
      "that one "
      "something else"},
     {"StopInASpringOfATakenName",
      spring_with("rate: 5, bump_stop: {clearance: 5, rate: 5}") +
          "\n  coil.bump_stop: {bodies: [arm, ground], from: p, to: t, rate: 5}",
-     "11: springs.coil.bump_stop: needs an element of its own called 'coil.bump_stop', but there is one "
+     "11: springs.coil.bump_stop: needs an element of its own called 'coil.bump_stop', but there "
+     "is one "
      "already; call "
      "that one something else"},
     // ---- torsion springs
@@ -156,7 +179,8 @@ const std::vector<Mistake> mistakes{
      "11: torsion_springs.bar.curve: given together with rate; " + one_of_two},
     {"TorsionSpringWithoutAxis", torsion("rate: 5"),
      "11: torsion_springs.bar.axis: missing, it must be given"},
-    {"TorsionSpringWithoutPoint", "torsion_springs:\n  bar: {bodies: [arm, ground], axis: x, rate: 5}",
+    {"TorsionSpringWithoutPoint",
+     "torsion_springs:\n  bar: {bodies: [arm, ground], axis: x, rate: 5}",
      "11: torsion_springs.bar.at: missing, it must be given"},
     {"TorsionSpringOfNegativeRate", torsion("axis: x, rate: -5"),
      "11: torsion_springs.bar.rate: negative rate '-5'; allowed: zero or more"},
@@ -167,7 +191,8 @@ const std::vector<Mistake> mistakes{
      "preload_moment"},
     // ---- bushings
     {"StiffnessAndCurves", bushing("curves: {x: {" + table + "}}, stiffness: [[0]]"),
-     "11: bushings.mount.curves: given together with stiffness; allowed: curves, with or without rates, or "
+     "11: bushings.mount.curves: given together with stiffness; allowed: curves, with or without "
+     "rates, or "
      "stiffness"},
     {"NoCurves", bushing("curves: {}"),
      "11: bushings.mount.curves: empty; a curve for one of the axes is needed"},
@@ -184,13 +209,16 @@ const std::vector<Mistake> mistakes{
     {"FrameOnK", bushing("rates: [1, 1, 1], formulation: {frame: k}"),
      "11: bushings.mount.formulation.frame: 'k' is not a frame; allowed: i, j, middle"},
     {"UnknownAngles", bushing("rates: [1, 1, 1], formulation: {angles: euler}"),
-     "11: bushings.mount.formulation.angles: 'euler' is not a measure of rotation; allowed: rotation_vector, "
+     "11: bushings.mount.formulation.angles: 'euler' is not a measure of rotation; allowed: "
+     "rotation_vector, "
      "cardan, "
      "projected"},
     {"ConjugatePerhaps", bushing("rates: [1, 1, 1], formulation: {conjugate: maybe}"),
      "11: bushings.mount.formulation.conjugate: 'maybe' is not yes or no; allowed: true, false"},
-    {"NotConjugateInTheMiddle", bushing("rates: [1, 1, 1], formulation: {frame: middle, conjugate: false}"),
-     "11: bushings.mount.formulation.conjugate: false, which is not defined with the frame in the middle; "
+    {"NotConjugateInTheMiddle",
+     bushing("rates: [1, 1, 1], formulation: {frame: middle, conjugate: false}"),
+     "11: bushings.mount.formulation.conjugate: false, which is not defined with the frame in the "
+     "middle; "
      "allowed "
      "there: true"},
     {"OneAxisForACurveAcrossIt",
@@ -201,9 +229,11 @@ const std::vector<Mistake> mistakes{
     {"OneAxisForUnequalRatesBesideACurve",
      bushing("frame: {z: z}, rates: [1, 2, 0], curves: {z: {" + table + "}}"),
      one_axis + "the rates or the preload across it are not the same all round" + second},
-    {"OneAxisForAnOffsetAcrossIt", bushing("frame: {z: z}, rates: [1, 1, 2], undeformed: [1, 0, 0]"),
+    {"OneAxisForAnOffsetAcrossIt",
+     bushing("frame: {z: z}, rates: [1, 1, 2], undeformed: [1, 0, 0]"),
      one_axis + "the undeformed position is off it" + second},
-    {"OneAxisForCardanAngles", bushing("frame: {z: z}, rates: [1, 1, 2], formulation: {angles: cardan}"),
+    {"OneAxisForCardanAngles",
+     bushing("frame: {z: z}, rates: [1, 1, 2], formulation: {angles: cardan}"),
      one_axis + "cardan and projected angles need all three" + second},
     // ---- loads
     {"FollowsABody", "static_loads:\n  drag: {on: arm, at: p, force: [1, 2, 3], follows: arm}",
@@ -232,17 +262,18 @@ TEST(WrongSetting, OfATableSaysSo) {
         parse_scene(laws_scene(curve(table)), "laws.yaml", {&falling, 1});
         FAIL();
     } catch (const SceneError& error) {
-        EXPECT_STREQ(
-            error.what(),
-            "laws.yaml:11: springs.coil.curve.table: row 2: force '-950' is below that of the row before; it "
-            "may stay, but not fall (as set)");
+        EXPECT_STREQ(error.what(),
+                     "laws.yaml:11: springs.coil.curve.table: row 2: force '-950' is below that of "
+                     "the row before; it "
+                     "may stay, but not fall (as set)");
     }
 }
 
 TEST(WrongDrive, OfWhatCannotBeDrivenSaysWhy) {
     const std::tuple<std::string, const char*, std::string> cases[] = {
         {curve(table), "springs.coil.preload",
-         "'springs.coil.preload' is of a spring with a curve, where it is not in proportion to any length; "
+         "'springs.coil.preload' is of a spring with a curve, where it is not in proportion to any "
+         "length; "
          "allowed: its "
          "free_length"},
         {bump("clearance: 5, rate: 5"), "springs.coil.bump_stop.free_length",
@@ -269,11 +300,14 @@ TEST(WrongDrive, OfWhatCannotBeDrivenSaysWhy) {
 // The twin of a stop is also a named element.
 TEST(WrongMirror, MakesNoTwoElementsOfOneName) {
     const std::string text =
-        "elastocheck: 1\nname: axle\nunits: {length: mm, angle: deg, force: N}\nmirror: left -> right\n"
-        "points: {o: [0, 0, 0], p_left: [0, 600, 0], t_left: [0, 600, 400]}\nbodies: {arm: {origin: o}}\n"
+        "elastocheck: 1\nname: axle\nunits: {length: mm, angle: deg, force: N}\nmirror: left -> "
+        "right\n"
+        "points: {o: [0, 0, 0], p_left: [0, 600, 0], t_left: [0, 600, 400]}\nbodies: {arm: "
+        "{origin: o}}\n"
         "joints: {ball: {type: spherical, bodies: [arm, ground], at: o}}\n"
         "stops:\n"
-        "  a_left: {bodies: [arm, ground], from: p_left, to: t_left, bump: {clearance: 5, rate: 5}}\n"
+        "  a_left: {bodies: [arm, ground], from: p_left, to: t_left, bump: {clearance: 5, rate: "
+        "5}}\n"
         "springs:\n"
         "  a_right.bump: {bodies: [arm, ground], from: p_left, to: p_right, rate: 5}\n"
         "loads: {push: {on: arm, at: p_left, force: [0, 0, 1]}}\n"
@@ -283,10 +317,10 @@ TEST(WrongMirror, MakesNoTwoElementsOfOneName) {
         parse_scene(text, "axle.yaml");
         FAIL();
     } catch (const SceneError& error) {
-        EXPECT_STREQ(
-            error.what(),
-            "axle.yaml:9: stops.a_left.bump: needs an element of its own called 'a_right.bump', but there "
-            "is one already; call that one something else");
+        EXPECT_STREQ(error.what(),
+                     "axle.yaml:9: stops.a_left.bump: needs an element of its own called "
+                     "'a_right.bump', but there "
+                     "is one already; call that one something else");
     }
 }
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 
 namespace elastocheck {
 
@@ -29,7 +29,9 @@ probes: {tip: {on: arm, at: p}}
 )";
 }
 
-inline Scene laws(const std::string& elements) { return parse_scene(laws_scene(elements), "laws.yaml"); }
+inline Scene laws(const std::string& elements) {
+    return parse_scene(laws_scene(elements), "laws.yaml");
+}
 
 // A spring between p and t, 400 mm apart.
 inline std::string spring_with(const std::string& fields) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "models/curve.hpp"
 #include "tests/models/laws_scene.hpp"
 
@@ -19,33 +19,38 @@ using Eigen::Vector3d;
 Curve curve_of(const Scene& scene, const std::string& name) {
     return std::get<Curve>(element<AxialSpring>(scene, name).law);
 }
-double design_force(const AxialSpring& spring) { return force(spring.law, 0.4 - spring.free_length); }
+double design_force(const AxialSpring& spring) {
+    return force(spring.law, 0.4 - spring.free_length);
+}
 
 // ---- Stops: a force over ℓ - 400 mm, the length at the design position.
 
 TEST(Stops, ActBeyondTheirClearanceAlone) {
-    const Scene scene =
-        laws(spring_with("rate: 30, preload: 3000, bump_stop: {clearance: 30, rate: 300}, rebound_stop: "
-                         "{clearance: 50, rate: 200}"));
+    const Scene scene = laws(
+        spring_with("rate: 30, preload: 3000, bump_stop: {clearance: 30, rate: 300}, rebound_stop: "
+                    "{clearance: 50, rate: 200}"));
     ASSERT_EQ(scene.elastics.size(), 3U);
     EXPECT_EQ(scene.elastics[0].name, "coil");
     EXPECT_EQ(scene.elastics[1].name, "coil.bump_stop");
     EXPECT_EQ(scene.elastics[2].name, "coil.rebound_stop");
     for (const char* stop : {"coil.bump_stop", "coil.rebound_stop"})
-        EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, stop).free_length, 0.4) << "whatever the spring's is";
+        EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, stop).free_length, 0.4)
+            << "whatever the spring's is";
     for (int mm = -100; mm <= 100; ++mm) {
         const double x = mm * 1e-3;
-        EXPECT_NEAR(force(curve_of(scene, "coil.bump_stop"), x), 300e3 * std::min(0.0, x + 0.03), 1e-10)
+        EXPECT_NEAR(force(curve_of(scene, "coil.bump_stop"), x), 300e3 * std::min(0.0, x + 0.03),
+                    1e-10)
             << mm;
-        EXPECT_NEAR(force(curve_of(scene, "coil.rebound_stop"), x), 200e3 * std::max(0.0, x - 0.05), 1e-10)
+        EXPECT_NEAR(force(curve_of(scene, "coil.rebound_stop"), x), 200e3 * std::max(0.0, x - 0.05),
+                    1e-10)
             << mm;
     }
 }
 
 TEST(Stops, StandBetweenAnyTwoPoints) {
-    const Scene inside =
-        laws(spring_with("rate: 30, bump_stop: {clearance: 30, rate: 300}, rebound_stop: {clearance: 50, "
-                         "curve: {table: [[0, 0], [5, 70]]}}"));
+    const Scene inside = laws(spring_with(
+        "rate: 30, bump_stop: {clearance: 30, rate: 300}, rebound_stop: {clearance: 50, "
+        "curve: {table: [[0, 0], [5, 70]]}}"));
     const Scene alone = laws(
         "stops:\n  axle: {bodies: [arm, ground], from: p, to: t, bump: {clearance: 30, rate: 300}, "
         "rebound: {clearance: 50, curve: {table: [[0, 0], [5, 70]]}}}");
@@ -63,14 +68,17 @@ TEST(Stops, StandBetweenAnyTwoPoints) {
 
 // The law equals a spring's with the same table over the penetration.
 TEST(Stops, HaveCurvesOfPenetration) {
-    const std::string table = "curve: {table: [[0, 0], [10, 900], [20, 4000], [25, 9000]], scale: 1.5}";
+    const std::string table =
+        "curve: {table: [[0, 0], [10, 900], [20, 4000], [25, 9000]], scale: 1.5}";
     const auto g = curve_of(laws(spring_with(table)), "coil");
     const Scene scene = laws(spring_with("rate: 30, bump_stop: {clearance: 8, " + table +
                                          "}, rebound_stop: {clearance: 4, " + table + "}"));
     for (int tenths = -500; tenths <= 500; ++tenths) {
         const double x = tenths * 1e-4, s = -x - 0.008, t = x - 0.004;
-        EXPECT_NEAR(force(curve_of(scene, "coil.bump_stop"), x), s > 0 ? -force(g, s) : 0, 1e-10) << tenths;
-        EXPECT_NEAR(force(curve_of(scene, "coil.rebound_stop"), x), t > 0 ? force(g, t) : 0, 1e-10) << tenths;
+        EXPECT_NEAR(force(curve_of(scene, "coil.bump_stop"), x), s > 0 ? -force(g, s) : 0, 1e-10)
+            << tenths;
+        EXPECT_NEAR(force(curve_of(scene, "coil.rebound_stop"), x), t > 0 ? force(g, t) : 0, 1e-10)
+            << tenths;
     }
 }
 
@@ -83,10 +91,12 @@ TEST(Stops, MayBeClosedAtTheDesignPosition) {
 
 // The open range of a stop is unbounded even if its closed range is bounded.
 TEST(Stops, AreKnownWhereTheyAreOpen) {
-    const std::string curve = ", curve: {table: [[0, 0], [10, 900], [20, 4000]], outside: unknown}}";
-    const Scene scene = laws(
-        spring_with("rate: 30, bump_stop: {clearance: 8" + curve + ", rebound_stop: {clearance: 4" + curve));
-    const Curve bump = curve_of(scene, "coil.bump_stop"), rebound = curve_of(scene, "coil.rebound_stop");
+    const std::string curve =
+        ", curve: {table: [[0, 0], [10, 900], [20, 4000]], outside: unknown}}";
+    const Scene scene = laws(spring_with("rate: 30, bump_stop: {clearance: 8" + curve +
+                                         ", rebound_stop: {clearance: 4" + curve));
+    const Curve bump = curve_of(scene, "coil.bump_stop"),
+                rebound = curve_of(scene, "coil.rebound_stop");
     EXPECT_FALSE(bump.known_outside || rebound.known_outside);
     EXPECT_DOUBLE_EQ(bump.knots.front(), -0.028);
     EXPECT_GT(bump.knots.back(), 1e5);
@@ -102,9 +112,11 @@ TEST(Stops, AreKnownWhereTheyAreOpen) {
 
 TEST(TorsionSpring, ResistsRotationAboutItsAxisAlone) {
     const Scene scene = laws(
-        "torsion_springs:\n  bar: {bodies: [arm, ground], at: p, axis: [1, 2, -2], rate: 40, preload_moment: "
+        "torsion_springs:\n  bar: {bodies: [arm, ground], at: p, axis: [1, 2, -2], rate: 40, "
+        "preload_moment: "
         "3000}\n"
-        "  rubber: {bodies: [ground, arm], at: t, axis: [p, t], curve: {table: [[0, 0], [10, 700], [20, "
+        "  rubber: {bodies: [ground, arm], at: t, axis: [p, t], curve: {table: [[0, 0], [10, 700], "
+        "[20, "
         "3000]], symmetric: true}}");
     const auto bar = element<Bushing>(scene, "bar"), rubber = element<Bushing>(scene, "rubber");
     EXPECT_LE((bar.i.A_local * Vector3d::UnitZ() - Vector3d(1, 2, -2) / 3).norm(), 1e-15);
@@ -123,11 +135,11 @@ TEST(TorsionSpring, ResistsRotationAboutItsAxisAlone) {
 }
 
 TEST(TorsionSpring, IsDrivenByItsPreloadMoment) {
-    const Scene scene =
-        parse_scene(laws_scene("torsion_springs:\n  bar: {bodies: [arm, ground], at: p, axis: y, rate: 40}",
-                               "length: mm, angle: deg, force: N",
-                               "drive: torsion_springs.bar.preload_moment, to: 3000, steps: 1"),
-                    "laws.yaml");
+    const Scene scene = parse_scene(
+        laws_scene("torsion_springs:\n  bar: {bodies: [arm, ground], at: p, axis: y, rate: 40}",
+                   "length: mm, angle: deg, force: N",
+                   "drive: torsion_springs.bar.preload_moment, to: 3000, steps: 1"),
+        "laws.yaml");
     const Branch& branch = scene.branches.at(0);
     EXPECT_EQ(branch.unit, ParameterUnit::newton_metre);
     EXPECT_EQ(branch.to, 3);
@@ -141,10 +153,10 @@ std::string bushing_with(const std::string& fields) {
 }
 
 TEST(BushingCurves, StandInPlaceOfTheRatesOfTheirAxes) {
-    const Scene scene =
-        laws(bushing_with("rates: [1, 2, 3], rotational_rates: [4, 5, 6], curves: {x: {table: [[-1, -70], "
-                          "[2, 90]], outside: unknown}, "
-                          "rz: {table: [[0, 0], [10, 700]], symmetric: true}}"));
+    const Scene scene = laws(bushing_with(
+        "rates: [1, 2, 3], rotational_rates: [4, 5, 6], curves: {x: {table: [[-1, -70], "
+        "[2, 90]], outside: unknown}, "
+        "rz: {table: [[0, 0], [10, 700]], symmetric: true}}"));
     const auto law = std::get<PerAxis>(element<Bushing>(scene, "mount").law).axis;
     EXPECT_DOUBLE_EQ(force(law[0], 0.002), 90);
     EXPECT_FALSE(std::get<Curve>(law[0]).known_outside);
@@ -165,7 +177,8 @@ TEST(BushingFormulation, IsThePapersUnlessItSaysOtherwise) {
     using Frame = Formulation::Frame;
     using Angles = Formulation::Angles;
     const auto read = [](const std::string& fields) {
-        return element<Bushing>(laws(bushing_with("rates: [1, 1, 1]" + fields)), "mount").formulation;
+        return element<Bushing>(laws(bushing_with("rates: [1, 1, 1]" + fields)), "mount")
+            .formulation;
     };
     EXPECT_EQ(read(""), Formulation());
     EXPECT_EQ(read(", formulation: {}"), Formulation());
@@ -177,17 +190,17 @@ TEST(BushingFormulation, IsThePapersUnlessItSaysOtherwise) {
             for (const bool conjugate : {true, false})
                 for (const bool moment : {true, false}) {
                     if (f == Frame::middle && !conjugate) continue;
-                    EXPECT_EQ(
-                        read(fmt::format(
-                            ", formulation: {{frame: {}, angles: {}, conjugate: {}, offset_moment: {}}}",
-                            frame, angles, conjugate, moment)),
-                        (Formulation{f, a, conjugate, moment}));
+                    EXPECT_EQ(read(fmt::format(", formulation: {{frame: {}, angles: {}, conjugate: "
+                                               "{}, offset_moment: {}}}",
+                                               frame, angles, conjugate, moment)),
+                              (Formulation{f, a, conjugate, moment}));
                 }
 }
 
 TEST(BushingUndeformed, IsAnOffsetOfSix) {
     const auto mount = element<Bushing>(
-        laws(bushing_with("rates: [1, 1, 1], undeformed: [1, 2, 3], undeformed_angles: [0, 0, 90]")),
+        laws(
+            bushing_with("rates: [1, 1, 1], undeformed: [1, 2, 3], undeformed_angles: [0, 0, 90]")),
         "mount");
     const Vector6 expected = (Vector6() << 0.001, 0.002, 0.003, 0, 0, M_PI / 2).finished();
     EXPECT_LE((mount.undeformed - expected).norm(), 1e-16);
@@ -203,13 +216,13 @@ TEST(BushingFrame, OfOneAxisMayHaveCurvesAlongIt) {
 // ---- Followers.
 
 TEST(Followers, HaveTheComponentsOfTheDesignPosition) {
-    const Scene scene =
-        parse_scene(laws_scene("static_loads:\n  drag: {on: arm, at: p, force: [1, 2, 3], follows: true}\n"
-                               "  twist: {on: arm, moment: [1000, 0, 2000], follows: true}\n"
-                               "  dead: {on: arm, at: p, force: [1, 2, 3], follows: false}",
-                               "length: mm, angle: deg, force: N",
-                               "load: {push: 1}, static_loads: [push], to: 10, steps: 1"),
-                    "laws.yaml");
+    const Scene scene = parse_scene(
+        laws_scene("static_loads:\n  drag: {on: arm, at: p, force: [1, 2, 3], follows: true}\n"
+                   "  twist: {on: arm, moment: [1000, 0, 2000], follows: true}\n"
+                   "  dead: {on: arm, at: p, force: [1, 2, 3], follows: false}",
+                   "length: mm, angle: deg, force: N",
+                   "load: {push: 1}, static_loads: [push], to: 10, steps: 1"),
+        "laws.yaml");
     const auto drag = std::get<FollowerForce>(scene.static_loads.at(0).kind);
     EXPECT_EQ(drag.at.s_local, Vector3d(0.05, 0, 0));
     EXPECT_EQ(drag.f_local, Vector3d(1, 2, 3));
@@ -221,9 +234,11 @@ TEST(Followers, DriveBranchesAsOtherLoadsDo) {
     std::string text =
         laws_scene("", "length: mm, angle: deg, force: N", "load: [push, twist], to: 10, steps: 1");
     const std::string loads =
-        "loads: {push: {on: arm, at: p, force: [0, 0, 1], follows: true}, twist: {on: arm, moment: [0, 5, "
+        "loads: {push: {on: arm, at: p, force: [0, 0, 1], follows: true}, twist: {on: arm, moment: "
+        "[0, 5, "
         "0], follows: true}}";
-    text.replace(text.find("loads: {push"), text.find("\nbranches") - text.find("loads: {push"), loads);
+    text.replace(text.find("loads: {push"), text.find("\nbranches") - text.find("loads: {push"),
+                 loads);
     const Scene scene = parse_scene(text, "laws.yaml");
     const auto load = [&](std::size_t k) {
         return std::get<Load>(scene.branches.at(0).drivers.at(k).what).kind;
@@ -271,7 +286,8 @@ branches:
   up: {drive: {torsion_springs.bar_left.preload_moment: 1, torsion_springs.bar_right.preload_moment: 1}, to: 9, steps: 2}
 probes: {tip_left: {on: arm_left, at: t_left}, tip_right: {on: arm_right, at: t_right}}
 )";
-const std::string axle_top = "elastocheck: 1\nname: axle\nunits: {length: mm, angle: deg, force: N}\n";
+const std::string axle_top =
+    "elastocheck: 1\nname: axle\nunits: {length: mm, angle: deg, force: N}\n";
 
 std::string without_lines(const std::string& text, const std::string& word) {
     std::string result;
@@ -328,7 +344,8 @@ Vector6 force_in_ground(const Bushing& b, const Vector6& ground_e) {
     Vector6 e;
     e << A.transpose() * ground_e.head<3>(), A.transpose() * ground_e.tail<3>();
     Vector6 F = b.preload;
-    if (const auto* linear = std::get_if<LinearStiffness>(&b.law)) F += linear->K * (e - b.undeformed);
+    if (const auto* linear = std::get_if<LinearStiffness>(&b.law))
+        F += linear->K * (e - b.undeformed);
     if (const auto* axes = std::get_if<PerAxis>(&b.law))
         for (int k = 0; k < 6; ++k)
             F[k] += force(axes->axis[static_cast<std::size_t>(k)], e[k] - b.undeformed[k]);
@@ -340,7 +357,8 @@ Vector6 force_in_ground(const Bushing& b, const Vector6& ground_e) {
 TEST(MirroredLaws, AreThoseWrittenByHand) {
     const Scene mirrored = mirrored_axle(), by_hand = axle_by_hand();
     for (const char* name : {"coil_right", "coil_right.bump_stop", "axle_right.rebound"}) {
-        const auto a = element<AxialSpring>(mirrored, name), b = element<AxialSpring>(by_hand, name);
+        const auto a = element<AxialSpring>(mirrored, name),
+                   b = element<AxialSpring>(by_hand, name);
         EXPECT_EQ(a.free_length, b.free_length) << name;
         EXPECT_EQ(a.i.s_local, b.i.s_local) << name;
         EXPECT_EQ(a.j.s_local, b.j.s_local) << name;
@@ -354,8 +372,8 @@ TEST(MirroredLaws, AreThoseWrittenByHand) {
         for (int n = 0; n < 2000; ++n) {
             const Vector6 e = 0.2 * Vector6::Random();
             const Vector6 gap = force_in_ground(a, e) - force_in_ground(b, e);
-            worst = std::max(worst,
-                             gap.cwiseAbs().maxCoeff() / (1 + force_in_ground(b, e).cwiseAbs().maxCoeff()));
+            worst = std::max(worst, gap.cwiseAbs().maxCoeff() /
+                                        (1 + force_in_ground(b, e).cwiseAbs().maxCoeff()));
         }
         EXPECT_LE(worst, 1e-13) << name;
     }
@@ -388,12 +406,14 @@ TEST(LawNumbers, OfTablesHaveTheirPlaces) {
     const std::string three = laws_scene(
         spring_with("curve: {table: [[-50, -900], [0, 0], [50, 1400]], offset: 2, scale: 3}, "
                     "bump_stop: {clearance: 9, curve: {table: [[0, 0], [5, 70]]}}") +
-        "\ntorsion_springs: {bar: {bodies: [arm, ground], at: p, axis: x, rate: 4, preload_moment: 6}}\n" +
+        "\ntorsion_springs: {bar: {bodies: [arm, ground], at: p, axis: x, rate: 4, preload_moment: "
+        "6}}\n" +
         bushing_with("undeformed_angles: [1, 2, 3], curves: {rx: {table: [[0, 0], [5, 70]]}}"));
     const Scene scene = parse_scene(three, "laws.yaml");
     const auto number = [&](const std::string& path) {
         const auto found = std::ranges::find(scene.numbers, path, &Number::path);
-        return found == scene.numbers.end() ? "none" : fmt::format("{} {}", found->value, found->unit);
+        return found == scene.numbers.end() ? "none"
+                                            : fmt::format("{} {}", found->value, found->unit);
     };
     EXPECT_EQ(number("springs.coil.curve.table.3.2"), "1400 N");
     EXPECT_EQ(number("springs.coil.curve.table.1.1"), "-50 mm");
@@ -412,16 +432,18 @@ TEST(LawNumbers, OfTablesHaveTheirPlaces) {
     }
     const Setting set{"springs.coil.curve.table.3.2", "1500"};
     EXPECT_DOUBLE_EQ(
-        force(std::get<Curve>(element<AxialSpring>(parse_scene(three, "laws.yaml", {&set, 1}), "coil").law),
+        force(std::get<Curve>(
+                  element<AxialSpring>(parse_scene(three, "laws.yaml", {&set, 1}), "coil").law),
               0.052),
         4500);
 }
 
 TEST(SpringCurve, IsDrivenByItsFreeLength) {
-    const Scene scene = parse_scene(
-        laws_scene(spring_with("curve: {table: [[-50, -900], [0, 0], [50, 1400]]}"),
-                   "length: mm, angle: deg, force: N", "drive: springs.coil.free_length, to: 10, steps: 1"),
-        "laws.yaml");
+    const Scene scene =
+        parse_scene(laws_scene(spring_with("curve: {table: [[-50, -900], [0, 0], [50, 1400]]}"),
+                               "length: mm, angle: deg, force: N",
+                               "drive: springs.coil.free_length, to: 10, steps: 1"),
+                    "laws.yaml");
     EXPECT_EQ(std::get<FreeLength>(scene.branches.at(0).drivers.at(0).what).elastic, 0);
     EXPECT_EQ(scene.branches[0].to, 0.01);
 }
@@ -431,15 +453,18 @@ TEST(SpringCurve, IsDrivenByItsFreeLength) {
 
 std::size_t bodies_kept(const std::string& elements) {
     std::string text = laws_scene(
-        elements + "\n  hold: {bodies: [loose, arm], at: t, rates: [5, 5, 5], rotational_rates: [5, 5, 5]}");
+        elements +
+        "\n  hold: {bodies: [loose, arm], at: t, rates: [5, 5, 5], rotational_rates: [5, 5, 5]}");
     const std::string bodies = "bodies: {arm: {origin: o}}";
-    text.replace(text.find(bodies), bodies.size(), "bodies: {arm: {origin: o}, loose: {origin: t}}");
+    text.replace(text.find(bodies), bodies.size(),
+                 "bodies: {arm: {origin: o}, loose: {origin: t}}");
     return compile(parse_scene(text, "laws.yaml")).bodies.size();
 }
 
 TEST(CompileLaws, KeepsABodyThatACurveLoadsAtTheDesignPosition) {
     const auto spring = [](const std::string& fields) {
-        return "springs:\n  coil: {bodies: [loose, arm], from: p, to: t, " + fields + "}\nbushings:";
+        return "springs:\n  coil: {bodies: [loose, arm], from: p, to: t, " + fields +
+               "}\nbushings:";
     };
     const auto bushing = [](const std::string& fields) {
         return "bushings:\n  mount: {bodies: [loose, arm], at: p, " + fields + "}";
@@ -448,23 +473,27 @@ TEST(CompileLaws, KeepsABodyThatACurveLoadsAtTheDesignPosition) {
     EXPECT_EQ(bodies_kept(spring("rate: 5, preload: 1")), 2U);
     EXPECT_EQ(bodies_kept(spring("curve: {table: [[-50, -900], [0, 0], [50, 1400]]}")), 1U);
     EXPECT_EQ(bodies_kept(spring("curve: {table: [[-50, -900], [0, 1], [50, 1400]]}")), 2U);
-    EXPECT_EQ(bodies_kept(spring("curve: {table: [[-50, -900], [0, 0], [50, 1400]], offset: 0.1}")), 2U);
-    EXPECT_EQ(
-        bodies_kept(spring("curve: {table: [[-50, -900], [-5, 0], [5, 0], [50, 1400]]}, free_length: 402")),
-        1U);
+    EXPECT_EQ(bodies_kept(spring("curve: {table: [[-50, -900], [0, 0], [50, 1400]], offset: 0.1}")),
+              2U);
+    EXPECT_EQ(bodies_kept(spring(
+                  "curve: {table: [[-50, -900], [-5, 0], [5, 0], [50, 1400]]}, free_length: 402")),
+              1U);
     EXPECT_EQ(bodies_kept(spring("rate: 5, bump_stop: {clearance: 3, rate: 7}")), 1U);
     EXPECT_EQ(bodies_kept(spring("rate: 5, bump_stop: {clearance: 0, rate: 7}")), 1U);
     EXPECT_EQ(bodies_kept(spring("rate: 5, bump_stop: {clearance: -0.1, rate: 7}")), 2U);
     EXPECT_EQ(bodies_kept(bushing("rates: [1, 1, 0]")), 1U);
     EXPECT_EQ(bodies_kept(bushing("rates: [1, 1, 0], undeformed: [0, 0.1, 0]")), 2U);
-    EXPECT_EQ(bodies_kept(bushing("rates: [1, 1, 0], undeformed: [0, 0, 0.1]")), 1U) << "nothing along z";
+    EXPECT_EQ(bodies_kept(bushing("rates: [1, 1, 0], undeformed: [0, 0, 0.1]")), 1U)
+        << "nothing along z";
     EXPECT_EQ(bodies_kept(bushing("curves: {ry: {table: [[-1, -2], [0, 0], [1, 7]]}}")), 1U);
     EXPECT_EQ(bodies_kept(bushing("curves: {ry: {table: [[-1, -2], [0, 0.1], [1, 7]]}}")), 2U);
-    EXPECT_EQ(bodies_kept(bushing(
-                  "curves: {ry: {table: [[-1, -2], [0, 0.1], [1, 7]]}}, undeformed_angles: [0, 1, 0]")),
-              2U);
     EXPECT_EQ(
-        bodies_kept("torsion_springs: {bar: {bodies: [loose, arm], at: p, axis: x, rate: 5}}\nbushings:"),
+        bodies_kept(bushing(
+            "curves: {ry: {table: [[-1, -2], [0, 0.1], [1, 7]]}}, undeformed_angles: [0, 1, 0]")),
+        2U);
+    EXPECT_EQ(
+        bodies_kept(
+            "torsion_springs: {bar: {bodies: [loose, arm], at: p, axis: x, rate: 5}}\nbushings:"),
         1U);
     EXPECT_EQ(bodies_kept("torsion_springs: {bar: {bodies: [loose, arm], at: p, axis: x, rate: 5, "
                           "preload_moment: 1}}\nbushings:"),

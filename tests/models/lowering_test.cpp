@@ -26,7 +26,9 @@ struct Random {
     std::uniform_real_distribution<double> uniform{-1, 1};
     double operator()() { return uniform(engine); }
     Vector3d vector() { return {(*this)(), (*this)(), (*this)()}; }
-    Quaterniond orientation() { return Quaterniond((*this)(), (*this)(), (*this)(), (*this)()).normalized(); }
+    Quaterniond orientation() {
+        return Quaterniond((*this)(), (*this)(), (*this)(), (*this)()).normalized();
+    }
 };
 
 // ---- Motions.
@@ -40,7 +42,8 @@ struct Shift {
 using Motion = std::variant<Turn, Shift>;
 
 Pose moved(const Pose& pose, const Motion& motion, double amount) {
-    if (const auto* shift = std::get_if<Shift>(&motion)) return {pose.r + amount * shift->along, pose.p};
+    if (const auto* shift = std::get_if<Shift>(&motion))
+        return {pose.r + amount * shift->along, pose.p};
     const auto& [centre, axis] = std::get<Turn>(motion);
     const Quaterniond turn(Eigen::AngleAxisd(amount, axis.normalized()));
     return {centre + turn * (pose.r - centre), (turn * pose.p).normalized()};
@@ -95,7 +98,8 @@ struct Lowered {
 };
 
 std::vector<Lowered> all_joints(const Place& at) {
-    const Point p_i = at.point(at.i, at.p), p_j = at.point(at.j, at.p), far_j = at.point(at.j, at.other);
+    const Point p_i = at.point(at.i, at.p), p_j = at.point(at.j, at.p),
+                far_j = at.point(at.j, at.other);
     const Direction u_i = at.direction(at.i, at.u), u_j = at.direction(at.j, at.u);
     const Direction v_i = at.direction(at.i, at.v), v_j = at.direction(at.j, at.v);
     const Turn about_u{at.p, at.u}, about_v{at.p, at.v}, about_w{at.p, at.w};
@@ -116,13 +120,19 @@ std::vector<Lowered> all_joints(const Place& at) {
         {"translational", Translational{p_i, p_j, u_i, u_j}, 5, {along_u}},
         {"planar", Planar{p_i, p_j, u_i, u_j}, 3, {about_u, along_v, along_w}},
         {"fixed", Fixed{p_i, p_j, u_i, v_i, u_j, v_j}, 6, {}},
-        {"distance", Distance{p_i, far_j, rod.norm()}, 1, {about_a, about_b, about_rod, around_a, around_b}},
+        {"distance",
+         Distance{p_i, far_j, rod.norm()},
+         1,
+         {about_a, about_b, about_rod, around_a, around_b}},
         {"in_plane",
          InPlane{p_i, far_j, u_j, -at.u.dot(rod)},
          1,
          {about_u, about_v, about_w, along_v, along_w}},
         {"in_line", InLine{p_i, p_j, u_j}, 2, {about_u, about_v, about_w, along_u}},
-        {"perpendicular", Perpendicular{u_i, v_j}, 1, {about_u, about_v, along_u, along_v, along_w}},
+        {"perpendicular",
+         Perpendicular{u_i, v_j},
+         1,
+         {about_u, about_v, along_u, along_v, along_w}},
         {"parallel", Parallel{u_i, u_j}, 2, {about_u, along_u, along_v, along_w}},
         {"angle",
          Angle{at.direction(at.i, leaning), v_j, at.direction(at.j, at.w), angle},
@@ -140,7 +150,8 @@ void sweep(Check check) {
         const std::vector<Body> bodies{{"one", {random.vector(), random.orientation()}},
                                        {"two", {random.vector(), random.orientation()}}};
         const Quaterniond frame = random.orientation();
-        for (const auto& [i, j] : {std::pair<BodyId, BodyId>{0, 1}, {1, 0}, {0, ground}, {ground, 1}}) {
+        for (const auto& [i, j] :
+             {std::pair<BodyId, BodyId>{0, 1}, {1, 0}, {0, ground}, {ground, 1}}) {
             const Place place{i,
                               j,
                               bodies,
@@ -151,7 +162,8 @@ void sweep(Check check) {
                               frame * Vector3d::UnitZ()};
             for (const Lowered& joint : all_joints(place)) {
                 SCOPED_TRACE(fmt::format("{} between {} and {}, place {}", joint.name, i, j, n));
-                check(place, joint, lower(joint.kind, bodies), Poses{bodies[0].design, bodies[1].design});
+                check(place, joint, lower(joint.kind, bodies),
+                      Poses{bodies[0].design, bodies[1].design});
             }
         }
     }
@@ -190,17 +202,20 @@ TEST(Lowering, HoldsAtTheDesignPose) {
 }
 
 TEST(Lowering, HasIndependentRows) {
-    sweep([](const Place& place, const Lowered& joint, const auto& constraints, const Poses& design) {
-        for (const BodyId body : {place.i, place.j}) {
-            if (body == ground) continue;
-            EXPECT_EQ(rank(jacobian(constraints, design, static_cast<std::size_t>(body))), joint.rows);
-        }
-    });
+    sweep(
+        [](const Place& place, const Lowered& joint, const auto& constraints, const Poses& design) {
+            for (const BodyId body : {place.i, place.j}) {
+                if (body == ground) continue;
+                EXPECT_EQ(rank(jacobian(constraints, design, static_cast<std::size_t>(body))),
+                          joint.rows);
+            }
+        });
 }
 
 TEST(Lowering, AllowsTheJointsOwnMotionsHoweverLarge) {
     Random random;
-    sweep([&](const Place& place, const Lowered& joint, const auto& constraints, const Poses& design) {
+    sweep([&](const Place& place, const Lowered& joint, const auto& constraints,
+              const Poses& design) {
         if (place.i == ground) return;
         Poses poses = design;
         Pose& pose = poses[static_cast<std::size_t>(place.i)];

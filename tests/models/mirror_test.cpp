@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/axle_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
 
@@ -239,25 +239,30 @@ TEST(Mirror, WhatCannotBeMirroredIsRefused) {
         {"left -> right", "a1 -> b",
          "4: mirror: 'a1 -> b' is not a mirror; expected two different words of letters, "
          "like left -> right"},
-        {"left -> right", "near -> far", "4: mirror: nothing to mirror: no name has the word 'near' in it"},
+        {"left -> right", "near -> far",
+         "4: mirror: nothing to mirror: no name has the word 'near' in it"},
         {"  rack: [-300, 10, -59]", "  ball_right: [0, 0, 0]\n  rack: [-300, 10, -59]",
          "15: points.ball_right: the mirror makes it from 'ball_left'; leave one of the two out"},
         {"  rack: {origin: rack}", "  rack: {origin: rack}\n  arm_right: {origin: rack}",
          "20: bodies.arm_right: the mirror makes it from 'arm_left'; leave one of the two out"},
         {"  coil_left:", "  coil:",
-         "35: springs.coil: shared by both sides, as 'left' is not in its name, but refers to 'hub_left' and "
+         "35: springs.coil: shared by both sides, as 'left' is not in its name, but refers to "
+         "'hub_left' and "
          "not to "
          "'hub_right'"},
         {"  left: {body", "  front: {body",
-         "61: wheels.front: shared by both sides, as 'left' is not in its name, but refers to 'arm_left' "
+         "61: wheels.front: shared by both sides, as 'left' is not in its name, but refers to "
+         "'arm_left' "
          "and not "
          "to 'arm_right'"},
         {"  damper_left:", "  damper:",
-         "65: dampers.damper: shared by both sides, as 'left' is not in its name, but refers to 'hub_left' "
+         "65: dampers.damper: shared by both sides, as 'left' is not in its name, but refers to "
+         "'hub_left' "
          "and not "
          "to 'hub_right'"},
         {"  damper_left:", "  coil_left:",
-         "65: dampers.coil_left: a spring is called 'coil_left' as well, and each has an output of its name; "
+         "65: dampers.coil_left: a spring is called 'coil_left' as well, and each has an output of "
+         "its name; "
          "call "
          "one of the two something else"},
     };

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/bench_scene.hpp"
 
 namespace elastocheck {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/mistakes.hpp"
 
 namespace elastocheck {
@@ -31,8 +31,9 @@ vehicle: {wheelbase: 2700, cg_height: 550, axle: rear, brake_share: 0.3, drive_s
 Scene parsed(const std::string& text) { return parse_scene(text, "scene.yaml"); }
 
 Vector3d drawn(const Scene& scene, const Point& p) {
-    return p.s_local + (p.body == ground ? Vector3d::Zero().eval()
-                                         : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r);
+    return p.s_local + (p.body == ground
+                            ? Vector3d::Zero().eval()
+                            : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r);
 }
 
 TEST(SteeringAxis, HasEachEndOnTheBodyWhereItSits) {
@@ -61,7 +62,8 @@ TEST(Damper, IsTwoPoints) {
     EXPECT_LE((drawn(scene, damper.i) - Vector3d(-0.01, 0.61, 0.5)).norm(), 1e-16);
     EXPECT_EQ(damper.j.s_local, Vector3d(-0.03, 0.58, 0.9));
     EXPECT_TRUE(
-        parsed(replaced(strut, "dampers: {damper: {bodies: [hub, ground], from: lower, to: top}}\n", ""))
+        parsed(replaced(strut, "dampers: {damper: {bodies: [hub, ground], from: lower, to: top}}\n",
+                        ""))
             .dampers.empty());
 }
 
@@ -81,7 +83,8 @@ TEST(Outputs, TheirNumbersCanBeSet) {
     const Scene scene = parsed(strut);
     for (const char* path :
          {"vehicle.wheelbase", "vehicle.cg_height", "vehicle.brake_share", "vehicle.drive_share"})
-        EXPECT_NE(std::ranges::find(scene.numbers, path, &Number::path), scene.numbers.end()) << path;
+        EXPECT_NE(std::ranges::find(scene.numbers, path, &Number::path), scene.numbers.end())
+            << path;
     const Setting longer{"vehicle.wheelbase", "2900"}, higher{"points.top.z", "950"},
         other{"vehicle.axle", "front"};
     const Setting all[] = {longer, higher, other};
@@ -104,10 +107,11 @@ TEST(Outputs, OfAModelAreThoseOfItsScene) {
 
 // A damper's end on a body merged into ground is on ground, and does not prevent the merge.
 TEST(Outputs, AnEndOfADamperDoesNotKeepABodyFromBeingGround) {
-    const Scene scene = parsed(
-        replaced(replaced(replaced(strut, "rod: {origin: top}}", "rod: {origin: top}, frame: {origin: top}}"),
-                          "joints: {", "joints: {weld: {type: fixed, bodies: [frame, ground], at: top}, "),
-                 "bodies: [hub, ground], from", "bodies: [hub, frame], from"));
+    const Scene scene = parsed(replaced(
+        replaced(
+            replaced(strut, "rod: {origin: top}}", "rod: {origin: top}, frame: {origin: top}}"),
+            "joints: {", "joints: {weld: {type: fixed, bodies: [frame, ground], at: top}, "),
+        "bodies: [hub, ground], from", "bodies: [hub, frame], from"));
     EXPECT_EQ(scene.dampers.at(0).j.body, 2);
     const Model model = compile(scene);
     EXPECT_EQ(model.bodies.size(), 2U);
@@ -131,29 +135,36 @@ TEST(Outputs, SayWhatIsWrong) {
     expect_complaints(
         strut,
         {{axis, "steering_axis: ball",
-          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper one, found 'ball'"},
+          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper one, found "
+          "'ball'"},
          {axis, "steering_axis: [ball]",
-          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper one, found a list of 1"},
+          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper one, found a "
+          "list of 1"},
          {axis, "steering_axis: [ball, {on: ground, at: ball}]",
-          "wheel.steering_axis: both ends are at the same position; an axis needs two different ones"},
+          "wheel.steering_axis: both ends are at the same position; an axis needs two different "
+          "ones"},
          {axis, "steering_axis: [ball, tip]",
-          "wheel.steering_axis: no hardpoint is called 'tip', did you mean 'top'? defined: ball, hub, lower, "
+          "wheel.steering_axis: no hardpoint is called 'tip', did you mean 'top'? defined: ball, "
+          "hub, lower, "
           "patch, "
           "top"},
          {axis, "steering_axis: [ball, {on: rot, at: top}]",
-          "wheel.steering_axis.on: no body is called 'rot', did you mean 'rod'? defined: ground, hub, rod"},
+          "wheel.steering_axis.on: no body is called 'rot', did you mean 'rod'? defined: ground, "
+          "hub, rod"},
          {axis, "steering_axis: [ball, {on: rod}]", "wheel.steering_axis.at" + missing},
          {axis, "steering_axis: [ball, {at: top}]", "wheel.steering_axis.on" + missing},
          {axis, "steering_axis: [ball, {of: rod, at: top}]",
           "wheel.steering_axis: unknown field 'of'; allowed: on, at"},
-         {"{bodies: [hub, ground], from: lower, to: top}}", "{bodies: [hub, ground], from: top, to: top}}",
+         {"{bodies: [hub, ground], from: lower, to: top}}",
+          "{bodies: [hub, ground], from: top, to: top}}",
           "dampers.damper.to: the same position as `from`; a damper needs a length"},
          {"{bodies: [hub, ground], from: lower", "{bodies: [hub, hub], from: lower",
           "dampers.damper.bodies: 'hub' twice; two different bodies are needed"},
          {"[hub, ground], from: lower, to: top}}", "[hub, ground], from: lower, to: top, rate: 3}}",
           "dampers.damper: unknown field 'rate'; allowed: bodies, from, to"},
          {"{damper: {bodies", "{coil: {bodies",
-          "dampers.coil: a spring is called 'coil' as well, and each has an output of its name; call one of "
+          "dampers.coil: a spring is called 'coil' as well, and each has an output of its name; "
+          "call one of "
           "the two "
           "something else"},
          {"wheelbase: 2700, ", "", "vehicle.wheelbase" + missing},
@@ -163,18 +174,24 @@ TEST(Outputs, SayWhatIsWrong) {
          {", drive_share: 1", "", "vehicle.drive_share" + missing},
          {"wheelbase: 2700", "wheelbase: 0",
           "vehicle.wheelbase: '0' is not a wheelbase; allowed: above zero"},
-         {"wheelbase: 2700", "wheelbase: long", "vehicle.wheelbase: expected a number, found 'long'"},
-         {"cg_height: 550", "cg_height: -1", "vehicle.cg_height: '-1' is not a height; allowed: above zero"},
-         {"axle: rear", "axle: middle", "vehicle.axle: 'middle' is not an axle; allowed: front, rear"},
-         {"brake_share: 0.3", "brake_share: 30", "vehicle.brake_share: '30' is not a share; allowed: 0 to 1"},
+         {"wheelbase: 2700", "wheelbase: long",
+          "vehicle.wheelbase: expected a number, found 'long'"},
+         {"cg_height: 550", "cg_height: -1",
+          "vehicle.cg_height: '-1' is not a height; allowed: above zero"},
+         {"axle: rear", "axle: middle",
+          "vehicle.axle: 'middle' is not an axle; allowed: front, rear"},
+         {"brake_share: 0.3", "brake_share: 30",
+          "vehicle.brake_share: '30' is not a share; allowed: 0 to 1"},
          {"drive_share: 1", "drive_share: -0.1",
           "vehicle.drive_share: '-0.1' is not a share; allowed: 0 to 1"},
          {"wheelbase: 2700", "wheel_base: 2700",
-          "vehicle: unknown field 'wheel_base', did you mean 'wheelbase'? allowed: wheelbase, cg_height, "
+          "vehicle: unknown field 'wheel_base', did you mean 'wheelbase'? allowed: wheelbase, "
+          "cg_height, "
           "axle, "
           "brake_share, drive_share"}});
     // A stop has no output of this name.
-    EXPECT_EQ(complaint_of(replaced(strut, "{damper: {bodies", "{coil.bump_stop: {bodies")), "none");
+    EXPECT_EQ(complaint_of(replaced(strut, "{damper: {bodies", "{coil.bump_stop: {bodies")),
+              "none");
 }
 
 }  // namespace

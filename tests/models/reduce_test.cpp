@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "models/reduce/parts.hpp"
-#include "models/reduce/passes.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "models/compile/parts.hpp"
+#include "models/compile/passes.hpp"
 
 namespace elastocheck {
 namespace {
@@ -48,14 +48,18 @@ Marker marker(const Scene& scene, BodyId body, const Vector3d& p) {
 
 Fixed fixed(const Scene& s, BodyId i, BodyId j, const Vector3d& p) {
     const Vector3d x(1, 2, 0), y(-2, 1, 0);
-    return {at(s, i, p), at(s, j, p), along(s, i, x), along(s, i, y), along(s, j, x), along(s, j, y)};
+    return {at(s, i, p),    at(s, j, p),    along(s, i, x),
+            along(s, i, y), along(s, j, x), along(s, j, y)};
 }
 Revolute hinge(const Scene& s, BodyId i, BodyId j, const Vector3d& p, const Vector3d& axis) {
     return {at(s, i, p), at(s, j, p), along(s, i, axis), along(s, j, axis)};
 }
-Spherical ball(const Scene& s, BodyId i, BodyId j, const Vector3d& p) { return {at(s, i, p), at(s, j, p)}; }
+Spherical ball(const Scene& s, BodyId i, BodyId j, const Vector3d& p) {
+    return {at(s, i, p), at(s, j, p)};
+}
 Bushing bushing(const Scene& s, BodyId i, BodyId j, const Vector3d& p) {
-    return {.i = marker(s, i, p), .j = marker(s, j, p), .law = LinearStiffness{Matrix6::Identity()}};
+    return {
+        .i = marker(s, i, p), .j = marker(s, j, p), .law = LinearStiffness{Matrix6::Identity()}};
 }
 AxialSpring spring(const Scene& s, BodyId i, BodyId j, const Vector3d& p, const Vector3d& q) {
     return {at(s, i, p), at(s, j, q), LinearRate{1e3}, 0.9 * (q - p).norm()};
@@ -72,9 +76,9 @@ Branch pushing(const Load& load) {
 
 using Reasons = std::map<std::string, std::string>;
 template <class Owner>
-Reasons left_out(const Owner& owner) {
+Reasons omitted(const Owner& owner) {
     Reasons reasons;
-    for (const auto& [what, why] : owner.left_out)
+    for (const auto& [what, why] : owner.omitted)
         EXPECT_TRUE(reasons.emplace(what, why).second) << what << " twice";
     return reasons;
 }
@@ -90,14 +94,15 @@ std::string names(const List& list) {
 std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
     std::map<std::string, std::vector<Vector3d>> result;
     std::vector<Vector3d>* list = nullptr;
-    const auto note = overloaded{[&](const Point& p) { list->push_back(reduce::position(scene, p)); },
-                                 [&](const Direction& u) { list->push_back(reduce::direction(scene, u)); },
-                                 [&](const Marker& m) {
-                                     list->push_back(reduce::position(scene, {m.body, m.s_local}));
-                                     const Quaterniond A = reduce::design(scene, m.body).p * m.A_local;
-                                     list->emplace_back(A * Vector3d::UnitX());
-                                     list->emplace_back(A * Vector3d::UnitY());
-                                 }};
+    const auto note =
+        overloaded{[&](const Point& p) { list->push_back(reduce::position(scene, p)); },
+                   [&](const Direction& u) { list->push_back(reduce::direction(scene, u)); },
+                   [&](const Marker& m) {
+                       list->push_back(reduce::position(scene, {m.body, m.s_local}));
+                       const Quaterniond A = reduce::design(scene, m.body).p * m.A_local;
+                       list->emplace_back(A * Vector3d::UnitX());
+                       list->emplace_back(A * Vector3d::UnitY());
+                   }};
     for (Joint& joint : scene.joints) {
         list = &result["joint " + joint.name];
         reduce::each_place(joint.kind, note);
@@ -144,22 +149,25 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
 Scene welded() {
     Scene s = bodies(5);
     const Vector3d p(0.3, -0.2, 0.5), q(1, 0.4, 0.2), n(1, 1, 3);
-    s.joints = {
-        {"weld_cb", fixed(s, 2, 1, p)},
-        {"weld_dc", fixed(s, 3, 2, q)},
-        {"hinge", hinge(s, 2, 0, p, n)},
-        {"ball", ball(s, 3, 0, q)},
-        {"rod", Distance{at(s, 3, p), at(s, 4, q), (q - p).norm()}},
-        {"plane", InPlane{at(s, 4, p), at(s, 2, p), along(s, 2, n), 0}},
-        {"square", Perpendicular{along(s, 3, {1, 1, 0}), along(s, 4, {1, -1, 0})}},
-        {"cross", Universal{at(s, 3, p), at(s, 4, p), along(s, 3, {1, 1, 0}), along(s, 4, {1, -1, 0})}},
-        {"drive", Angle{along(s, 4, {1, 0, 0}), along(s, 3, {1, 0, 0}), along(s, 3, {0, 1, 0}), 0}}};
+    s.joints = {{"weld_cb", fixed(s, 2, 1, p)},
+                {"weld_dc", fixed(s, 3, 2, q)},
+                {"hinge", hinge(s, 2, 0, p, n)},
+                {"ball", ball(s, 3, 0, q)},
+                {"rod", Distance{at(s, 3, p), at(s, 4, q), (q - p).norm()}},
+                {"plane", InPlane{at(s, 4, p), at(s, 2, p), along(s, 2, n), 0}},
+                {"square", Perpendicular{along(s, 3, {1, 1, 0}), along(s, 4, {1, -1, 0})}},
+                {"cross", Universal{at(s, 3, p), at(s, 4, p), along(s, 3, {1, 1, 0}),
+                                    along(s, 4, {1, -1, 0})}},
+                {"drive",
+                 Angle{along(s, 4, {1, 0, 0}), along(s, 3, {1, 0, 0}), along(s, 3, {0, 1, 0}), 0}}};
     s.elastics = {{"coil", spring(s, 3, 0, p, q)}, {"rubber", bushing(s, 0, 2, q)}};
     s.static_loads = {push(s, "weight", 3, q), {"twist", DeadMoment{2, Vector3d(1, 2, 3)}}};
     s.branches = {pushing({"thrust", FollowerForce{at(s, 3, q), Vector3d(1, 2, 3)}}),
                   pushing({"spin", FollowerMoment{2, Vector3d(1, 2, 3)}})};
-    s.wheels.push_back(
-        {.name = "wheel", .body = 3, .centre_local = Vector3d(1, 2, 3), .contact_local = Vector3d(4, 5, 6)});
+    s.wheels.push_back({.name = "wheel",
+                        .body = 3,
+                        .centre_local = Vector3d(1, 2, 3),
+                        .contact_local = Vector3d(4, 5, 6)});
     s.wheels.back().steering_axis = {at(s, 3, p), at(s, 2, q)};
     s.probes.push_back({"tip", at(s, 2, n)});
     s.dampers.push_back({"damper", at(s, 3, q), at(s, 2, p)});
@@ -172,11 +180,12 @@ TEST(Weld, BodiesFixedToEachOtherAreOne) {
     reduce::weld(scene);
     EXPECT_EQ(names(scene.bodies), "a b e");
     EXPECT_EQ(names(scene.joints), "hinge ball rod plane square cross drive");
-    const std::string weld = "the bodies that it fixes to each other are one; its reaction is no output";
-    EXPECT_EQ(left_out(scene), (Reasons{{"joint 'weld_cb'", weld},
-                                        {"joint 'weld_dc'", weld},
-                                        {"body 'c'", "fixed to body 'b', with which it is one"},
-                                        {"body 'd'", "fixed to body 'b', with which it is one"}}));
+    const std::string weld =
+        "the bodies that it fixes to each other are one; its reaction is no output";
+    EXPECT_EQ(omitted(scene), (Reasons{{"joint 'weld_cb'", weld},
+                                       {"joint 'weld_dc'", weld},
+                                       {"body 'c'", "fixed to body 'b', with which it is one"},
+                                       {"body 'd'", "fixed to body 'b', with which it is one"}}));
     EXPECT_EQ(scene.wheels.at(0).body, 1);
     EXPECT_EQ(reduce::ends(scene.elastics.at(1).kind).j, 1);
     const auto after = places(scene);
@@ -207,7 +216,7 @@ TEST(Weld, ToGroundTakesTheBodyAndItsLoads) {
     EXPECT_EQ(names(model.joints), "root");
     EXPECT_EQ(model.joints.at(0).j, ground);
     EXPECT_TRUE(model.static_loads.empty());
-    const Reasons reasons = left_out(model);
+    const Reasons reasons = omitted(model);
     EXPECT_EQ(reasons.at("body 'b'"), "fixed to ground");
     EXPECT_EQ(reasons.at("body 'c'"), "fixed to ground");
     EXPECT_EQ(reasons.at("load 'weight'"), "body 'b' is welded to ground");
@@ -255,9 +264,11 @@ TEST(WithinOneBody, WhatCannotMoveOrDeformGoes) {
     const Model model = compile(s);
     EXPECT_EQ(names(model.joints), "root");
     EXPECT_TRUE(model.elastics.empty());
-    const Reasons reasons = left_out(model);
-    EXPECT_EQ(reasons.at("joint 'inner'"), "both its ends are on ground; its reaction is no output");
-    EXPECT_EQ(reasons.at("joint 'grounded'"), "both its ends are on ground; its reaction is no output");
+    const Reasons reasons = omitted(model);
+    EXPECT_EQ(reasons.at("joint 'inner'"),
+              "both its ends are on ground; its reaction is no output");
+    EXPECT_EQ(reasons.at("joint 'grounded'"),
+              "both its ends are on ground; its reaction is no output");
     EXPECT_EQ(reasons.at("element 'coil'"), "both its ends are on ground");
     EXPECT_EQ(reasons.at("element 'rubber'"), "both its ends are on ground");
 }
@@ -314,11 +325,13 @@ TEST(Link, WithTwoBallsIsADistanceOfItsName) {
     EXPECT_EQ(distance.i.body, 0);
     EXPECT_EQ(distance.j.body, ground);
     EXPECT_LE((distance.j.s_local - Vector3d(0.1, -0.4, 0.3)).norm(), 1e-15);
-    EXPECT_EQ(
-        left_out(model),
-        (Reasons{{"body 'b'", "a link with a ball at each end and no load: it is the distance joint 'b'"},
-                 {"joint 'outer'", "an end of body 'b'; its reaction is no output, that of joint 'b' is"},
-                 {"joint 'inner'", "an end of body 'b'; its reaction is no output, that of joint 'b' is"}}));
+    EXPECT_EQ(omitted(model),
+              (Reasons{{"body 'b'",
+                        "a link with a ball at each end and no load: it is the distance joint 'b'"},
+                       {"joint 'outer'",
+                        "an end of body 'b'; its reaction is no output, that of joint 'b' is"},
+                       {"joint 'inner'",
+                        "an end of body 'b'; its reaction is no output, that of joint 'b' is"}}));
     // The link's 6 coordinates and 6 rows become 1 row: its spin is removed.
     EXPECT_EQ(model.as_written, (Size{2, 3, 1, 3 + 3 + 5}));
     EXPECT_EQ(model.as_solved, (Size{1, 2, 1, 1 + 5}));
@@ -333,7 +346,8 @@ TEST(Link, WithAnythingToSayStays) {
     static const Vector3d there(0.2, 0.1, 0);
     const Reason reasons[] = {
         {"a load", [](Scene& s) { s.static_loads.push_back(push(s, "p", 1, there)); }},
-        {"a load on a branch", [](Scene& s) { s.branches.push_back(pushing(push(s, "p", 1, there))); }},
+        {"a load on a branch",
+         [](Scene& s) { s.branches.push_back(pushing(push(s, "p", 1, there))); }},
         {"a probe",
          [](Scene& s) {
              s.probes.push_back({"p", at(s, 1, there)});
@@ -354,7 +368,8 @@ TEST(Link, WithAnythingToSayStays) {
         {"a third joint",
          [](Scene& s) {
              s.joints.push_back(
-                 {"flat", InPlane{at(s, 1, there), {ground, there}, {ground, Vector3d::UnitZ()}, 0}});
+                 {"flat",
+                  InPlane{at(s, 1, there), {ground, there}, {ground, Vector3d::UnitZ()}, 0}});
          }},
         {"another joint than a ball",
          [](Scene& s) { s.joints[0].kind = hinge(s, 0, 1, Vector3d(0.1, 0, 0), there); }},
@@ -373,7 +388,7 @@ TEST(Link, TakesANameThatIsFree) {
     own.joints[0].name = "b";  // name of the removed link
     const Model model = compile(own);
     EXPECT_EQ(names(model.joints), "b root");
-    EXPECT_EQ(left_out(model).count("joint 'b'"), 0U);
+    EXPECT_EQ(omitted(model).count("joint 'b'"), 0U);
     Scene taken = linked();
     taken.joints[2].name = "b";
     EXPECT_EQ(names(compile(taken).joints), "b.link b");
@@ -437,8 +452,12 @@ TEST(Duplicate, HoldsNothingThatAnotherDoesNot) {
     const auto a_hinge = [](const Scene& s) -> J { return hinge(s, 0, 1, p, n); };
     const auto reversed_hinge = [](const Scene& s) -> J { return hinge(s, 0, 1, p, -n); };
     const auto rod = [](const Scene& s) -> J { return Distance{at(s, 0, p), at(s, 1, q), 0.5}; };
-    const auto rod_back = [](const Scene& s) -> J { return Distance{at(s, 1, q), at(s, 0, p), 0.5}; };
-    const auto longer = [](const Scene& s) -> J { return Distance{at(s, 0, p), at(s, 1, q), 0.5 + 1e-11}; };
+    const auto rod_back = [](const Scene& s) -> J {
+        return Distance{at(s, 1, q), at(s, 0, p), 0.5};
+    };
+    const auto longer = [](const Scene& s) -> J {
+        return Distance{at(s, 0, p), at(s, 1, q), 0.5 + 1e-11};
+    };
     const auto plane = [](const Scene& s) -> J {
         return InPlane{at(s, 0, p), at(s, 1, p), along(s, 1, n), 0.1};
     };
@@ -462,8 +481,9 @@ TEST(Duplicate, HoldsNothingThatAnotherDoesNot) {
 
     Scene named = twice(a_ball, a_ball);
     reduce::drop_duplicates(named);
-    EXPECT_EQ(left_out(named),
-              (Reasons{{"joint 'two'", "joint 'one' holds the same; its reaction is part of that one's"}}));
+    EXPECT_EQ(omitted(named),
+              (Reasons{{"joint 'two'",
+                        "joint 'one' holds the same; its reaction is part of that one's"}}));
 }
 
 TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {
@@ -475,7 +495,7 @@ TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {
     s.branches[0].drivers.push_back({.what = Motion{1}, .start = 0, .rate = 1});
     reduce::drop_duplicates(s);
     EXPECT_EQ(s.joints.size(), 2U);
-    s.joints[0].only_where_driven = true;
+    s.joints[0].active_only_where_driven = true;
     s.branches[0].drivers[1].what = Motion{0};
     reduce::drop_duplicates(s);
     EXPECT_EQ(s.joints.size(), 2U);
@@ -486,14 +506,15 @@ TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {
 TEST(Detail, EverythingKeepsAllThatIsWritten) {
     Scene scene = linked();
     scene.joints.push_back({"again", ball(scene, 0, 1, Vector3d(0.1, 0, 0))});
-    scene.elastics.push_back({"nothing", AxialSpring{at(scene, 0, {0, 0, 0}), {}, LinearRate{0}, 1}});
+    scene.elastics.push_back(
+        {"nothing", AxialSpring{at(scene, 0, {0, 0, 0}), {}, LinearRate{0}, 1}});
     scene.static_loads.push_back({"none", DeadForce{{0, Vector3d::Zero()}, Vector3d::Zero()}});
     const Model model = compile(scene, Detail::everything);
     EXPECT_EQ(names(model.bodies), names(scene.bodies));
     EXPECT_EQ(names(model.joints), names(scene.joints));
     EXPECT_EQ(names(model.elastics), names(scene.elastics));
     EXPECT_EQ(names(model.static_loads), "none");
-    EXPECT_TRUE(model.left_out.empty());
+    EXPECT_TRUE(model.omitted.empty());
     EXPECT_EQ(model.as_written, model.as_solved);
     EXPECT_EQ(model.as_solved.rows, constraint_rows(model));
 }
@@ -510,7 +531,8 @@ TEST(Detail, WhatIsNotInTheSmallerModelIsNamed) {
         EXPECT_LE(model.as_solved.joints, model.as_written.joints) << scene.source;
         EXPECT_LE(model.as_solved.elastics, model.as_written.elastics) << scene.source;
         EXPECT_LE(model.as_solved.rows, model.as_written.rows) << scene.source;
-        EXPECT_LE(coordinates(model) + constraint_rows(model), coordinates(whole) + constraint_rows(whole));
+        EXPECT_LE(coordinates(model) + constraint_rows(model),
+                  coordinates(whole) + constraint_rows(whole));
         EXPECT_EQ(model.as_solved.bodies, static_cast<int>(model.bodies.size()));
         EXPECT_EQ(model.as_solved.rows, constraint_rows(model));
         EXPECT_EQ(model.wheels.size(), whole.wheels.size());
@@ -519,7 +541,8 @@ TEST(Detail, WhatIsNotInTheSmallerModelIsNamed) {
             std::set<std::string> there;
             for (const auto& part : left) there.insert(part.name);
             for (const auto& part : all)
-                EXPECT_EQ(std::ranges::count(model.left_out, reduce::named(kind, part.name), &Omission::what),
+                EXPECT_EQ(std::ranges::count(model.omitted, reduce::named(kind, part.name),
+                                             &Omission::what),
                           there.contains(part.name) ? 0 : 1)
                     << scene.source << ": " << kind << " " << part.name;
         };
@@ -545,12 +568,16 @@ TEST(Detail, DriversSpeakOfTheSamePartsAfterAllPasses) {
         const Model model = compile(s, detail);
         const auto& drivers = model.branches.at(2).drivers;
         ASSERT_EQ(drivers.size(), 4U);
-        EXPECT_EQ(model.joints.at(static_cast<std::size_t>(std::get<Motion>(drivers[1].what).joint)).name,
-                  "rod");
-        const auto element = [&](int k) { return model.elastics.at(static_cast<std::size_t>(k)).name; };
+        EXPECT_EQ(
+            model.joints.at(static_cast<std::size_t>(std::get<Motion>(drivers[1].what).joint)).name,
+            "rod");
+        const auto element = [&](int k) {
+            return model.elastics.at(static_cast<std::size_t>(k)).name;
+        };
         EXPECT_EQ(element(std::get<FreeLength>(drivers[2].what).elastic), "coil");
         EXPECT_EQ(element(std::get<Preload>(drivers[3].what).elastic), "rubber");
-        EXPECT_EQ(std::get<Preload>(drivers[3].what).direction, Vector6(-Vector6::Unit(2))) << "turned round";
+        EXPECT_EQ(std::get<Preload>(drivers[3].what).direction, Vector6(-Vector6::Unit(2)))
+            << "turned round";
         EXPECT_EQ(drivers[3].start, 0.1);
         EXPECT_EQ(drivers[3].rate, 0.2);
     }
@@ -565,15 +592,15 @@ TEST(Detail, WhatIsSmallAlreadyStaysAsItIs) {
             return s;
         };
         Scene once = reduced(scene);
-        once.left_out.clear();
-        EXPECT_TRUE(reduced(once).left_out.empty());
+        once.omitted.clear();
+        EXPECT_TRUE(reduced(once).omitted.empty());
     }
 }
 
 TEST(Detail, ATyreUnderNoBranchIsLeftOut) {
     Scene s = linked();
     s.elastics.push_back({"tyre", bushing(s, ground, 0, Vector3d(0, 0, 0)), true});
-    EXPECT_EQ(left_out(compile(s)).at("element 'tyre'"), "no branch drives it");
+    EXPECT_EQ(omitted(compile(s)).at("element 'tyre'"), "no branch drives it");
     s.branches[0].drivers.push_back({.what = Preload{1, Vector6::Unit(2)}, .start = 0, .rate = 1});
     EXPECT_EQ(names(compile(s).elastics), "coil tyre");
 }

@@ -9,8 +9,8 @@
 #include <random>
 #include <regex>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/axle_scene.hpp"
 #include "tests/models/bench_scene.hpp"
 #include "tests/models/laws_scene.hpp"
@@ -54,8 +54,8 @@ wheels:
 std::vector<std::string> sound_texts() {
     std::vector<std::string> texts{bench_scene, axle_scene, laws_scene(every_law), car_scene};
     for (const char* name : {"arch_driven", "pendulum"})
-        texts.push_back(
-            support::text_of(std::filesystem::path(ELASTOCHECK_SCENES) / (std::string(name) + ".yaml")));
+        texts.push_back(support::text_of(std::filesystem::path(ELASTOCHECK_SCENES) /
+                                         (std::string(name) + ".yaml")));
     return texts;
 }
 
@@ -70,7 +70,8 @@ void read_damaged(const std::string& text, Tally& tally) {
     try {
         const Scene scene = parse_scene(text, "damaged.yaml");
         ++tally.scenes;
-        for (const auto& [what, x] : numbers(scene)) ASSERT_TRUE(std::isfinite(x)) << what << " of\n" << text;
+        for (const auto& [what, x] : numbers(scene))
+            ASSERT_TRUE(std::isfinite(x)) << what << " of\n" << text;
         compile(scene);
     } catch (const SceneError& error) {
         ++tally.errors;
@@ -100,7 +101,8 @@ TEST(DamagedScene, WithoutAnyOneLine) {
     for (const std::string& text : sound_texts())
         for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
             end = std::min(text.find('\n', begin), text.size());
-            read_damaged(text.substr(0, begin) + text.substr(std::min(end + 1, text.size())), tally);
+            read_damaged(text.substr(0, begin) + text.substr(std::min(end + 1, text.size())),
+                         tally);
         }
     report(tally);
 }
@@ -118,7 +120,8 @@ TEST(DamagedScene, WithAnyOneLineTwice) {
 TEST(DamagedScene, CutAtAnyByte) {
     Tally tally;
     for (const std::string& text : sound_texts())
-        for (std::size_t end = 0; end < text.size(); ++end) read_damaged(text.substr(0, end), tally);
+        for (std::size_t end = 0; end < text.size(); ++end)
+            read_damaged(text.substr(0, end), tally);
     report(tally);
 }
 
@@ -169,15 +172,16 @@ TEST(DamagedScene, WithAnyOneNumberThatIsNoneOrBeyondRangeIsRefusedAtItsLine) {
     int refused = 0;
     for (const std::string& text : sound_texts())
         for (const auto& [first, length] : numbers_in(text))
-            for (const char* bad :
-                 {".nan", ".inf", "-.inf", "nan", "inf", "1e308", "-1e308", "1e999", "5e-324", "-1e-310"}) {
+            for (const char* bad : {".nan", ".inf", "-.inf", "nan", "inf", "1e308", "-1e308",
+                                    "1e999", "5e-324", "-1e-310"}) {
                 const auto line = 1 + std::ranges::count(text.substr(0, first), '\n');
                 try {
-                    parse_scene(text.substr(0, first) + bad + text.substr(first + length), "damaged.yaml");
+                    parse_scene(text.substr(0, first) + bad + text.substr(first + length),
+                                "damaged.yaml");
                     ADD_FAILURE() << bad << " in line " << line << " is taken:\n" << text;
                 } catch (const SceneError& error) {
-                    EXPECT_TRUE(
-                        std::string(error.what()).starts_with("damaged.yaml:" + std::to_string(line) + ": "))
+                    EXPECT_TRUE(std::string(error.what())
+                                    .starts_with("damaged.yaml:" + std::to_string(line) + ": "))
                         << bad << " in line " << line << ": " << error.what();
                     ++refused;
                 }
@@ -196,10 +200,11 @@ TEST(DamagedScene, WithAnyOneNumberAtTheEndOfItsRange) {
 
 TEST(DamagedScene, WithTokensPutAnywhere) {
     const char* const tokens[] = {
-        "{",    "}",    "[",     "]",    ",",   ":",    ": ",       "- ",          "? ", "#",     "&a ",
-        "*a",   "!!x ", "|",     ">",    "\"",  "'",    "\n",       "\n  ",        "\t", "---\n", "...\n",
-        "<<: ", "nan",  "-",     "1e30", "e30", "e-30", "0",        "999",         "~",  "null",  "ground",
-        "x",    "\\",   "%YAML", "\r",   "@",   "`",    "\xC3\xA4", "\xEF\xBB\xBF"};
+        "{",    "}",   "[",     "]",        ",",           ":",      ": ", "- ",   "? ",
+        "#",    "&a ", "*a",    "!!x ",     "|",           ">",      "\"", "'",    "\n",
+        "\n  ", "\t",  "---\n", "...\n",    "<<: ",        "nan",    "-",  "1e30", "e30",
+        "e-30", "0",   "999",   "~",        "null",        "ground", "x",  "\\",   "%YAML",
+        "\r",   "@",   "`",     "\xC3\xA4", "\xEF\xBB\xBF"};
     Tally tally;
     std::mt19937 random(31415);
     for (const std::string& text : sound_texts())
@@ -214,9 +219,9 @@ TEST(DamagedScene, WithTokensPutAnywhere) {
 
 TEST(DamagedScene, OfNothingButOneToken) {
     Tally tally;
-    for (const char* token :
-         {"[", "{", "- ", "? ",   "a: ",     "[a, ", "{a: ",  "&a [*a, ", "\"", "'",  "|",     "!",
-          "*", "&", "%",  "x: [", "- {a: [", "a\n",  "- a\n", "\n",       "#",  "\r", "---\n", ": "}) {
+    for (const char* token : {"[",       "{",   "- ",    "? ", "a: ", "[a, ", "{a: ",  "&a [*a, ",
+                              "\"",      "'",   "|",     "!",  "*",   "&",    "%",     "x: [",
+                              "- {a: [", "a\n", "- a\n", "\n", "#",   "\r",   "---\n", ": "}) {
         std::string text;
         while (text.size() < 100'000) text += token;
         read_damaged(text, tally);

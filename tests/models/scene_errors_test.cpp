@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/bench_scene.hpp"
 
 namespace elastocheck {
@@ -29,13 +29,15 @@ std::string repeated(const std::string& text, int times) {
 }
 
 const std::string sections =
-    "elastocheck, name, units, mirror, gravity, points, bodies, joints, springs, stops, torsion_springs, "
+    "elastocheck, name, units, mirror, gravity, points, bodies, joints, springs, stops, "
+    "torsion_springs, "
     "bushings, "
     "beams, tyres, static_loads, loads, trim, branches, wheel, wheels, probes, dampers, vehicle";
 const std::string joint_types =
     "spherical, revolute, universal, cylindrical, translational, planar, fixed, distance, "
     "in_plane, in_line, perpendicular, parallel";
-const std::string joint_fields = "type, bodies, at, axis, held, axis_i, axis_j, normal, from, to, length";
+const std::string joint_fields =
+    "type, bodies, at, axis, held, axis_i, axis_j, normal, from, to, length";
 const std::string no_name =
     " cannot be a name; allowed: up to 64 letters, digits, _ and, not first, - + . and spaces";
 const std::string out_of_range = " is out of range; allowed: 0, or 1e-30 to 1e+30 in size";
@@ -46,9 +48,11 @@ const std::string one_axis =
     "round; give a second one";
 const std::string steps = "expected a whole number from 1 to 1000000, found ";
 const std::string plain_text = "; a scene is plain text";
-const std::string no_aliases = "aliases (*name) are not part of the scene format; write the value out";
+const std::string no_aliases =
+    "aliases (*name) are not part of the scene format; write the value out";
 const std::string one_document = "; a scene is one YAML document";
-const std::string semidefinite = " when scaled to a unit diagonal; a stiffness must be positive semidefinite";
+const std::string semidefinite =
+    " when scaled to a unit diagonal; a stiffness must be positive semidefinite";
 const std::string on_ground = " cannot be on ground, which never moves; allowed: a body";
 const std::string missing = ": missing, it must be given";
 const std::string empty = "empty; a scene begins with `elastocheck: 1`";
@@ -73,8 +77,10 @@ const std::vector<Mistake> mistakes{
      "14: not YAML: end of map not found"},
     {"TabAsIndentation", "  arm: {origin: middle}", "\tarm: {origin: middle}",
      "13: not YAML: illegal map value"},
-    {"SecondDocument", "probes:", "---\nprobes:", "49: text after the end of the scene" + one_document},
-    {"TextAfterTheEnd", "probes:", "...\nprobes:", "50: text after the end of the scene" + one_document},
+    {"SecondDocument",
+     "probes:", "---\nprobes:", "49: text after the end of the scene" + one_document},
+    {"TextAfterTheEnd",
+     "probes:", "...\nprobes:", "50: text after the end of the scene" + one_document},
     {"UnknownAlias", "bodies: [arm, hub], at: front, axis_i", "bodies: *pair, at: front, axis_i",
      "18: not YAML: the referenced anchor is not defined"},
     {"Alias",
@@ -91,9 +97,11 @@ const std::vector<Mistake> mistakes{
     {"DeepNesting", "to: 1000", "to: [[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]",
      "46: branches.up.to: nested more than 16 deep"},
     {"VeryDeepNesting", whole_text, repeated("- ", 100000), "1: nested more than 16 deep"},
-    {"ControlCharacter", "name: Bench", "name: Ben\004ch", "2: control character 0x04" + plain_text},
+    {"ControlCharacter", "name: Bench", "name: Ben\004ch",
+     "2: control character 0x04" + plain_text},
     {"NotUtf8", "name: Bench", "name: Ben\377ch", "2: byte 0xff is not UTF-8" + plain_text},
-    {"NotUtf8Overlong", "name: Bench", "name: Ben\300\257ch", "2: byte 0xc0 is not UTF-8" + plain_text},
+    {"NotUtf8Overlong", "name: Bench", "name: Ben\300\257ch",
+     "2: byte 0xc0 is not UTF-8" + plain_text},
     {"TooLarge", whole_text, repeated("#", 1048577), " larger than 1 MiB, which no scene is"},
     {"ListAsKey", "  arm: {origin: middle}", "  [arm, hub]: {origin: middle}",
      "13: bodies: a list or map where the name of a field is expected"},
@@ -110,19 +118,21 @@ const std::vector<Mistake> mistakes{
      "1: elastocheck: '2' is not a version of the format that this program reads; allowed: 1"},
     {"VersionIsAList", "elastocheck: 1\n", "elastocheck: [1]\n",
      "1: elastocheck: expected the version of the format, found a list of 1"},
-    {"UnknownSection",
-     "bushings:", "bushing:", "24: unknown field 'bushing', did you mean 'bushings'? allowed: " + sections},
-    {"UnknownSectionUnlikeAny", "bushings:", "rubber:", "24: unknown field 'rubber'; allowed: " + sections},
+    {"UnknownSection", "bushings:", "bushing:",
+     "24: unknown field 'bushing', did you mean 'bushings'? allowed: " + sections},
+    {"UnknownSectionUnlikeAny",
+     "bushings:", "rubber:", "24: unknown field 'rubber'; allowed: " + sections},
     {"NoName", "name: Bench\n", "", "1: name" + missing},
     {"EmptyName", "name: Bench", "name:", "2: name: expected the name of the scene, found nothing"},
-    {"QuotedEmptyName", "name: Bench", "name: ''", "2: name: expected the name of the scene, found ''"},
+    {"QuotedEmptyName", "name: Bench", "name: ''",
+     "2: name: expected the name of the scene, found ''"},
     {"NameWithControlCharacter", "name: Bench", "name: \"Ben\\nch\"",
      "2: name: 'Ben?ch' is not one line of plain text"},
     {"NoUnits", "units: {length: mm, angle: deg, force: N}\n", "", "1: units" + missing},
     {"UnitsAreNotAMap", "{length: mm, angle: deg, force: N}", "mm",
      "3: units: expected a map with the fields length, angle, force, moment, found 'mm'"},
-    {"UnitsAreEmpty", "units: {length: mm, angle: deg, force: N}",
-     "units:", "3: units: expected a map with the fields length, angle, force, moment, found nothing"},
+    {"UnitsAreEmpty", "units: {length: mm, angle: deg, force: N}", "units:",
+     "3: units: expected a map with the fields length, angle, force, moment, found nothing"},
     {"NoAngleUnit", "angle: deg, ", "", "3: units.angle" + missing},
     {"WrongLengthUnit", "length: mm", "length: cm",
      "3: units.length: 'cm' is not a unit of length; allowed: m, mm"},
@@ -131,7 +141,8 @@ const std::vector<Mistake> mistakes{
     {"WrongForceUnit", "force: N}", "force: lbf}",
      "3: units.force: 'lbf' is not a unit of force; allowed: N, kN"},
     {"WrongMomentUnit", "force: N}", "force: N, moment: Nmmm}",
-     "3: units.moment: 'Nmmm' is not a unit of moment, did you mean 'N*mm'? allowed: N·m, N*m, Nm, N·mm, "
+     "3: units.moment: 'Nmmm' is not a unit of moment, did you mean 'N*mm'? allowed: N·m, N*m, Nm, "
+     "N·mm, "
      "N*mm, Nmm, "
      "kN·m, kN*m, kNm, kN·mm, kN*mm, kNmm"},
     {"UnknownUnit", "force: N}", "force: N, time: s}",
@@ -139,7 +150,8 @@ const std::vector<Mistake> mistakes{
     // ---- names
     {"NameBeginsWithADash", "  tip:", "  -tip:", "50: probes: '-tip'" + no_name},
     {"NameWithASlash", "  tip:", "  a/tip:", "50: probes: 'a/tip'" + no_name},
-    {"NameTooLong", "  tip:", "  ttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt:",
+    {"NameTooLong",
+     "  tip:", "  ttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt:",
      "50: probes: 'tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt...'" + no_name},
     {"EmptyKey", "  tip:", "  '':", "50: probes: ''" + no_name},
     // ---- points and numbers
@@ -167,36 +179,45 @@ const std::vector<Mistake> mistakes{
      "9: points.top: expected a number, found nothing"},
     {"ListForNumber", "top: [0, 0, 100]", "top: [0, 0, [1]]",
      "9: points.top: expected a number, found a list of 1"},
-    {"NotANumber", "top: [0, 0, 100]", "top: [0, 0, nan]", "9: points.top: expected a number, found 'nan'"},
+    {"NotANumber", "top: [0, 0, 100]", "top: [0, 0, nan]",
+     "9: points.top: expected a number, found 'nan'"},
     {"YamlNotANumber", "top: [0, 0, 100]", "top: [0, 0, .nan]",
      "9: points.top: expected a number, found '.nan'"},
     {"Infinite", "top: [0, 0, 100]", "top: [0, 0, -inf]", "9: points.top: '-inf'" + out_of_range},
     {"Overflow", "top: [0, 0, 100]", "top: [0, 0, 1e999]", "9: points.top: '1e999'" + out_of_range},
-    {"Underflow", "top: [0, 0, 100]", "top: [0, 0, 1e-999]", "9: points.top: '1e-999'" + out_of_range},
-    {"TooLargeANumber", "top: [0, 0, 100]", "top: [0, 0, 1.1e30]", "9: points.top: '1.1e30'" + out_of_range},
-    {"TooSmallANumber", "top: [0, 0, 100]", "top: [0, 0, -9e-31]", "9: points.top: '-9e-31'" + out_of_range},
+    {"Underflow", "top: [0, 0, 100]", "top: [0, 0, 1e-999]",
+     "9: points.top: '1e-999'" + out_of_range},
+    {"TooLargeANumber", "top: [0, 0, 100]", "top: [0, 0, 1.1e30]",
+     "9: points.top: '1.1e30'" + out_of_range},
+    {"TooSmallANumber", "top: [0, 0, 100]", "top: [0, 0, -9e-31]",
+     "9: points.top: '-9e-31'" + out_of_range},
     {"TrailingUnit", "top: [0, 0, 100]", "top: [0, 0, 100mm]",
      "9: points.top: expected a number, found '100mm'"},
-    {"TwoSigns", "top: [0, 0, 100]", "top: [0, 0, +-1]", "9: points.top: expected a number, found '+-1'"},
+    {"TwoSigns", "top: [0, 0, 100]", "top: [0, 0, +-1]",
+     "9: points.top: expected a number, found '+-1'"},
     {"Hexadecimal", "top: [0, 0, 100]", "top: [0, 0, 0x10]",
      "9: points.top: expected a number, found '0x10'"},
     // ---- bodies
-    {"NoBodies", "bodies:\n  arm: {origin: middle}\n  hub: {origin: front}\n", "", "1: bodies" + missing},
+    {"NoBodies", "bodies:\n  arm: {origin: middle}\n  hub: {origin: front}\n", "",
+     "1: bodies" + missing},
     {"BodiesAreEmpty", "\n  arm: {origin: middle}\n  hub: {origin: front}\n", "\n",
      "12: bodies: empty; at least one body is needed"},
     {"BodyNamedGround", "  arm: {origin", "  ground: {origin",
      "13: bodies.ground: ground is always there and cannot be defined; choose another name"},
     {"BodyIsNotAMap", "arm: {origin: middle}", "arm: middle",
-     "13: bodies.arm: expected a map with the fields origin, mass, centre_of_gravity, found 'middle'"},
+     "13: bodies.arm: expected a map with the fields origin, mass, centre_of_gravity, found "
+     "'middle'"},
     {"BodyWithoutOrigin", "arm: {origin: middle}", "arm: {}", "13: bodies.arm.origin" + missing},
     {"UnknownFieldOfBody", "arm: {origin: middle}", "arm: {orgin: middle}",
      "13: bodies.arm: unknown field 'orgin', did you mean 'origin'? allowed: origin, mass, "
      "centre_of_gravity"},
     {"UnknownHardpoint", "arm: {origin: middle}", "arm: {origin: midle}",
-     "13: bodies.arm.origin: no hardpoint is called 'midle', did you mean 'middle'? defined: " + hardpoints},
+     "13: bodies.arm.origin: no hardpoint is called 'midle', did you mean 'middle'? defined: " +
+         hardpoints},
     {"HardpointIsAList", "arm: {origin: middle}", "arm: {origin: [0, 0, 0]}",
      "13: bodies.arm.origin: expected the name of a hardpoint, found a list of 3"},
-    {"BodyThatNothingHolds", "  hub: {origin: front}", "  hub: {origin: front}\n  spare: {origin: top}",
+    {"BodyThatNothingHolds", "  hub: {origin: front}",
+     "  hub: {origin: front}\n  spare: {origin: top}",
      "15: bodies.spare: nothing holds it; a joint, spring or bushing is needed"},
     // ---- joints
     {"JointsAreAList",
@@ -254,12 +275,14 @@ const std::vector<Mistake> mistakes{
      "18: joints.cross.axis_j: the two hardpoints coincide; a direction needs two different "
      "ones"},
     {"AxisToUnknownPoint", "axis_j: y}", "axis_j: [middle, sied]}",
-     "18: joints.cross.axis_j: no hardpoint is called 'sied', did you mean 'side'? defined: " + hardpoints},
+     "18: joints.cross.axis_j: no hardpoint is called 'sied', did you mean 'side'? defined: " +
+         hardpoints},
     // ---- springs
     {"UnknownFieldOfSpring", "rate: 30, preload", "rates: 30, preload",
      "22: springs.coil: unknown field 'rates', did you mean 'rate'? allowed: bodies, from, "
      "to, rate, curve, free_length, preload, bump_stop, rebound_stop"},
-    {"SpringWithoutRate", "rate: 30, preload", "preload", "22: springs.coil: no law; allowed: rate or curve"},
+    {"SpringWithoutRate", "rate: 30, preload", "preload",
+     "22: springs.coil: no law; allowed: rate or curve"},
     {"NegativeRate", "rate: 30,", "rate: -30,",
      "22: springs.coil.rate: negative rate '-30'; allowed: zero or more"},
     {"SpringOfNoLength", "from: front, to: top, rate", "from: front, to: front, rate",
@@ -279,19 +302,23 @@ const std::vector<Mistake> mistakes{
     // ---- bushings
     {"UnknownFieldOfBushing", "rates: [1, 2, 2], rot", "rate: [1, 2, 2], rot",
      "25: bushings.mount: unknown field 'rate', did you mean 'rates'? allowed: bodies, at, "
-     "frame, frame_j, rates, rotational_rates, stiffness, curves, preload, preload_moment, undeformed, "
+     "frame, frame_j, rates, rotational_rates, stiffness, curves, preload, preload_moment, "
+     "undeformed, "
      "undeformed_angles, formulation"},
     {"NoStiffness", ", rates: [1, 2, 2], rotational_rates: [3, 4, 4]", "",
-     "25: bushings.mount: no stiffness; allowed: rates, rotational_rates and/or curves, or stiffness"},
-    {"RatesAndStiffness", "    at: middle\n    stiffness:",
-     "    at: middle\n    rates: [1, 1, 1]\n    stiffness:", "30: bushings.block.stiffness: " + together},
-    {"RotationalRatesAndStiffness",
-     "    at: middle\n    stiffness:", "    at: middle\n    rotational_rates: [1, 1, 1]\n    stiffness:",
+     "25: bushings.mount: no stiffness; allowed: rates, rotational_rates and/or curves, or "
+     "stiffness"},
+    {"RatesAndStiffness",
+     "    at: middle\n    stiffness:", "    at: middle\n    rates: [1, 1, 1]\n    stiffness:",
+     "30: bushings.block.stiffness: " + together},
+    {"RotationalRatesAndStiffness", "    at: middle\n    stiffness:",
+     "    at: middle\n    rotational_rates: [1, 1, 1]\n    stiffness:",
      "30: bushings.block.stiffness: " + together},
     {"TwoRates", "rates: [1, 2, 2], rot", "rates: [1, 2], rot",
      "25: bushings.mount.rates: expected a list of 3 rates, found a list of 2"},
     {"OneRate", "rates: [1, 2, 2], rot", "rates: 2, rot",
-     "25: bushings.mount.rates: expected a list of 3 rates, or the name of a property file (.bus), found "
+     "25: bushings.mount.rates: expected a list of 3 rates, or the name of a property file (.bus), "
+     "found "
      "'2'"},
     {"NegativeRateOfBushing", "rates: [1, 2, 2], rot", "rates: [1, 2, -2], rot",
      "25: bushings.mount.rates: negative rate '-2'; allowed: zero or more"},
@@ -307,9 +334,11 @@ const std::vector<Mistake> mistakes{
     {"StiffnessIndefinite", "- [100, 0, 0, 0, 5, 0]\n      - [0, 100, 0, 0, 0, 0]",
      "- [100, 200, 0, 0, 5, 0]\n      - [200, 100, 0, 0, 0, 0]",
      "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -1.07038" + semidefinite},
-    {"StiffnessWithANegativeDiagonal", "      - [0, 0, 0, 0, 0, 50]", "      - [0, 0, 0, 0, 0, -50]",
+    {"StiffnessWithANegativeDiagonal", "      - [0, 0, 0, 0, 0, 50]",
+     "      - [0, 0, 0, 0, 0, -50]",
      "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -1" + semidefinite},
-    {"StiffnessCouplingAFreeDirection", "      - [100, 0, 0, 0, 5, 0]", "      - [0, 0, 0, 0, 5, 0]",
+    {"StiffnessCouplingAFreeDirection", "      - [100, 0, 0, 0, 5, 0]",
+     "      - [0, 0, 0, 0, 5, 0]",
      "29: bushings.block.stiffness: indefinite, its lowest eigenvalue is -0.618034" + semidefinite},
     {"StiffnessCouplingAFreeDirectionToAStiffOne",
      "      - [100, 0, 0, 0, 5, 0]\n      - [0, 100, 0, 0, 0, 0]\n      - [0, 0, 100, 0, 0, 0]\n "
@@ -329,13 +358,14 @@ const std::vector<Mistake> mistakes{
      "25: bushings.mount.frame: axes x and y are parallel; two different ones are needed"},
     {"FrameOfOneAxisForUnequalRates", "rates: [1, 2, 2], rot", "rates: [1, 2, 3], rot",
      "25: bushings.mount.frame: " + one_axis},
-    {"FrameOfOneAxisForUnequalRotationalRates", "rotational_rates: [3, 4, 4]", "rotational_rates: [3, 4, 5]",
-     "25: bushings.mount.frame: " + one_axis},
+    {"FrameOfOneAxisForUnequalRotationalRates", "rotational_rates: [3, 4, 4]",
+     "rotational_rates: [3, 4, 5]", "25: bushings.mount.frame: " + one_axis},
     {"FrameOfOneAxisForAPreloadAcrossIt", "rotational_rates: [3, 4, 4]",
      "rotational_rates: [3, 4, 4], preload: [0, 1, 0]", "25: bushings.mount.frame: " + one_axis},
-    {"FrameOfOneAxisForACoupling",
-     "    stiffness:", "    frame: {z: z}\n    stiffness:", "29: bushings.block.frame: " + one_axis},
-    {"PreloadOfOneNumber", "rotational_rates: [3, 4, 4]", "rotational_rates: [3, 4, 4], preload: 10",
+    {"FrameOfOneAxisForACoupling", "    stiffness:", "    frame: {z: z}\n    stiffness:",
+     "29: bushings.block.frame: " + one_axis},
+    {"PreloadOfOneNumber", "rotational_rates: [3, 4, 4]",
+     "rotational_rates: [3, 4, 4], preload: 10",
      "25: bushings.mount.preload: expected a list of 3 numbers, found '10'"},
     {"PreloadMomentOfOneNumber", "rotational_rates: [3, 4, 4]",
      "rotational_rates: [3, 4, 4], preload_moment: 10",
@@ -365,11 +395,12 @@ const std::vector<Mistake> mistakes{
     // ---- branches
     {"NoBranches", "branches:\n  up: {load: [push, twist], to: 1000, steps: 10}\n", "",
      "1: branches" + missing},
-    {"BranchesAreEmpty", "branches:\n  up: {load: [push, twist], to: 1000, steps: 10}\n", "branches:\n",
-     "45: branches: empty; at least one branch is needed"},
+    {"BranchesAreEmpty", "branches:\n  up: {load: [push, twist], to: 1000, steps: 10}\n",
+     "branches:\n", "45: branches: empty; at least one branch is needed"},
     {"BranchWithoutLoad", "load: [push, twist], ", "",
      "46: branches.up: nothing that moves; allowed: load or drive"},
-    {"BranchOfNoLoads", "load: [push, twist]", "load: []", "46: branches.up.load: empty; a load is needed"},
+    {"BranchOfNoLoads", "load: [push, twist]", "load: []",
+     "46: branches.up.load: empty; a load is needed"},
     {"UnknownLoad", "load: [push, twist]", "load: [psuh, twist]",
      "46: branches.up.load: no load is called 'psuh', did you mean 'push'? defined: nil, "
      "push, twist"},
@@ -378,7 +409,8 @@ const std::vector<Mistake> mistakes{
     {"LoadOfZeroWeight", "load: [push, twist]", "load: {push: 0.0, twist: 1}",
      "46: branches.up.load.push: zero, which loads nothing; leave it out"},
     {"UnknownLoadWithWeight", "load: [push, twist]", "load: {push: 1, twits: 1}",
-     "46: branches.up.load.twits: no load is called 'twits', did you mean 'twist'? defined: nil, push, "
+     "46: branches.up.load.twits: no load is called 'twits', did you mean 'twist'? defined: nil, "
+     "push, "
      "twist"},
     {"LoadListedTwice", "load: [push, twist]", "load: [push, push]",
      "46: branches.up.load: 'push' is listed twice"},
@@ -387,16 +419,19 @@ const std::vector<Mistake> mistakes{
     {"BranchWithoutEnd", "to: 1000, ", "", "46: branches.up.to" + missing},
     {"BranchToZero", "to: 1000", "to: 0.0",
      "46: branches.up.to: zero leads nowhere; allowed: any other value"},
-    {"BranchToNowhere", "to: 1000", "to: far", "46: branches.up.to: expected a number, found 'far'"},
+    {"BranchToNowhere", "to: 1000", "to: far",
+     "46: branches.up.to: expected a number, found 'far'"},
     {"BranchWithoutSteps", ", steps: 10", "", "46: branches.up.steps" + missing},
     {"NoSteps", "steps: 10", "steps: 0", "46: branches.up.steps: " + steps + "'0'"},
     {"NegativeSteps", "steps: 10", "steps: -5", "46: branches.up.steps: " + steps + "'-5'"},
     {"HalfAStep", "steps: 10", "steps: 2.5", "46: branches.up.steps: " + steps + "'2.5'"},
-    {"TooManySteps", "steps: 10", "steps: 1000001", "46: branches.up.steps: " + steps + "'1000001'"},
+    {"TooManySteps", "steps: 10", "steps: 1000001",
+     "46: branches.up.steps: " + steps + "'1000001'"},
     {"StepsBeyondAnyInteger", "steps: 10", "steps: 99999999999999999999",
      "46: branches.up.steps: " + steps + "'99999999999999999999'"},
     {"UnknownFieldOfBranch", "steps: 10", "step: 10",
-     "46: branches.up: unknown field 'step', did you mean 'steps'? allowed: load, drive, from, to, steps, "
+     "46: branches.up: unknown field 'step', did you mean 'steps'? allowed: load, drive, from, to, "
+     "steps, "
      "static_loads, hold"},
     // ---- outputs
     {"NoOutput",
@@ -407,9 +442,12 @@ const std::vector<Mistake> mistakes{
      "wheel: {body: hub, centre: front, contact_patch: side, spin_axis: y, side: left}\n"
      "probes:\n  tip: {on: hub, at: front}\n",
      "probes:\n", "1: no output; a wheel or a probe is needed"},
-    {"ProbeOnGround", "tip: {on: hub", "tip: {on: ground", "50: probes.tip.on: a probe" + on_ground},
-    {"ProbeWithoutPoint", "tip: {on: hub, at: front}", "tip: {on: hub}", "50: probes.tip.at" + missing},
-    {"WheelOnGround", "wheel: {body: hub", "wheel: {body: ground", "48: wheel.body: a wheel" + on_ground},
+    {"ProbeOnGround", "tip: {on: hub", "tip: {on: ground",
+     "50: probes.tip.on: a probe" + on_ground},
+    {"ProbeWithoutPoint", "tip: {on: hub, at: front}", "tip: {on: hub}",
+     "50: probes.tip.at" + missing},
+    {"WheelOnGround", "wheel: {body: hub", "wheel: {body: ground",
+     "48: wheel.body: a wheel" + on_ground},
     {"WheelWithoutCentre", "wheel: {body: hub, centre: front, ", "wheel: {body: hub, ",
      "48: wheel.centre" + missing},
     {"WheelWithoutSpinAxis", "spin_axis: y, ", "", "48: wheel.spin_axis" + missing},
@@ -448,7 +486,9 @@ TEST_P(WrongScene, IsRefusedWithItsPlaceAndWhatIsAllowed) {
 INSTANTIATE_TEST_SUITE_P(SceneReader, WrongScene, testing::ValuesIn(mistakes),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST(BenchScene, IsSoundWithoutAMistake) { EXPECT_NO_THROW(parse_scene(bench_scene, "bench.yaml")); }
+TEST(BenchScene, IsSoundWithoutAMistake) {
+    EXPECT_NO_THROW(parse_scene(bench_scene, "bench.yaml"));
+}
 
 }  // namespace
 }  // namespace elastocheck

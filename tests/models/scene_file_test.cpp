@@ -1,5 +1,5 @@
 // Scene reader: the shipped scenes, alternative notations, and file handling.
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,9 @@ using Eigen::Vector3d;
 
 constexpr double per_degree = 180 / std::numbers::pi;  // 1/deg -> 1/rad
 
-Scene shipped(const std::string& name) { return read_scene(fs::path(ELASTOCHECK_SCENES) / (name + ".yaml")); }
+Scene shipped(const std::string& name) {
+    return read_scene(fs::path(ELASTOCHECK_SCENES) / (name + ".yaml"));
+}
 
 Scene parsed(const std::string& text) { return parse_scene(text, "text.yaml"); }
 
@@ -51,7 +53,8 @@ T joint(const Scene& scene, const std::string& name) {
 
 void expect_near(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected, double tolerance) {
     const double worst = (actual - expected).cwiseAbs().maxCoeff();
-    EXPECT_TRUE(std::isfinite(worst) && worst <= tolerance) << actual << "\n instead of\n" << expected;
+    EXPECT_TRUE(std::isfinite(worst) && worst <= tolerance) << actual << "\n instead of\n"
+                                                            << expected;
 }
 
 // Every number of `a` and `b`, to a relative tolerance.
@@ -80,12 +83,13 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     const auto tie_rod = joint<Distance>(scene, "tie_rod");
     EXPECT_EQ(tie_rod.i.body, 1);
     EXPECT_EQ(tie_rod.j.body, ground);
-    expect_near(tie_rod.i.s_local, Vector3d(-0.2373756 + 0.04, 0.89495045 - 1.10, -0.01605418 + 0.026),
-                1e-16);
+    expect_near(tie_rod.i.s_local,
+                Vector3d(-0.2373756 + 0.04, 0.89495045 - 1.10, -0.01605418 + 0.026), 1e-16);
     EXPECT_DOUBLE_EQ(tie_rod.length, Vector3d(0.0626244, 0.37495045, 0.04294582).norm());
 
     const auto tube = joint<Cylindrical>(scene, "strut_tube");
-    const Vector3d axis = Vector3d(-0.115 + 0.07402507, 0.785 - 0.8532915, 0.579 - 0.2484536).normalized();
+    const Vector3d axis =
+        Vector3d(-0.115 + 0.07402507, 0.785 - 0.8532915, 0.579 - 0.2484536).normalized();
     expect_near(tube.axis_i.u_local, axis, 1e-15);
     expect_near(tube.axis_j.u_local, axis, 1e-15);
 
@@ -98,7 +102,8 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     Vector6 rates;
     rates << 1.5e6, 12e6, 12e6, 3 * per_degree, 10 * per_degree, 10 * per_degree;
     expect_near(K_of(front), Matrix6(rates.asDiagonal()), 1e-12);
-    expect_near(front.i.A_local * Vector3d::UnitX(), Vector3d(0.520, 0.013, -0.019).normalized(), 1e-15);
+    expect_near(front.i.A_local * Vector3d::UnitX(), Vector3d(0.520, 0.013, -0.019).normalized(),
+                1e-15);
     EXPECT_EQ(front.preload, Vector6::Zero());
     EXPECT_EQ(K_of(element<Bushing>(scene, "K2_strut_mount"))(2, 2), 2e6);
 
@@ -165,10 +170,12 @@ TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed)
         const Scene scene = read_scene(entry.path());
         SCOPED_TRACE(scene.source);
         EXPECT_EQ(scene.source, entry.path().string());
-        for (const auto& body : scene.bodies) EXPECT_EQ(body.design.p.coeffs(), Eigen::Vector4d(0, 0, 0, 1));
+        for (const auto& body : scene.bodies)
+            EXPECT_EQ(body.design.p.coeffs(), Eigen::Vector4d(0, 0, 0, 1));
         const auto position = [&](const Point& p) -> Vector3d {
-            return p.body == ground ? p.s_local
-                                    : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r + p.s_local;
+            return p.body == ground
+                       ? p.s_local
+                       : scene.bodies.at(static_cast<std::size_t>(p.body)).design.r + p.s_local;
         };
         for (const Joint& candidate : scene.joints)
             std::visit(
@@ -176,7 +183,8 @@ TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed)
                     if constexpr (requires { s.i.s_local; }) {
                         double length = 0;
                         if constexpr (requires { s.length; }) length = s.length;
-                        EXPECT_NEAR((position(s.i) - position(s.j)).norm(), length, 1e-15) << candidate.name;
+                        EXPECT_NEAR((position(s.i) - position(s.j)).norm(), length, 1e-15)
+                            << candidate.name;
                     }
                 },
                 candidate.kind);
@@ -201,7 +209,8 @@ TEST(Readme, ItsExamplesOfLawsFitIntoTheFirst) {
     std::vector<std::string> blocks;
     for (std::string line; std::getline(file, line);) {
         if (line != "```yaml") continue;
-        for (blocks.emplace_back(); std::getline(file, line) && line != "```";) blocks.back() += line + "\n";
+        for (blocks.emplace_back(); std::getline(file, line) && line != "```";)
+            blocks.back() += line + "\n";
     }
     ASSERT_GE(blocks.size(), 3U);
     for (std::size_t k = 1; k < blocks.size(); ++k) {
@@ -224,20 +233,21 @@ TEST(Readme, ItsExamplesOfLawsFitIntoTheFirst) {
 // ---- Units.
 
 // A scene with all kinds of parts; `L`, `A` are the factors of numbers in metres and radians.
-std::string scene_in(const std::string& length, const std::string& angle, const std::string& force = "N",
-                     const std::string& moment = "") {
+std::string scene_in(const std::string& length, const std::string& angle,
+                     const std::string& force = "N", const std::string& moment = "") {
     const double L = length == "mm" ? 1000 : 1;        // per m
     const double A = angle == "deg" ? per_degree : 1;  // per rad
     const double F = force == "kN" ? 1e-3 : 1;         // per N
-    const double M = moment.empty()
-                         ? F * L  // per N·m
-                         : (moment.starts_with("k") ? 1e-3 : 1) * (moment.ends_with("mm") ? 1e3 : 1);
+    const double M =
+        moment.empty() ? F * L  // per N·m
+                       : (moment.starts_with("k") ? 1e-3 : 1) * (moment.ends_with("mm") ? 1e3 : 1);
     const auto number = [](double x) { return fmt::format("{:.17g}", x); };
     const auto vector = [&](double x, double y, double z) {
         return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", x, y, z);
     };
-    std::string text = "elastocheck: 1\nname: units\nunits: {length: " + length + ", angle: " + angle +
-                       ", force: " + force + (moment.empty() ? "" : ", moment: " + moment) + "}\n";
+    std::string text = "elastocheck: 1\nname: units\nunits: {length: " + length +
+                       ", angle: " + angle + ", force: " + force +
+                       (moment.empty() ? "" : ", moment: " + moment) + "}\n";
     text += "points:\n";
     text += "  a: " + vector(0.011 * L, -0.247 * L, 0.333 * L) + "\n";
     text += "  b: " + vector(0.5 * L, 0.125 * L, -0.071 * L) + "\n";
@@ -255,15 +265,15 @@ std::string scene_in(const std::string& length, const std::string& angle, const 
     text += "  rates: {bodies: [one, ground], at: b, frame: {x: [a, b], y: z}, rates: " +
             vector(1e5 * F / L, 2e5 * F / L, 3e5 * F / L) +
             ", rotational_rates: " + vector(10 * M / A, 20 * M / A, 30 * M / A) +
-            ", preload: " + vector(F, 2 * F, 3 * F) + ", preload_moment: " + vector(4 * M, 5 * M, 6 * M) +
-            "}\n";
+            ", preload: " + vector(F, 2 * F, 3 * F) +
+            ", preload_moment: " + vector(4 * M, 5 * M, 6 * M) + "}\n";
     const double k = 1e6 * F / L, c = 250 * F / A, r = 700 * M / A;
     text += "  full:\n    bodies: [two, ground]\n    at: c\n    stiffness:\n";
     const double K[6][6] = {{k, 0, 0, 0, c, 0},  {0, 2 * k, 0, -c, 0, 0}, {0, 0, 3 * k, 0, 0, 0},
                             {0, -c, 0, r, 0, 0}, {c, 0, 0, 0, 2 * r, 0},  {0, 0, 0, 0, 0, 3 * r}};
     for (const auto& row : K)
-        text += "      - [" + number(row[0]) + ", " + number(row[1]) + ", " + number(row[2]) + ", " +
-                number(row[3]) + ", " + number(row[4]) + ", " + number(row[5]) + "]\n";
+        text += "      - [" + number(row[0]) + ", " + number(row[1]) + ", " + number(row[2]) +
+                ", " + number(row[3]) + ", " + number(row[4]) + ", " + number(row[5]) + "]\n";
     text += "static_loads:\n";
     text += "  weight: {on: one, at: b, force: " + vector(0, 0, -400 * F) + "}\n";
     text += "  torque: {on: two, moment: " + vector(0, 7 * M, 0) + "}\n";
@@ -279,10 +289,12 @@ std::string scene_in(const std::string& length, const std::string& angle, const 
             ", steps: 9, hold: {joints.tube: " + number(0.2 * A) + "}}\n";
     text += "  tube: {drive: {joints.tube: 1, joints.rod: " + number(0.25 * L / A) +
             ", springs.loaded.preload: " + number(40 * F / A) + "}, to: " + number(0.3 * A) +
-            ", steps: 9, static_loads: {push: " + number(700 * F) + ", twist: " + number(8 * M) + "}}\n";
+            ", steps: 9, static_loads: {push: " + number(700 * F) + ", twist: " + number(8 * M) +
+            "}}\n";
     text += "  rubber: {drive: {bushings.rates.preload_moment.x: 1, bushings.full.preload.z: " +
             number(3 * F / M) + "}, to: " + number(5 * M) + ", steps: 9}\n";
-    text += "wheel: {body: one, centre: b, contact_patch: c, spin_axis: [0.1, -1, 0], side: right}\n";
+    text +=
+        "wheel: {body: one, centre: b, contact_patch: c, spin_axis: [0.1, -1, 0], side: right}\n";
     text += "probes: {tip: {on: two, at: c}}\n";
     return text;
 }
@@ -310,29 +322,36 @@ TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
     EXPECT_DOUBLE_EQ(K_of(full)(4, 0), 250);
     EXPECT_DOUBLE_EQ(K_of(full)(3, 1), -250);
     EXPECT_DOUBLE_EQ(K_of(full)(5, 5), 2100);
-    expect_near(element<Bushing>(scene, "rates").preload, (Vector6() << 1, 2, 3, 4, 5, 6).finished(), 1e-15);
+    expect_near(element<Bushing>(scene, "rates").preload,
+                (Vector6() << 1, 2, 3, 4, 5, 6).finished(), 1e-15);
     expect_near(std::get<DeadMoment>(scene.static_loads[1].kind).m, Vector3d(0, 7, 0), 1e-15);
     // `mixed` is driven by a force, so its moment per newton is a length. `moment` is driven by a
     // moment.
     EXPECT_EQ(scene.branches[1].to, -2000);
-    EXPECT_EQ(std::get<DeadForce>(load_of(scene.branches[1].drivers[0]).kind).f, Vector3d(0.6, 0, 0.8));
-    expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m, Vector3d(0.1, 0, 0.2),
-                1e-16);
+    EXPECT_EQ(std::get<DeadForce>(load_of(scene.branches[1].drivers[0]).kind).f,
+              Vector3d(0.6, 0, 0.8));
+    expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m,
+                Vector3d(0.1, 0, 0.2), 1e-16);
     EXPECT_DOUBLE_EQ(scene.branches[2].to, 90);
-    EXPECT_EQ(std::get<DeadMoment>(load_of(scene.branches[2].drivers[0]).kind).m, Vector3d(0, 0.6, 0.8));
+    EXPECT_EQ(std::get<DeadMoment>(load_of(scene.branches[2].drivers[0]).kind).m,
+              Vector3d(0, 0.6, 0.8));
 }
 
 TEST(Units, OneMomentServesBothKindsOfBranch) {
     const auto with = [](const std::string& length, double arm, double to) {
-        return parsed(fmt::format(
-            "{{elastocheck: 1, name: n, units: {{length: {}, angle: rad, force: N}}, points: {{o: [0, 0, "
-            "0]}}, "
-            "bodies: {{b: {{origin: o}}}}, joints: {{j: {{type: spherical, bodies: [b, ground], at: o}}}}, "
-            "loads: {{push: {{on: b, at: o, force: [1, 0, 0]}}, turn: {{on: b, moment: [{}, 0, 0]}}}}, "
-            "branches: {{both: {{load: [push, turn], to: 1, steps: 1}}, pure: {{load: turn, to: {}, steps: "
-            "1}}}}, "
-            "probes: {{p: {{on: b, at: o}}}}}}",
-            length, arm, to));
+        return parsed(
+            fmt::format("{{elastocheck: 1, name: n, units: {{length: {}, angle: rad, force: N}}, "
+                        "points: {{o: [0, 0, "
+                        "0]}}, "
+                        "bodies: {{b: {{origin: o}}}}, joints: {{j: {{type: spherical, bodies: [b, "
+                        "ground], at: o}}}}, "
+                        "loads: {{push: {{on: b, at: o, force: [1, 0, 0]}}, turn: {{on: b, moment: "
+                        "[{}, 0, 0]}}}}, "
+                        "branches: {{both: {{load: [push, turn], to: 1, steps: 1}}, pure: {{load: "
+                        "turn, to: {}, steps: "
+                        "1}}}}, "
+                        "probes: {{p: {{on: b, at: o}}}}}}",
+                        length, arm, to));
     };
     const Scene m = with("m", 0.5, 8), mm = with("mm", 500, 8);
     const auto moment = [](const Scene& scene, std::size_t branch) {
@@ -348,25 +367,26 @@ TEST(Units, OneMomentServesBothKindsOfBranch) {
 // ---- Alternative notations.
 
 TEST(Numbers, AreReadInAllTheirSpellings) {
-    const std::pair<const char*, double> spellings[] = {{"28e3", 28e3},
-                                                        {"1.5e6", 1.5e6},
-                                                        {"-3000", -3000},
-                                                        {".5", 0.5},
-                                                        {"-.5", -0.5},
-                                                        {"5.", 5},
-                                                        {"+7", 7},
-                                                        {"1E+3", 1e3},
-                                                        {"2e-2", 0.02},
-                                                        {"007", 7},
-                                                        {"'3.25'", 3.25},
-                                                        {"\"4\"", 4},
-                                                        {"0", 0},
-                                                        {"-0", 0},
-                                                        {"0.0e0", 0},
-                                                        {"1e30", 1e30},
-                                                        {"-1e-30", -1e-30},
-                                                        {"0.1", 0.1},
-                                                        {"123456789012345678", 123456789012345678.0}};
+    const std::pair<const char*, double> spellings[] = {
+        {"28e3", 28e3},
+        {"1.5e6", 1.5e6},
+        {"-3000", -3000},
+        {".5", 0.5},
+        {"-.5", -0.5},
+        {"5.", 5},
+        {"+7", 7},
+        {"1E+3", 1e3},
+        {"2e-2", 0.02},
+        {"007", 7},
+        {"'3.25'", 3.25},
+        {"\"4\"", 4},
+        {"0", 0},
+        {"-0", 0},
+        {"0.0e0", 0},
+        {"1e30", 1e30},
+        {"-1e-30", -1e-30},
+        {"0.1", 0.1},
+        {"123456789012345678", 123456789012345678.0}};
     for (const auto& [text, value] : spellings) {
         const Scene scene =
             parsed(replaced(replaced(bench_scene, "length: mm", "length: m"), "force: [0, 0, -300]",
@@ -383,7 +403,8 @@ struct CommaForPoint : std::numpunct<char> {
 
 TEST(Numbers, DoNotDependOnTheLocale) {
     const Scene expected = parsed(bench_scene);
-    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaForPoint));
+    const std::locale before =
+        std::locale::global(std::locale(std::locale::classic(), new CommaForPoint));
     std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
     const Scene scene = parsed(bench_scene);
     std::string message;
@@ -396,24 +417,27 @@ TEST(Numbers, DoNotDependOnTheLocale) {
     std::setlocale(LC_ALL, "C");
     expect_same(scene, expected, 0);
     EXPECT_EQ(message,
-              "text.yaml:22: springs.coil.preload: needs a free length of -8.57864 mm; a free length must be "
+              "text.yaml:22: springs.coil.preload: needs a free length of -8.57864 mm; a free "
+              "length must be "
               "above zero");
 }
 
 TEST(Direction, AllWaysToWriteOneAgree) {
-    const std::pair<const char*, Vector3d> ways[] = {{"y", {0, 1, 0}},
-                                                     {"-y", {0, -1, 0}},
-                                                     {"z", {0, 0, 1}},
-                                                     {"-z", {0, 0, -1}},
-                                                     {"[0, 2.5, 0]", {0, 1, 0}},
-                                                     {"[0, 0, -1e-20]", {0, 0, -1}},
-                                                     {"[0, 1e30, 0]", {0, 1, 0}},
-                                                     {"[middle, top]", {0, 0, 1}},
-                                                     {"[side, middle]", {0, -1, 0}},
-                                                     {"[0, 3, 4]", {0, 0.6, 0.8}},
-                                                     {"[side, top]", Vector3d(0, -1, 1).normalized()}};
+    const std::pair<const char*, Vector3d> ways[] = {
+        {"y", {0, 1, 0}},
+        {"-y", {0, -1, 0}},
+        {"z", {0, 0, 1}},
+        {"-z", {0, 0, -1}},
+        {"[0, 2.5, 0]", {0, 1, 0}},
+        {"[0, 0, -1e-20]", {0, 0, -1}},
+        {"[0, 1e30, 0]", {0, 1, 0}},
+        {"[middle, top]", {0, 0, 1}},
+        {"[side, middle]", {0, -1, 0}},
+        {"[0, 3, 4]", {0, 0.6, 0.8}},
+        {"[side, top]", Vector3d(0, -1, 1).normalized()}};
     for (const auto& [text, u] : ways) {
-        const Scene scene = parsed(replaced(bench_scene, "axis_j: y", std::string("axis_j: ") + text));
+        const Scene scene =
+            parsed(replaced(bench_scene, "axis_j: y", std::string("axis_j: ") + text));
         expect_near(joint<Universal>(scene, "cross").axis_j.u_local, u,
                     std::numeric_limits<double>::epsilon());
     }
@@ -421,8 +445,8 @@ TEST(Direction, AllWaysToWriteOneAgree) {
 
 TEST(Direction, PerpendicularAxesArePerpendicularToTheLastDigit) {
     for (int n = -10; n <= 10; ++n) {
-        const Scene scene = parsed(
-            replaced(bench_scene, "axis_j: y", fmt::format("axis_j: [{:.17g}, 0.8, 0.6]", n * 0.99e-10)));
+        const Scene scene = parsed(replaced(
+            bench_scene, "axis_j: y", fmt::format("axis_j: [{:.17g}, 0.8, 0.6]", n * 0.99e-10)));
         const auto cross = joint<Universal>(scene, "cross");
         EXPECT_LE(std::abs(cross.axis_i.u_local.dot(cross.axis_j.u_local)), 1e-16) << n;
     }
@@ -434,7 +458,8 @@ TEST(Joint, EveryTypeGetsItsPointsAndDirections) {
         JointKind kind;
     };
     // Body 0 `arm` has its origin at 0, body 1 `hub` at `front` = (0.1, 0, 0).
-    const Vector3d side(0, 0.1, 0), x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+    const Vector3d side(0, 0.1, 0), x = Vector3d::UnitX(), y = Vector3d::UnitY(),
+                                    z = Vector3d::UnitZ();
     const Point i{0, side}, j{1, side - Vector3d(0.1, 0, 0)}, top_j{1, Vector3d(-0.1, 0, 0.1)};
     const Case cases[] = {
         {"type: spherical, at: side", Spherical{i, j}},
@@ -452,8 +477,9 @@ TEST(Joint, EveryTypeGetsItsPointsAndDirections) {
     };
     std::vector<bool> seen(std::variant_size_v<JointKind>, false);
     for (const auto& [text, kind] : cases) {
-        Scene scene = parsed(replaced(bench_scene, "{type: spherical, bodies: [arm, hub], at: front}",
-                                      fmt::format("{{bodies: [arm, hub], {}}}", text)));
+        Scene scene =
+            parsed(replaced(bench_scene, "{type: spherical, bodies: [arm, hub], at: front}",
+                            fmt::format("{{bodies: [arm, hub], {}}}", text)));
         Scene expected = scene;
         expected.joints.at(0) = {"ball", kind};
         SCOPED_TRACE(text);
@@ -489,9 +515,10 @@ TEST(Frame, OneAxisInAnyDirectionIsCompletedRightHanded) {
             Vector3d rates(2, 2, 2);
             rates[axis] = 1;
             const Scene scene = parsed(replaced(
-                bench_scene, "frame: {x: [middle, front]}, rates: [1, 2, 2], rotational_rates: [3, 4, 4]",
-                fmt::format("frame: {{{}: [{}, {}, {}]}}, rates: [{}, {}, {}]", "xyz"[axis], u.x(), u.y(),
-                            u.z(), rates.x(), rates.y(), rates.z())));
+                bench_scene,
+                "frame: {x: [middle, front]}, rates: [1, 2, 2], rotational_rates: [3, 4, 4]",
+                fmt::format("frame: {{{}: [{}, {}, {}]}}, rates: [{}, {}, {}]", "xyz"[axis], u.x(),
+                            u.y(), u.z(), rates.x(), rates.y(), rates.z())));
             const auto mount = element<Bushing>(scene, "mount");
             const Matrix3d A = mount.i.A_local.toRotationMatrix();
             expect_near(A.col(axis), u.normalized(), 1e-15);
@@ -589,7 +616,8 @@ TEST(Stiffness, ThatIsIndefiniteOnlyInSiUnitsIsRefusedInAll) {
     const Matrix6 in_degrees = written(K, all_units[3]);
     EXPECT_GT(in_degrees.eigenvalues().real().minCoeff(), 0) << "as written it looks definite";
     K(0, 4) = K(4, 0) = 0.99e4;
-    for (const UnitsOfText& units : all_units) EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text;
+    for (const UnitsOfText& units : all_units)
+        EXPECT_NO_THROW(parsed(bench_with(K, units))) << units.text;
 }
 
 TEST(Stiffness, IsSymmetricToTheLastBit) {
@@ -622,12 +650,14 @@ TEST(Sections, TheirOrderDoesNotMatter) {
         sections.back() += line + "\n";
     }
     std::string backwards;
-    for (auto section = sections.rbegin(); section != sections.rend(); ++section) backwards += *section;
+    for (auto section = sections.rbegin(); section != sections.rend(); ++section)
+        backwards += *section;
     expect_same(parsed(bench_scene), parsed(backwards), 0);
 }
 
 TEST(Sections, ASectionLeftEmptyHasNoEntries) {
-    const std::string weight = "static_loads:\n  weight: {on: hub, at: front, force: [0, 0, -300]}\n";
+    const std::string weight =
+        "static_loads:\n  weight: {on: hub, at: front, force: [0, 0, -300]}\n";
     const Scene scene = parsed(replaced(bench_scene, weight, "static_loads:\n"));
     EXPECT_TRUE(scene.static_loads.empty());
 }
@@ -644,17 +674,20 @@ TEST(Text, IsUtf8AndNothingElse) {
             return parsed(replaced(bench_scene, "name: Bench", "name: Ben" + bytes + "ch")).name ==
                    "Ben" + bytes + "ch";
         } catch (const SceneError& error) {
-            EXPECT_NE(std::string(error.what()).find("is not UTF-8"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("is not UTF-8"), std::string::npos)
+                << error.what();
             return false;
         }
     };
     // The first and the last code point of each length, and those around the surrogates (RFC 3629).
-    for (const char* bytes : {"\xC2\xA1", "\xDF\xBF", "\xE0\xA0\x80", "\xEF\xBF\xBD", "\xED\x9F\xBF",
-                              "\xEE\x80\x80", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
+    for (const char* bytes :
+         {"\xC2\xA1", "\xDF\xBF", "\xE0\xA0\x80", "\xEF\xBF\xBD", "\xED\x9F\xBF", "\xEE\x80\x80",
+          "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"})
         EXPECT_TRUE(is_read(bytes)) << testing::PrintToString(bytes);
-    for (const char* bytes : {"\x80", "\xBF", "\xC0\xAF", "\xC1\xBF", "\xC3", "\xC3\xC3", "\xE0\x9F\xBF",
-                              "\xE2\x82", "\xED\xA0\x80", "\xED\xBF\xBF", "\xF0\x8F\xBF\xBF", "\xF0\x9F\x98",
-                              "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xFE", "\xFF"})
+    for (const char* bytes :
+         {"\x80", "\xBF", "\xC0\xAF", "\xC1\xBF", "\xC3", "\xC3\xC3", "\xE0\x9F\xBF", "\xE2\x82",
+          "\xED\xA0\x80", "\xED\xBF\xBF", "\xF0\x8F\xBF\xBF", "\xF0\x9F\x98", "\xF4\x90\x80\x80",
+          "\xF5\x80\x80\x80", "\xFE", "\xFF"})
         EXPECT_FALSE(is_read(bytes)) << testing::PrintToString(bytes);
 }
 
@@ -666,13 +699,16 @@ TEST(Text, NamesMayBeOfAnyLanguage) {
 TEST(Text, ThousandsOfBodiesAreFine) {
     const int count = 4000;
     std::string text =
-        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, 0]}\n";
+        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
+        "0]}\n";
     text += "bodies:\n";
     for (int n = 0; n < count; ++n) text += fmt::format("  b{}: {{origin: o}}\n", n);
     text += "joints:\n  j0: {type: spherical, bodies: [b0, ground], at: o}\n";
     for (int n = 1; n < count; ++n)
         text += fmt::format("  j{}: {{type: spherical, bodies: [b{}, b{}], at: o}}\n", n, n, n - 1);
-    text += "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, steps: 1}}\n";
+    text +=
+        "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, steps: "
+        "1}}\n";
     text += "probes: {p: {on: b0, at: o}}\n";
     EXPECT_EQ(parsed(text).bodies.size(), static_cast<std::size_t>(count));
 }
@@ -689,10 +725,12 @@ std::string complaint_about(const fs::path& file) {
 }
 
 struct TemporaryFile {
-    fs::path path =
-        fs::path(testing::TempDir()) /
-        fmt::format("elastocheck_{}.yaml", testing::UnitTest::GetInstance()->current_test_info()->name());
-    explicit TemporaryFile(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+    fs::path path = fs::path(testing::TempDir()) /
+                    fmt::format("elastocheck_{}.yaml",
+                                testing::UnitTest::GetInstance()->current_test_info()->name());
+    explicit TemporaryFile(const std::string& text) {
+        std::ofstream(path, std::ios::binary) << text;
+    }
     ~TemporaryFile() { fs::remove(path); }
 };
 
@@ -719,7 +757,8 @@ TEST(File, OfOneMebibyteIsReadAndALargerOneIsNot) {
     text += "\n";
     EXPECT_EQ(complaint_about(TemporaryFile(text).path), "none");
     const TemporaryFile larger(text + "\n");
-    EXPECT_EQ(complaint_about(larger.path), larger.path.string() + ": larger than 1 MiB, which no scene is");
+    EXPECT_EQ(complaint_about(larger.path),
+              larger.path.string() + ": larger than 1 MiB, which no scene is");
 }
 
 TEST(File, WithoutEndIsLargerThanAScene) {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "models/scene.hpp"
+#include "elastocheck/scene.hpp"
 
 namespace elastocheck {
 
@@ -21,7 +21,8 @@ struct SceneNumbers {
     template <class Derived>
     void add(const std::string& what, const Eigen::MatrixBase<Derived>& M) {
         for (Eigen::Index i = 0; i < M.rows(); ++i)
-            for (Eigen::Index j = 0; j < M.cols(); ++j) add(fmt::format("{}({},{})", what, i, j), M(i, j));
+            for (Eigen::Index j = 0; j < M.cols(); ++j)
+                add(fmt::format("{}({},{})", what, i, j), M(i, j));
     }
     void add(const std::string& what, const Point& p) {
         add(what + ".body", p.body);
@@ -60,7 +61,8 @@ inline void add_law(SceneNumbers& n, const std::string& name, const ScalarLaw& l
     for (std::size_t k = 0; k < curve.knots.size(); ++k)
         n.add(fmt::format("{}.x_{}", name, k), curve.knots[k]);
     for (std::size_t k = 0; k < curve.pieces.size(); ++k)
-        for (std::size_t c = 0; c < 4; ++c) n.add(fmt::format("{}.c_{}{}", name, k, c), curve.pieces[k][c]);
+        for (std::size_t c = 0; c < 4; ++c)
+            n.add(fmt::format("{}.c_{}{}", name, k, c), curve.pieces[k][c]);
     n.add(name + ".known_outside", curve.known_outside);
 }
 
@@ -103,7 +105,8 @@ inline void add_joint(SceneNumbers& n, const JointKind& kind) {
 inline void add_driver(SceneNumbers& n, const Driver& driver) {
     if (const auto* load = std::get_if<Load>(&driver.what)) add_load(n, *load);
     if (const auto* motion = std::get_if<Motion>(&driver.what)) n.add("motion", motion->joint);
-    if (const auto* length = std::get_if<FreeLength>(&driver.what)) n.add("free_length", length->elastic);
+    if (const auto* length = std::get_if<FreeLength>(&driver.what))
+        n.add("free_length", length->elastic);
     if (const auto* preload = std::get_if<Preload>(&driver.what)) {
         n.add("preload", preload->elastic);
         n.add("start", driver.start * preload->direction);  // e_y at -1 is -e_y at 1
@@ -123,7 +126,7 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
     }
     for (const auto& joint : scene.joints) {
         n.where = "joint " + joint.name, add_joint(n, joint.kind);
-        n.add("only_where_driven", joint.only_where_driven);
+        n.add("only_where_driven", joint.active_only_where_driven);
     }
     for (const auto& elastic : scene.elastics)
         n.where = "element " + elastic.name, add_elastic(n, elastic.kind);

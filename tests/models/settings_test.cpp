@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/bench_scene.hpp"
 #include "tests/models/scene_numbers.hpp"
 
@@ -58,18 +58,21 @@ TEST(Settings, AHardpointMovesAllThatRefersToItOnce) {
 }
 
 TEST(Settings, NamesMayHaveDots) {
-    const std::string text =
-        replaced(replaced(replaced(bench_scene, "  coil:", "  coil.left:"), "springs:\n",
-                          "springs:\n  coil: {bodies: [hub, ground], from: front, to: side, rate: 1}\n"),
-                 "  tip:", "  t.i.p:");
-    EXPECT_EQ(std::get<LinearRate>(
-                  std::get<AxialSpring>(with({{"springs.coil.left.rate", "5"}}, text).elastics[1].kind).law)
-                  .k,
-              5000);
-    EXPECT_EQ(std::get<LinearRate>(
-                  std::get<AxialSpring>(with({{"springs.coil.rate", "6"}}, text).elastics[0].kind).law)
-                  .k,
-              6000);
+    const std::string text = replaced(
+        replaced(replaced(bench_scene, "  coil:", "  coil.left:"), "springs:\n",
+                 "springs:\n  coil: {bodies: [hub, ground], from: front, to: side, rate: 1}\n"),
+        "  tip:", "  t.i.p:");
+    EXPECT_EQ(
+        std::get<LinearRate>(
+            std::get<AxialSpring>(with({{"springs.coil.left.rate", "5"}}, text).elastics[1].kind)
+                .law)
+            .k,
+        5000);
+    EXPECT_EQ(
+        std::get<LinearRate>(
+            std::get<AxialSpring>(with({{"springs.coil.rate", "6"}}, text).elastics[0].kind).law)
+            .k,
+        6000);
     EXPECT_NO_THROW(with({{"probes.t.i.p.at", "side"}}, text));
 }
 
@@ -87,7 +90,8 @@ TEST(Settings, ReachEveryNumberThatASceneLists) {
             const Setting same = setting(number.path, number.value);
             expect_equal(read_scene(file, {&same, 1}), scene);
         }
-        const Setting half = setting(scene.numbers.front().path, 0.5 * scene.numbers.front().value + 1e-3);
+        const Setting half =
+            setting(scene.numbers.front().path, 0.5 * scene.numbers.front().value + 1e-3);
         EXPECT_EQ(read_scene(file, {&half, 1}).numbers.front().value,
                   0.5 * scene.numbers.front().value + 1e-3);
     }
@@ -97,7 +101,8 @@ TEST(Numbers, CarryTheirNamesAndUnits) {
     const Scene scene = with({{"points.top.z", "101"}});
     const auto number = [&](const std::string& path) {
         const auto found = std::ranges::find(scene.numbers, path, &Number::path);
-        return found == scene.numbers.end() ? "none" : fmt::format("{} {}", found->value, found->unit);
+        return found == scene.numbers.end() ? "none"
+                                            : fmt::format("{} {}", found->value, found->unit);
     };
     EXPECT_EQ(number("points.top.z"), "101 mm");
     EXPECT_EQ(number("springs.coil.rate"), "30 N/mm");
@@ -117,13 +122,15 @@ TEST(Numbers, CarryTheirNamesAndUnits) {
 
 TEST(Settings, ThatLeadNowhereAreRefused) {
     const std::string hardpoints = "there: middle, front, side, top, again";
-    EXPECT_EQ(complaint({{"points.frnt.z", "1"}}),
-              "bench.yaml: points.frnt.z: points has no 'frnt', did you mean 'front'? " + hardpoints);
     EXPECT_EQ(
-        complaint({{"pionts.front.z", "1"}}),
-        "bench.yaml: pionts.front.z: the file has no 'pionts', did you mean 'points'? there: elastocheck, "
-        "name, units, points, bodies, joints, springs, bushings, static_loads, loads, branches, wheel, "
-        "probes");
+        complaint({{"points.frnt.z", "1"}}),
+        "bench.yaml: points.frnt.z: points has no 'frnt', did you mean 'front'? " + hardpoints);
+    EXPECT_EQ(complaint({{"pionts.front.z", "1"}}),
+              "bench.yaml: pionts.front.z: the file has no 'pionts', did you mean 'points'? there: "
+              "elastocheck, "
+              "name, units, points, bodies, joints, springs, bushings, static_loads, loads, "
+              "branches, wheel, "
+              "probes");
     EXPECT_EQ(complaint({{"points.front.w", "1"}}),
               "bench.yaml: points.front.w: points.front has no 'w'; there: x, y, z");
     EXPECT_EQ(complaint({{"points.front", "1"}}),
@@ -132,13 +139,14 @@ TEST(Settings, ThatLeadNowhereAreRefused) {
               "bench.yaml:22: springs.coil: not one value; there: bodies, from, to, rate, preload");
     EXPECT_EQ(complaint({{"springs.coil.rate.x", "1"}}),
               "bench.yaml:22: springs.coil.rate.x: springs.coil.rate is one value");
-    EXPECT_EQ(complaint({{"springs.coil.rate.", "1"}}),
-              "bench.yaml: springs.coil.rate.: springs.coil has no 'rate.', did you mean 'rate'? there: "
-              "bodies, from, to, rate, preload");
     EXPECT_EQ(
-        complaint({{"springs.coil.free_length", "1"}}),
-        "bench.yaml: springs.coil.free_length: springs.coil has no 'free_length'; there: bodies, from, to, "
-        "rate, preload");
+        complaint({{"springs.coil.rate.", "1"}}),
+        "bench.yaml: springs.coil.rate.: springs.coil has no 'rate.', did you mean 'rate'? there: "
+        "bodies, from, to, rate, preload");
+    EXPECT_EQ(complaint({{"springs.coil.free_length", "1"}}),
+              "bench.yaml: springs.coil.free_length: springs.coil has no 'free_length'; there: "
+              "bodies, from, to, "
+              "rate, preload");
     EXPECT_EQ(complaint({{"springs.coil.rate", "1"}, {"springs.coil.rate", "2"}}),
               "bench.yaml:22: springs.coil.rate: set twice");
 }
@@ -146,13 +154,14 @@ TEST(Settings, ThatLeadNowhereAreRefused) {
 TEST(Settings, ThatAreNoValuesAreRefusedAsSuch) {
     EXPECT_EQ(complaint({{"points.front.z", "high"}}),
               "bench.yaml:7: points.front: expected a number, found 'high' (as set)");
-    EXPECT_EQ(complaint({{"springs.coil.rate", "-1"}}),
-              "bench.yaml:22: springs.coil.rate: negative rate '-1'; allowed: zero or more (as set)");
+    EXPECT_EQ(
+        complaint({{"springs.coil.rate", "-1"}}),
+        "bench.yaml:22: springs.coil.rate: negative rate '-1'; allowed: zero or more (as set)");
     for (const std::string& text :
          {std::string(), std::string("1\n2"), std::string("\xFF"), std::string(300, '1')})
-        EXPECT_NE(
-            complaint({{"springs.coil.rate", text}}).find("cannot be set; allowed: one line of plain text"),
-            std::string::npos);
+        EXPECT_NE(complaint({{"springs.coil.rate", text}})
+                      .find("cannot be set; allowed: one line of plain text"),
+                  std::string::npos);
 }
 
 TEST(Settings, AreParsedFromOneWord) {

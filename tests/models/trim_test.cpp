@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/models/mistakes.hpp"
 
 namespace elastocheck {
@@ -57,7 +57,8 @@ TEST(Trim, AdjustsWhatABranchWouldDrive) {
     EXPECT_EQ(std::get<Motion>(trim.adjust[1].what).joint, 2);
     EXPECT_EQ(trim.adjust[1].unit, ParameterUnit::metre);
     EXPECT_EQ(trim.adjust[1].per_unit, 1);
-    const Scene held = with("[springs.coil.preload, joints.rod]", "[joints.slide, bushings.mount.preload.y]");
+    const Scene held =
+        with("[springs.coil.preload, joints.rod]", "[joints.slide, bushings.mount.preload.y]");
     const auto& drive = std::get<Motion>(held.trim->adjust.at(0).what);
     EXPECT_EQ(held.joints.at(static_cast<std::size_t>(drive.joint)).name, "slide.drive");
     EXPECT_EQ(std::get<Preload>(held.trim->adjust.at(1).what).direction, Vector6(Vector6::Unit(1)));
@@ -81,7 +82,8 @@ TEST(Trim, ConditionsAreInTheUnitsOfTheScene) {
 TEST(Trim, AListOfConditionsMeansAsDrawn) {
     for (const char* list : {"[travel, toe]", "[toe, tip.x]"}) {
         const Scene scene = with("{travel: 5, tip.y: -7}", list);
-        for (const auto& condition : scene.trim->until) EXPECT_FALSE(condition.value.has_value()) << list;
+        for (const auto& condition : scene.trim->until)
+            EXPECT_FALSE(condition.value.has_value()) << list;
     }
 }
 
@@ -91,16 +93,17 @@ TEST(Trim, ItsLoadsAreHeldOnEveryBranch) {
     EXPECT_EQ(scene.static_loads[0].name, "push");
     EXPECT_EQ(std::get<DeadForce>(scene.static_loads[0].kind).f, Vector3d(0, 0, 3500));
     EXPECT_EQ(std::get<DeadMoment>(scene.static_loads[1].kind).m, Vector3d(0, 2, 0));  // kN·mm
-    EXPECT_TRUE(scene.left_out.empty()) << scene.left_out[0].what;
+    EXPECT_TRUE(scene.omitted.empty()) << scene.omitted[0].what;
     EXPECT_TRUE(with("  under: {push: 3.5, twist: 2}\n", "").static_loads.empty());
-    EXPECT_EQ(std::get<DeadForce>(with("{push: 3.5, twist: 2}", "[push]").static_loads.at(0).kind).f,
-              Vector3d(0, 0, 1000));
+    EXPECT_EQ(
+        std::get<DeadForce>(with("{push: 3.5, twist: 2}", "[push]").static_loads.at(0).kind).f,
+        Vector3d(0, 0, 1000));
 }
 
 TEST(Trim, IsOneOfSeveralWheelsByName) {
     std::string text = replaced(scene_text, "wheel: {body: hub,", "wheels:\n  front: {body: hub,");
-    text = replaced(replaced(text, "{travel: 5, tip.y: -7}", "[front.travel, front.toe]"), "{tyre: {rate",
-                    "{tyre: {wheel: front, rate");
+    text = replaced(replaced(text, "{travel: 5, tip.y: -7}", "[front.travel, front.toe]"),
+                    "{tyre: {rate", "{tyre: {wheel: front, rate");
     EXPECT_EQ(parse_scene(text, "scene.yaml").trim->until.at(1).name, "front.toe");
 }
 
@@ -113,40 +116,49 @@ TEST(Trim, SaysWhatIsWrong) {
     expect_complaints(
         scene_text,
         {{until, "until: travel", "trim: 2 adjusted, 1 condition: one more condition is needed"},
-         {adjust, "adjust: joints.rod", "trim: 1 adjusted, 2 conditions: one more adjustment is needed"},
+         {adjust, "adjust: joints.rod",
+          "trim: 1 adjusted, 2 conditions: one more adjustment is needed"},
          {until, "until: [travel, toe, camber, tip.x]",
           "trim: 2 adjusted, 4 conditions: 2 more adjustments are needed"},
          {adjust,
-          "adjust: [springs.coil.preload, joints.rod, bushings.mount.preload.x, bushings.mount.preload.y]",
+          "adjust: [springs.coil.preload, joints.rod, bushings.mount.preload.x, "
+          "bushings.mount.preload.y]",
           "trim: 4 adjusted, 2 conditions: 2 more conditions are needed"},
          {adjust + "\n", "\n", "trim.adjust: missing, it must be given"},
          {until + "\n", "\n", "trim.until: missing, it must be given"},
          {adjust, "adjust: []", "trim.adjust: empty; what is adjusted is needed"},
          {adjust, "adjust: {joints.rod: 1}",
-          "trim.adjust: expected a name or a list of names, found a map; what is adjusted has no value yet"},
+          "trim.adjust: expected a name or a list of names, found a map; what is adjusted has no "
+          "value yet"},
          {adjust, "adjust: [joints.rod, joints.rod]", "trim.adjust: 'joints.rod' is listed twice"},
          {adjust, "adjust: [springs.coil.preload, springs.coil.free_length]",
-          "trim.adjust: 'springs.coil.free_length' adjusts the same thing as 'springs.coil.preload'; "
+          "trim.adjust: 'springs.coil.free_length' adjusts the same thing as "
+          "'springs.coil.preload'; "
           "allowed: once"},
          {adjust, "adjust: [push, joints.rod]",
-          "trim.adjust: 'push' is a load, and loads are not adjusted; allowed: preloads, free lengths and "
+          "trim.adjust: 'push' is a load, and loads are not adjusted; allowed: preloads, free "
+          "lengths and "
           "offsets, "
           "named as in drive"},
          {adjust, "adjust: [travel, joints.rod]", "trim.adjust: 'travel'" + driven},
          {adjust, "adjust: [joints.hinge, joints.rod]", "trim.adjust: 'joints.hinge'" + driven},
-         {adjust, "adjust: [tyres.tyre.road, joints.rod]", "trim.adjust: 'tyres.tyre.road'" + driven},
+         {adjust, "adjust: [tyres.tyre.road, joints.rod]",
+          "trim.adjust: 'tyres.tyre.road'" + driven},
          {until, "until: {tow: 5, tip.y: -7}",
           "trim.until.tow: 'tow' is no output that a trim can ask for, did you mean 'toe'?" +
               outputs.substr(1)},
-         {until, "until: {travel: much, tip.y: -7}", "trim.until.travel: expected a number, found 'much'"},
+         {until, "until: {travel: much, tip.y: -7}",
+          "trim.until.travel: expected a number, found 'much'"},
          {until, "until: [travel, travel]", "trim.until: 'travel' is listed twice"},
          {"{push: 3.5, twist: 2}", "{pusch: 3.5}",
-          "trim.under.pusch: no load is called 'pusch', did you mean 'push'? defined: brake, push, twist"},
+          "trim.under.pusch: no load is called 'pusch', did you mean 'push'? defined: brake, push, "
+          "twist"},
          {"  under:", "  over:", "trim: unknown field 'over'; allowed: adjust, until, under"}});
     EXPECT_TRUE(
         complaint_of(replaced(scene_text, adjust, "adjust: [springs.coil.prelaod, joints.rod]"))
-            .starts_with("trim.adjust: 'springs.coil.prelaod' is nothing that can be driven, did you mean "
-                         "'springs.coil.preload'? allowed: "));
+            .starts_with(
+                "trim.adjust: 'springs.coil.prelaod' is nothing that can be driven, did you mean "
+                "'springs.coil.preload'? allowed: "));
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "tests/models/mistakes.hpp"
 
 namespace elastocheck {
@@ -46,7 +46,7 @@ wheel: {body: hub, centre: hub, spin_axis: y, side: left}
 const Bushing& tyre(const Scene& scene, const std::string& name) {
     const auto found = std::ranges::find(scene.elastics, name, &Elastic::name);
     EXPECT_NE(found, scene.elastics.end());
-    EXPECT_TRUE(found->only_where_driven);
+    EXPECT_TRUE(found->active_only_where_driven);
     return std::get<Bushing>(found->kind);
 }
 
@@ -54,7 +54,8 @@ const Bushing& tyre(const Scene& scene, const std::string& name) {
 // road.
 double push(const Scene& scene, const Driver& driver, double z, double h) {
     const auto& road = std::get<Preload>(driver.what);
-    const auto& b = std::get<Bushing>(scene.elastics.at(static_cast<std::size_t>(road.elastic)).kind);
+    const auto& b =
+        std::get<Bushing>(scene.elastics.at(static_cast<std::size_t>(road.elastic)).kind);
     const Vector6 e = z * Vector6::Unit(2);
     const Vector6 pulls_back =
         std::get<LinearStiffness>(b.law).K * e + b.preload + driver.rate * h * road.direction;
@@ -102,11 +103,11 @@ TEST(Tyre, StandsOnlyOnTheBranchesThatMoveItsRoad) {
 }
 
 TEST(Tyre, StandsOnARoadThatIsHeldWhereItIs) {
-    const Scene scene =
-        parse_scene(replaced(single, "branches: {bump: {drive: tyres.tyre.road, to: 0.05, steps: 5}}",
-                             "loads: {push: {on: hub, at: hub, force: [0, 0, 1]}}\n"
-                             "branches: {up: {load: push, to: 50, steps: 5, hold: {tyres.tyre.road: 0}}}"),
-                    "scene.yaml");
+    const Scene scene = parse_scene(
+        replaced(single, "branches: {bump: {drive: tyres.tyre.road, to: 0.05, steps: 5}}",
+                 "loads: {push: {on: hub, at: hub, force: [0, 0, 1]}}\n"
+                 "branches: {up: {load: push, to: 50, steps: 5, hold: {tyres.tyre.road: 0}}}"),
+        "scene.yaml");
     for (const Detail detail : {Detail::required, Detail::everything}) {
         const Model model = compile(scene, detail);
         const Model here = on_branch(model, model.branches.at(0));
@@ -117,9 +118,10 @@ TEST(Tyre, StandsOnARoadThatIsHeldWhereItIs) {
 }
 
 TEST(Tyre, HasNoPreloadThatIsDrivenLikeABushings) {
-    EXPECT_EQ(complaint_of(replaced(single, "drive: tyres.tyre.road", "drive: bushings.tyre.preload.z"))
-                  .substr(0, 78),
-              "branches.bump.drive: 'bushings.tyre.preload.z' is nothing that can be driven, ");
+    EXPECT_EQ(
+        complaint_of(replaced(single, "drive: tyres.tyre.road", "drive: bushings.tyre.preload.z"))
+            .substr(0, 78),
+        "branches.bump.drive: 'bushings.tyre.preload.z' is nothing that can be driven, ");
 }
 
 TEST(Tyre, SaysWhatIsWrong) {
@@ -127,23 +129,27 @@ TEST(Tyre, SaysWhatIsWrong) {
         axle,
         {{"wheel: left, ", "", "tyres.tyre_left.wheel: missing, it must be given"},
          {"wheel: left, ", "wheel: lift, ",
-          "tyres.tyre_left.wheel: no wheel is called 'lift', did you mean 'left'? defined: left, right"},
+          "tyres.tyre_left.wheel: no wheel is called 'lift', did you mean 'left'? defined: left, "
+          "right"},
          {"rate: 0.2", "rate: 0", "tyres.tyre_left.rate: zero; a tyre needs a rate"},
-         {"rate: 0.2", "rate: -1", "tyres.tyre_left.rate: negative rate '-1'; allowed: zero or more"},
+         {"rate: 0.2", "rate: -1",
+          "tyres.tyre_left.rate: negative rate '-1'; allowed: zero or more"},
          {"rate: 0.2", "rates: 0.2",
           "tyres.tyre_left: unknown field 'rates', did you mean 'rate'? allowed: wheel, rate, "
           "preload"},
          {"preload: 3.5}", "preload: 3.5}\n  spare_left: {wheel: left, rate: 1}",
           "tyres.spare_left: wheel 'left' has a tyre already; allowed: one"},
          {"  tyre_left:", "  tyre:",
-          "tyres.tyre: the mirror makes another of its wheel but not of the tyre; both, or neither, have "
+          "tyres.tyre: the mirror makes another of its wheel but not of the tyre; both, or "
+          "neither, have "
           "'left' in their "
           "name"}});
-    expect_complaints(single, {{"{rate: 200e3}", "{wheel: hub, rate: 200e3}",
-                                "tyres.tyre.wheel: the only wheel of the scene has no name; leave this out"},
-                               {"wheel: {body: hub, centre: hub, spin_axis: y, side: left}",
-                                "probes: {p: {on: hub, at: hub}}",
-                                "tyres.tyre: there is no wheel for it; give wheel or wheels"}});
+    expect_complaints(
+        single, {{"{rate: 200e3}", "{wheel: hub, rate: 200e3}",
+                  "tyres.tyre.wheel: the only wheel of the scene has no name; leave this out"},
+                 {"wheel: {body: hub, centre: hub, spin_axis: y, side: left}",
+                  "probes: {p: {on: hub, at: hub}}",
+                  "tyres.tyre: there is no wheel for it; give wheel or wheels"}});
 }
 
 }  // namespace

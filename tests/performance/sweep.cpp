@@ -1,9 +1,9 @@
 // The published sweep, 300 steps each way, for an instruction counter: `sweep SCENE`.
 #include <cstdio>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 
 int main(int argc, char** argv) {
     using namespace elastocheck;

@@ -23,9 +23,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/random_scenes.hpp"
-#include "compare/stress.hpp"
-#include "models/reader/scene_file.hpp"
+#include "compare/stress/stress.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "tests/support/random_scenes.hpp"
 
 namespace {
 
@@ -51,11 +51,13 @@ std::string line(std::uint64_t seed, const std::string& solver, const std::strin
 
 std::string judged(std::uint64_t seed, const Scene& scene) {
     std::string lines;
-    const compare::Trial trial{fmt::format("{}", seed), "random", {.label = "as it is", .scene = scene}};
+    const compare::Trial trial{
+        fmt::format("{}", seed), "random", {.label = "as it is", .scene = scene}};
     for (const auto& cell : compare::stress({&trial, 1}, {.threads = 1}).cells)
         lines +=
             line(seed, cell.solver, compare::name(cell.verdict), elastocheck::name(cell.outcome),
-                 fmt::format("{}: {}{}{}", cell.way, cell.why, cell.why.empty() ? "" : "; ", cell.detail),
+                 fmt::format("{}: {}{}{}", cell.way, cell.why, cell.why.empty() ? "" : "; ",
+                             cell.detail),
                  cell.reactions);
     return lines;
 }
@@ -70,7 +72,8 @@ std::string judged(std::uint64_t seed) {
     }
 }
 
-[[noreturn]] void work(std::uint64_t from, std::uint64_t end, std::uint64_t stride, int limit, int out) {
+[[noreturn]] void work(std::uint64_t from, std::uint64_t end, std::uint64_t stride, int limit,
+                       int out) {
     for (std::uint64_t seed = from; seed < end; seed += stride) {
         const double start = cpu_seconds();
         const auto until = static_cast<rlim_t>(start + limit);
@@ -78,7 +81,8 @@ std::string judged(std::uint64_t seed) {
         ::setrlimit(RLIMIT_CPU, &cpu);
         std::string text = judged(seed);
         text += line(seed, "", "done", fmt::format("{:.3f}", cpu_seconds() - start), "");
-        if (::write(out, text.data(), text.size()) != static_cast<ssize_t>(text.size())) std::_Exit(4);
+        if (::write(out, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+            std::_Exit(4);
     }
     std::_Exit(0);
 }
@@ -100,8 +104,9 @@ struct Tally {
         fmt::print("{}\n", what);
         std::fflush(stdout);
         if (!found.empty())
-            std::ofstream(fmt::format("{}/seed-{}.yaml", found, seed)) << "# " << what << "\n"
-                                                                       << compare::random_scene(seed, family);
+            std::ofstream(fmt::format("{}/seed-{}.yaml", found, seed))
+                << "# " << what << "\n"
+                << compare::random_scene(seed, family);
     }
     void take(const std::array<std::string, 6>& told) {
         const auto& [seed, solver, verdict, outcome, known, why] = told;
@@ -145,7 +150,8 @@ struct Worker {
         char* text = nullptr;
         std::size_t size = 0;
         while (::getline(&text, &size, in) > 0) {
-            std::istringstream split(std::string(text, std::string(text).find_last_not_of('\n') + 1));
+            std::istringstream split(
+                std::string(text, std::string(text).find_last_not_of('\n') + 1));
             std::array<std::string, 6> told;
             for (auto& field : told) std::getline(split, field, '\t');
             tally.take(told);
@@ -216,7 +222,10 @@ int main(int argc, char** argv) {
         for (const auto& [verdict, number] : verdicts) fmt::print("  {} {}", number, verdict);
         fmt::print("\n");
     }
-    fmt::print("{} scenes, {} reactions judged, {:.0f} s of CPU; the slowest, seed {}, {:.1f} s; {} wrong\n",
-               count, tally.reactions, tally.seconds, tally.slowest_seed, tally.slowest, tally.wrong.size());
+    fmt::print(
+        "{} scenes, {} reactions judged, {:.0f} s of CPU; the slowest, seed {}, {:.1f} s; {} "
+        "wrong\n",
+        count, tally.reactions, tally.seconds, tally.slowest_seed, tally.slowest,
+        tally.wrong.size());
     return tally.wrong.empty() ? 0 : 1;
 }

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <set>
 
-#include "compare/legs.hpp"
-#include "compare/random_scenes.hpp"
-#include "compare/stress.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/stress/stress.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
+#include "tests/support/random_scenes.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -26,7 +26,8 @@ std::uint64_t fingerprint(const std::string& text) {
 
 TEST(RandomScene, IsTheSameForItsSeedWhereverItIsMade) {
     std::uint64_t all = 0;
-    for (std::uint64_t seed = 1; seed <= 50; ++seed) all = all * 31 + fingerprint(random_scene(seed));
+    for (std::uint64_t seed = 1; seed <= 50; ++seed)
+        all = all * 31 + fingerprint(random_scene(seed));
     EXPECT_EQ(all, 316082598815838147u);
 }
 
@@ -146,11 +147,13 @@ TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
             continue;
         }
         for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells) {
-            if (cell.solver != "equilibrium" && cell.solver != "energy" && cell.solver != "series") continue;
+            if (cell.solver != "equilibrium" && cell.solver != "energy" && cell.solver != "series")
+                continue;
             ++asked;
             judged += cell.verdict == Verdict::right;
             EXPECT_NE(cell.verdict, Verdict::wrong)
-                << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " " << cell.detail;
+                << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " "
+                << cell.detail;
         }
     }
     EXPECT_GE(judged, asked * 4 / 10);
@@ -171,12 +174,14 @@ TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
 //   929            crash
 TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
     for (const std::uint64_t seed : {9, 23, 203, 230, 295, 472, 488, 929, 1202, 1708, 2464}) {
-        const Trial trial{fmt::format("{}", seed),
-                          "random",
-                          {.label = "as it is", .scene = parse_scene(random_scene(seed), "random.yaml")}};
+        const Trial trial{
+            fmt::format("{}", seed),
+            "random",
+            {.label = "as it is", .scene = parse_scene(random_scene(seed), "random.yaml")}};
         for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells)
             EXPECT_TRUE(cell.verdict != Verdict::wrong && cell.verdict != Verdict::elsewhere)
-                << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " " << cell.detail;
+                << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " "
+                << cell.detail;
     }
 }
 
@@ -186,13 +191,15 @@ TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
 TEST(RandomScenes, SettleByBothReferences) {
     for (const std::uint64_t seed : {48, 77, 129, 289, 337, 284, 703, 917}) {
         const Model model = compile(parse_scene(random_scene(seed), "random.yaml"));
-        const Way way = ways_of(model, model.branches.back()).front();
-        const auto one = walk(way, {.leg = Leg::equilibrium}), other = walk(way, {.leg = Leg::energy});
+        const BranchSide way = sides_of(model, model.branches.back()).front();
+        const auto one = walk(way, {.leg = Leg::equilibrium}),
+                   other = walk(way, {.leg = Leg::energy});
         ASSERT_EQ(one.outcome, Outcome::converged) << seed << ": " << one.detail;
         ASSERT_EQ(other.outcome, Outcome::converged) << seed << ": " << other.detail;
         for (std::size_t k = 0; k < one.points.size(); ++k)
             for (std::size_t b = 0; b < model.bodies.size(); ++b)
-                EXPECT_LE((one.points[k].poses[b].r - other.points[k].poses[b].r).norm(), 1e-9) << seed;
+                EXPECT_LE((one.points[k].poses[b].r - other.points[k].poses[b].r).norm(), 1e-9)
+                    << seed;
     }
 }
 
@@ -204,11 +211,12 @@ TEST(RandomScenes, WhatHasSettledIsAtRest) {
     const auto truth = reference::equilibrium::solve(model, branch, start);
     ASSERT_EQ(truth.outcome, Outcome::converged);
     for (const char* method : {"tangent", "midpoint", "adaptive"}) {
-        const auto path =
-            recursive::solve(model, branch, {.method = recursive::find_method(method).value(), .steps = 20});
+        const auto path = recursive::solve(
+            model, branch, {.method = recursive::find_method(method).value(), .steps = 20});
         ASSERT_FALSE(path.points.empty()) << method;
         for (std::size_t b = 0; b < model.bodies.size(); ++b)
-            EXPECT_LE((path.points[0].poses[b].r - truth.points[0].poses[b].r).norm(), 1e-9) << method;
+            EXPECT_LE((path.points[0].poses[b].r - truth.points[0].poses[b].r).norm(), 1e-9)
+                << method;
     }
 }
 

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <map>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/recursive/random_scenes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -37,8 +37,8 @@ std::vector<bool> resisted(const Diagnosis& diagnosis, std::size_t bodies) {
     return still;
 }
 
-void judge(Judged& judged, const std::vector<bool>& still, const Equilibrium& point, const Equilibrium& truth,
-           const std::string& what) {
+void judge(Judged& judged, const std::vector<bool>& still, const Equilibrium& point,
+           const Equilibrium& truth, const std::string& what) {
     ++judged.points;
     if (!std::isfinite(point.bound.length) || !std::isfinite(point.bound.angle)) {
         ++judged.unbounded;
@@ -49,14 +49,15 @@ void judge(Judged& judged, const std::vector<bool>& still, const Equilibrium& po
     for (std::size_t b = 0; b < still.size(); ++b) {
         if (!still[b]) continue;
         length = std::max(length, (point.poses[b].r - truth.poses[b].r).norm());
-        const auto between = point.poses[b].p.normalized().conjugate() * truth.poses[b].p.normalized();
+        const auto between =
+            point.poses[b].p.normalized().conjugate() * truth.poses[b].p.normalized();
         angle = std::max(angle, 2 * std::atan2(between.vec().norm(), std::abs(between.w())));
     }
     const double allowed_length = point.bound.length + truth.bound.length,
                  allowed_angle = point.bound.angle + truth.bound.angle;
     EXPECT_TRUE(length <= allowed_length && angle <= allowed_angle)
-        << what << ": " << length << " m, " << angle << " rad off, the bound is " << allowed_length << " and "
-        << allowed_angle;
+        << what << ": " << length << " m, " << angle << " rad off, the bound is " << allowed_length
+        << " and " << allowed_angle;
     judged.tightest = std::max({judged.tightest, length / allowed_length, angle / allowed_angle});
     judged.loosest = std::max({judged.loosest, point.bound.length / std::max(length, 1e-11),
                                point.bound.angle / std::max(angle, 1e-11)});
@@ -72,7 +73,8 @@ void judge_branch(std::map<std::string, Judged>& all, const Model& model, const 
                   bool conservative, const std::string& what) {
     const Analysis analysis = analyse(model);
     const auto still = resisted(analysis.diagnosis, model.bodies.size());
-    const auto truth = reference::equilibrium::solve(model, branch, every_point(branch), {.account = true});
+    const auto truth =
+        reference::equilibrium::solve(model, branch, every_point(branch), {.error_bound = true});
     if (truth.outcome != Outcome::converged) return;
     const auto of = [&](const std::string& who, const EquilibriumPath& path) {
         if (path.outcome != Outcome::converged) return;
@@ -83,15 +85,18 @@ void judge_branch(std::map<std::string, Judged>& all, const Model& model, const 
     };
     of("equilibrium", truth);
     if (conservative)
-        of("energy", reference::energy::solve(model, branch, every_point(branch), {.account = true}));
+        of("energy",
+           reference::energy::solve(model, branch, every_point(branch), {.error_bound = true}));
     for (const Method& method : methods)
-        of(std::string(method.name), solve(model, branch, {.method = method, .account = true}, analysis));
+        of(std::string(method.name),
+           solve(model, branch, {.method = method, .error_bound = true}, analysis));
 }
 
 void print(const std::map<std::string, Judged>& all) {
     for (const auto& [who, judged] : all)
         fmt::print(
-            "{:12} {:6} points, {:4} without a bound, error at most {:.3g} of the bound, bound at most "
+            "{:12} {:6} points, {:4} without a bound, error at most {:.3g} of the bound, bound at "
+            "most "
             "{:.3g} "
             "times the error{}\n",
             who, judged.points, judged.unbounded, judged.tightest, judged.loosest,
@@ -142,15 +147,16 @@ TEST(Account, TellsTheStiffnessThatIsLeftOfAnArch) {
     const auto judge = [&](const char* who, const EquilibriumPath& path) {
         ASSERT_EQ(path.outcome, Outcome::converged) << who << path.detail;
         for (const auto& point : path.points)
-            EXPECT_NEAR(point.stiffness_left, arch_stiffness(point.poses[0].r.z()) / arch_stiffness(0.08),
-                        1e-6)
+            EXPECT_NEAR(point.stiffness_left,
+                        arch_stiffness(point.poses[0].r.z()) / arch_stiffness(0.08), 1e-6)
                 << who << " at " << point.load;
         EXPECT_LT(path.points.back().stiffness_left, 0.02) << who;
     };
     judge("equilibrium",
-          reference::equilibrium::solve(model, branch, every_point(branch), {.account = true}));
-    judge("energy", reference::energy::solve(model, branch, every_point(branch), {.account = true}));
-    judge("series", solve(model, branch, {.method = *find_method("series"), .account = true}));
+          reference::equilibrium::solve(model, branch, every_point(branch), {.error_bound = true}));
+    judge("energy",
+          reference::energy::solve(model, branch, every_point(branch), {.error_bound = true}));
+    judge("series", solve(model, branch, {.method = *find_method("series"), .error_bound = true}));
 }
 
 // A path by arc length continues past the limit point; there the stiffness is negative.
@@ -159,7 +165,7 @@ TEST(Account, StiffnessIsNegativePastALimitPoint) {
     Branch& branch = model.branches[0];
     branch.to = -400;
     const Method arc{"series", 0, Series{.arc_length = true}};
-    const auto path = solve(model, branch, {.method = arc, .steps = 60, .account = true});
+    const auto path = solve(model, branch, {.method = arc, .steps = 60, .error_bound = true});
     ASSERT_FALSE(path.points.empty());
     int negative = 0;
     for (const auto& point : path.points) {
@@ -174,28 +180,32 @@ TEST(Account, StiffnessIsNegativePastALimitPoint) {
 // Two modes that become unstable at once leave the sign of the determinant unchanged: a bar on a
 // ball joint, with the same torsional rate in both directions.
 TEST(Account, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
-    const Model model = compile(parse_scene(
-        "elastocheck: 1\nname: any way\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {foot: [0, 0, 0], head: [0, 0, 0.5]}\nbodies: {bar: {origin: foot}}\n"
-        "joints: {foot: {type: spherical, bodies: [bar, ground], at: foot}}\n"
-        "bushings: {torsion: {bodies: [bar, ground], at: foot, rates: [0, 0, 0], rotational_rates: [100, "
-        "100, 100]}}\n"
-        "loads: {weight: {on: bar, at: head, force: [0, 0, -1]}}\n"
-        "branches: {press: {load: weight, to: 350, steps: 20}}\nprobes: {head: {on: bar, at: head}}\n",
-        "any way"));
+    const Model model = compile(
+        parse_scene("elastocheck: 1\nname: any way\nunits: {length: m, angle: rad, force: N}\n"
+                    "points: {foot: [0, 0, 0], head: [0, 0, 0.5]}\nbodies: {bar: {origin: foot}}\n"
+                    "joints: {foot: {type: spherical, bodies: [bar, ground], at: foot}}\n"
+                    "bushings: {torsion: {bodies: [bar, ground], at: foot, rates: [0, 0, 0], "
+                    "rotational_rates: [100, "
+                    "100, 100]}}\n"
+                    "loads: {weight: {on: bar, at: head, force: [0, 0, -1]}}\n"
+                    "branches: {press: {load: weight, to: 350, steps: 20}}\nprobes: {head: {on: "
+                    "bar, at: head}}\n",
+                    "any way"));
     const Branch& branch = model.branches[0];
     for (const Method& method : methods) {
-        const auto path = solve(model, branch, {.method = method, .account = true});
-        EXPECT_EQ(path.outcome, Outcome::dividing_point)
+        const auto path = solve(model, branch, {.method = method, .error_bound = true});
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point)
             << method.name << " " << path.detail;  // at 100 / 0.5
         ASSERT_FALSE(path.points.empty()) << method.name;
         EXPECT_NEAR(path.points.back().load, 192.5, 1e-9) << method.name;
         for (const auto& point : path.points)
-            EXPECT_NEAR(point.stiffness_left, 1 - point.load / 200, 1e-6) << method.name << " " << point.load;
+            EXPECT_NEAR(point.stiffness_left, 1 - point.load / 200, 1e-6)
+                << method.name << " " << point.load;
     }
     EXPECT_EQ(reference::equilibrium::solve(model, branch, every_point(branch)).outcome,
-              Outcome::dividing_point);
-    EXPECT_EQ(reference::energy::solve(model, branch, every_point(branch)).outcome, Outcome::dividing_point);
+              Outcome::bifurcation_point);
+    EXPECT_EQ(reference::energy::solve(model, branch, every_point(branch)).outcome,
+              Outcome::bifurcation_point);
 }
 
 // Newton's method may converge between two inconsistent links that stay open: no equilibrium, on no
@@ -217,7 +227,7 @@ probes: {tip: {on: bob, at: tip}}
 )",
                                             "links.yaml"));
     for (const auto& method : methods) {
-        const auto path = solve(model, model.branches[0], {.method = method, .account = true});
+        const auto path = solve(model, model.branches[0], {.method = method, .error_bound = true});
         for (const auto& point : path.points)
             EXPECT_EQ(point.bound.length, std::numeric_limits<double>::infinity())
                 << method.name << " at " << point.load;
@@ -231,13 +241,15 @@ TEST(Account, IsGivenWhereItIsAsked) {
     branch.to = -100;
     for (const bool asked : {false, true}) {
         for (const Method& method : methods)
-            for (const auto& point : solve(model, branch, {.method = method, .account = asked}).points) {
+            for (const auto& point :
+                 solve(model, branch, {.method = method, .error_bound = asked}).points) {
                 EXPECT_EQ(std::isfinite(point.bound.length), asked) << method.name;
                 EXPECT_EQ(std::isnan(point.stiffness_left), !asked) << method.name;
             }
         const double loads[] = {0, -50, -100};
-        for (const auto& path : {reference::equilibrium::solve(model, branch, loads, {.account = asked}),
-                                 reference::energy::solve(model, branch, loads, {.account = asked})})
+        for (const auto& path :
+             {reference::equilibrium::solve(model, branch, loads, {.error_bound = asked}),
+              reference::energy::solve(model, branch, loads, {.error_bound = asked})})
             for (const auto& point : path.points) {
                 EXPECT_EQ(std::isfinite(point.bound.length), asked);
                 EXPECT_EQ(std::isnan(point.stiffness_left), !asked);

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/recursive.hpp"
 #include "recursive/series/expand.hpp"
-#include "recursive/settle.hpp"
-#include "recursive/solve.hpp"
+#include "recursive/stepping/settle.hpp"
 #include "tests/recursive/elements.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
@@ -49,8 +49,8 @@ Scene with_curves(Scene scene) {
                 const double rate = K(static_cast<int>(a), static_cast<int>(a));
                 law.axis[a] = LinearRate{rate};
                 if (a % 3 == 0)
-                    law.axis[a] =
-                        Curve{{0, 1}, {{0, rate, 0, 0}, {0, rate, rate, 0}, {2 * rate, 3 * rate, 0, 0}}};
+                    law.axis[a] = Curve{
+                        {0, 1}, {{0, rate, 0, 0}, {0, rate, rate, 0}, {2 * rate, 3 * rate, 0, 0}}};
             }
             bushing->law = law;
             bushing->formulation = formulations[k++ % formulations.size()];
@@ -63,15 +63,16 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
     for (const char* name :
          {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "two_spring_arch"})
         scenes.emplace_back(name, support::scene(name));
-    scenes.emplace_back("chrono_mcpherson with curves", with_curves(support::scene("chrono_mcpherson")));
+    scenes.emplace_back("chrono_mcpherson with curves",
+                        with_curves(support::scene("chrono_mcpherson")));
     for (const auto& [name, scene] : scenes) {
         const Model model = compile(scene);
         for (const auto& method : methods) {
             if (!has_steps(method)) continue;
             const auto count = [&](int steps) {
                 const long before = allocations;
-                const auto path =
-                    solve(model, model.branches[1], {.method = method, .steps = steps, .record = 1});
+                const auto path = solve(model, model.branches[1],
+                                        {.method = method, .steps = steps, .record = 1});
                 EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
                 return allocations - before;
             };
@@ -106,7 +107,7 @@ TEST(Allocation, NoPointThatSomebodyVisitsAllocates) {
 TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
-        March<double> s(model, branch, analyse(model));
+        SteppingState<double> s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied.setZero();
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);

@@ -1,5 +1,5 @@
 // Constraint functions Φ and their Jacobian Φ_q, eqs. (1), (6)-(7).
-#include "recursive/constraints.hpp"
+#include "recursive/formula/constraints.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,8 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
             for (const auto& joint : every_joint(i, j, random)) {
                 const Model model = model_of(joint, 2);
                 const State<double> q = random.state(2);
-                const auto Phi_q = constraint_jacobian<double>(model, inputs_as_drawn<double>(model), q);
+                const auto Phi_q =
+                    constraint_jacobian<double>(model, inputs_as_drawn<double>(model), q);
                 double worst = 0;
                 for (int c = 0; c < 12; ++c) {
                     constexpr double h = 1e-5;
@@ -59,7 +60,8 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
                         (2 * h);
                     worst = std::max(worst, (difference - Phi_q.col(c)).cwiseAbs().maxCoeff());
                 }
-                EXPECT_LE(worst, 2e-9) << "joint kind " << joint.index() << ", bodies " << i << " " << j;
+                EXPECT_LE(worst, 2e-9)
+                    << "joint kind " << joint.index() << ", bodies " << i << " " << j;
             }
         }
     }
@@ -78,18 +80,19 @@ TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
         for (const auto& joint : every_joint(0, 1, random)) {
             const Model model = model_of(joint, 2);
             std::vector<Pose> poses{random.pose(), random.pose()};
-            const Vector<double> before =
-                constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
+            const Vector<double> before = constraint_values<double>(
+                model, inputs_as_drawn<double>(model), state_of<double>(poses));
             const Pose move = random.pose();
             for (auto& pose : poses) pose = {move.r + move.p * pose.r, move.p * pose.p};
-            const Vector<double> after =
-                constraint_values<double>(model, inputs_as_drawn<double>(model), state_of<double>(poses));
+            const Vector<double> after = constraint_values<double>(
+                model, inputs_as_drawn<double>(model), state_of<double>(poses));
             // Coincidence is written in ground axes: its three rows rotate, their norm is
             // unchanged.
             if (std::holds_alternative<CoincidentPoints>(model.constraints.front().kind))
                 EXPECT_NEAR(before.head<3>().norm(), after.head<3>().norm(), 1e-13);
             else
-                EXPECT_LE((before - after).cwiseAbs().maxCoeff(), 1e-13) << "joint kind " << joint.index();
+                EXPECT_LE((before - after).cwiseAbs().maxCoeff(), 1e-13)
+                    << "joint kind " << joint.index();
         }
     }
 }

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/delay.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "recursive/singularity/stability_limit.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -23,12 +23,14 @@ TEST(Delay, LimitOfThePendulumIsWhereTheLoadTurnsStifferThanTheBushing) {
     for (const auto& branch : model.branches)
         for (const Method& method : methods) {
             const auto limit = stability_limit(model, branch, method, analysis);
-            ASSERT_EQ(limit.has_value(), std::holds_alternative<Linear>(method.kind)) << method.name;
+            ASSERT_EQ(limit.has_value(), std::holds_alternative<Linear>(method.kind))
+                << method.name;
             // In `balanced` the bushing's own moment is delayed as well.
             if (method.name == "balanced") {
                 EXPECT_LT(std::abs(*limit), pendulum_limit);
             } else {
-                EXPECT_NEAR(std::abs(limit.value_or(pendulum_limit)), pendulum_limit, 1) << method.name;
+                EXPECT_NEAR(std::abs(limit.value_or(pendulum_limit)), pendulum_limit, 1)
+                    << method.name;
             }
         }
 }
@@ -39,8 +41,9 @@ TEST(Delay, LimitIsTheSameHoweverFarTheBranchIsAskedToGo) {
         for (auto& branch : scene.branches) branch.to *= times;
         const Model model = compile(scene);
         for (const auto& branch : model.branches)
-            EXPECT_NEAR(std::abs(stability_limit(model, branch, methods[0], analyse(model)).value_or(0)),
-                        pendulum_limit, 1)
+            EXPECT_NEAR(
+                std::abs(stability_limit(model, branch, methods[0], analyse(model)).value_or(0)),
+                pendulum_limit, 1)
                 << times;
     }
 }
@@ -51,7 +54,8 @@ TEST(Delay, IsSaidWhereThePublishedMethodDiverges) {
     const Model model = compile(scene);
     const auto path = solve(model, model.branches[0], {.steps = 600});
     ASSERT_EQ(path.outcome, Outcome::diverged);
-    EXPECT_NE(path.detail.find("by the model the method is stable to 197"), std::string::npos) << path.detail;
+    EXPECT_NE(path.detail.find("by the model the method is stable to 197"), std::string::npos)
+        << path.detail;
     EXPECT_GT(path.points.back().load, pendulum_limit * 0.99);
 }
 
@@ -72,16 +76,19 @@ TEST(Delay, AHangingBarHasTheShareOfItsWeight) {
                 origin +
                 "}\nbodies: {bar: {origin: o}}\n"
                 "joints: {foot: {type: revolute, bodies: [bar, ground], at: foot, axis: y}}\n"
-                "bushings: {torsion: {bodies: [bar, ground], at: foot, rates: [0, 0, 0], rotational_rates: "
+                "bushings: {torsion: {bodies: [bar, ground], at: foot, rates: [0, 0, 0], "
+                "rotational_rates: "
                 "[100, 100, "
                 "100]}}\n"
                 "loads: {weight: {on: bar, at: head, force: [0, 0, -1]}}\n"
-                "branches: {hang: {load: weight, to: 350, steps: 20}, press: {load: weight, to: -150, steps: "
+                "branches: {hang: {load: weight, to: 350, steps: 20}, press: {load: weight, to: "
+                "-150, steps: "
                 "20}}\n"
                 "probes: {head: {on: bar, at: head}}\n",
             "hanging"));
         const Analysis analysis = analyse(model);
-        const auto path = solve(model, model.branches[0], {.method = *find_method("series")}, analysis);
+        const auto path =
+            solve(model, model.branches[0], {.method = *find_method("series")}, analysis);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& point : path.points)
             EXPECT_NEAR(delayed_stiffness(model, model.branches[0], methods[0], analysis, point),
@@ -101,13 +108,15 @@ TEST(Delay, LeversAndAxesTogetherAreEverything) {
     const Model model = compile(support::scene("chrono_mcpherson_preload"));
     const Branch& branch = model.branches[0];
     const Analysis analysis = analyse(model);
-    const auto path = solve(model, branch, {.method = *find_method("series"), .steps = 4}, analysis);
+    const auto path =
+        solve(model, branch, {.method = *find_method("series"), .steps = 4}, analysis);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     const auto of = [&](const Follow& follow) {
         return delayed_stiffness(model, branch, {"", 0, Linear{.follow = follow}}, analysis,
                                  path.points.back());
     };
-    const double none = of({}), lever = of({.lever = true}), axis = of({.axis = true}), both = of(everything);
+    const double none = of({}), lever = of({.lever = true}), axis = of({.axis = true}),
+                 both = of(everything);
     for (const double share : {none, lever, axis, both})
         EXPECT_TRUE(std::isfinite(share) && share >= 0) << share;
     EXPECT_NE(lever, none);

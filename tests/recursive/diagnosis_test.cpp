@@ -1,5 +1,5 @@
 // Diagnosis at the design position: rank, redundancy, idle modes, condition number.
-#include "recursive/diagnosis.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <functional>
 #include <limits>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/assembly.hpp"
-#include "recursive/pattern.hpp"
-#include "recursive/saddle_point.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
+#include "recursive/linear_algebra/pattern.hpp"
+#include "recursive/linear_algebra/saddle_point.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -49,7 +49,8 @@ TEST(Diagnosis, NamesTheSpinOfTheStrutAboutItsOwnAxis) {
               "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount'");
     EXPECT_TRUE(d.idle[0].spins);
     EXPECT_EQ(idle_modes(d),
-              "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount', moves no output");
+              "strut: rotation about the line through 'strut_tube' and 'K2_strut_mount', moves no "
+              "output");
 }
 
 // Two links between ball joints carry a sliding block: their spins are reported together.
@@ -62,22 +63,28 @@ TEST(Diagnosis, LinksThatSpinAboutThemselvesAreToldTogether) {
         "  f1: {type: spherical, bodies: [front, block], at: b}\n"
         "  r0: {type: spherical, bodies: [rear, ground], at: c}\n"
         "  r1: {type: spherical, bodies: [rear, block], at: d}\n"
-        "bushings: {k: {bodies: [block, ground], at: b, rates: [1e4, 1e4, 1e4], rotational_rates: [1e3, 1e3, "
+        "bushings: {k: {bodies: [block, ground], at: b, rates: [1e4, 1e4, 1e4], rotational_rates: "
+        "[1e3, 1e3, "
         "1e3]}}\n"
-        "loads: {push: {on: block, at: b, force: [1, 0, 0]}}\nbranches: {push: {load: push, to: 10, steps: "
+        "loads: {push: {on: block, at: b, force: [1, 0, 0]}}\nbranches: {push: {load: push, to: "
+        "10, steps: "
         "1}}\n";
-    const auto silent = diagnose(
-        compile(parse_scene(begin + "probes: {b: {on: block, at: b}}\n", "links"), Detail::everything));
+    const auto silent = diagnose(compile(
+        parse_scene(begin + "probes: {b: {on: block, at: b}}\n", "links"), Detail::everything));
     ASSERT_EQ(silent.idle.size(), 2u);
-    EXPECT_EQ(idle_modes(silent), "both 'front' and 'rear' spin about themselves, which moves no output");
+    EXPECT_EQ(idle_modes(silent),
+              "both 'front' and 'rear' spin about themselves, which moves no output");
     const auto seen = diagnose(
-        compile(parse_scene(begin + "probes: {b: {on: block, at: b}, side: {on: front, at: off}}\n", "links"),
+        compile(parse_scene(begin + "probes: {b: {on: block, at: b}, side: {on: front, at: off}}\n",
+                            "links"),
                 Detail::everything));
     ASSERT_EQ(seen.idle.size(), 2u);
-    EXPECT_NE(idle_modes(seen).find("front: rotation about the line through 'f0' and 'f1', moves 'side'"),
-              std::string::npos)
+    EXPECT_NE(
+        idle_modes(seen).find("front: rotation about the line through 'f0' and 'f1', moves 'side'"),
+        std::string::npos)
         << idle_modes(seen);
-    EXPECT_NE(idle_modes(seen).find("rear: rotation about the line through 'r0' and 'r1', moves no output"),
+    EXPECT_NE(idle_modes(seen).find(
+                  "rear: rotation about the line through 'r0' and 'r1', moves no output"),
               std::string::npos)
         << idle_modes(seen);
 }
@@ -86,7 +93,8 @@ TEST(Diagnosis, RatesOfAnySizeHideNoMode) {
     for (const double factor : {1e-9, 1e-3, 1.0, 1e3, 1e6, 1e9}) {
         Scene scene = support::scene("chrono_mcpherson");
         for (auto& elastic : scene.elastics) {
-            if (elastic.name != "K3_arm_front") continue;  // one stiff or soft element among ordinary ones
+            if (elastic.name != "K3_arm_front")
+                continue;  // one stiff or soft element among ordinary ones
             std::get<LinearStiffness>(std::get<Bushing>(elastic.kind).law).K *= factor;
         }
         const auto d = diagnose(compile(scene));
@@ -108,9 +116,9 @@ TEST(Diagnosis, ThreeIdleModesOfABodyAreAllFound) {
 }
 
 TEST(Diagnosis, TranslationIsNamedWithItsDirection) {
-    const auto d =
-        diagnose(compile(bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n"
-                             "loads: {load: {on: bar, at: b, force: [0, 1, 0]}}\n")));
+    const auto d = diagnose(compile(
+        bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n"
+            "loads: {load: {on: bar, at: b, force: [0, 1, 0]}}\n")));
     ASSERT_EQ(d.idle.size(), 1u);
     EXPECT_EQ(d.idle[0].description, "bar: translation along (1.000, 0.000, 0.000)");
 }
@@ -159,7 +167,8 @@ TEST(Diagnosis, ASoftDirectionIsNotIdleInATurnedFrame) {
         scene.bodies = {{"block", {{1, 2, 3}, Eigen::Quaterniond::Identity()}}};
         LinearStiffness law;
         law.K.diagonal() << 1e12, 100, 100, 1e12, 100, 100;
-        Bushing mount{{0, Eigen::Vector3d::Zero()}, {ground, {1, 2, 3}}, {}, elastocheck::Vector6::Zero()};
+        Bushing mount{
+            {0, Eigen::Vector3d::Zero()}, {ground, {1, 2, 3}}, {}, elastocheck::Vector6::Zero()};
         if (full) {
             for (int k : {0, 3})
                 law.K.block<3, 3>(k, k) = (R * law.K.block<3, 3>(k, k) * R.transpose()).eval();
@@ -194,8 +203,8 @@ TEST(Diagnosis, ImbalanceAtTheDesignPositionIsSeen) {
 
 // With a NaN in the model no rank is computed; the methods report the failure.
 TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
-    const double none[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                           1e300};  // its square overflows
+    const double none[] = {std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), 1e300};  // its square overflows
     for (const double bad : none) {
         Scene joint = support::scene("mcpherson"), element = joint, body = joint;
         std::get<Distance>(joint.joints[2].kind).i.s_local.y() = bad;
@@ -204,16 +213,19 @@ TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
         for (const auto& [scene, named] : {std::pair{joint, std::string("joint 'tie_rod'")},
                                            {element, "element 'K1_coil'"},
                                            {body, "joint '"}}) {
-            if (std::isfinite(bad) && named.ends_with("joint '")) continue;  // a quaternion of any size turns
+            if (std::isfinite(bad) && named.ends_with("joint '"))
+                continue;  // a quaternion of any size turns
             const Model model = compile(scene);
             const Diagnosis d = diagnose(model);
             EXPECT_TRUE(std::isnan(d.constraint_error) && std::isnan(d.imbalance)) << named << bad;
             EXPECT_TRUE(d.redundant.empty() && d.idle.empty()) << named << bad;
             EXPECT_TRUE(std::isnan(conditioning(model, d).equilibrated)) << named << bad;
             for (const auto& method : methods) {
-                const auto path = solve(model, model.branches.front(), {.method = method, .steps = 3});
+                const auto path =
+                    solve(model, model.branches.front(), {.method = method, .steps = 3});
                 EXPECT_EQ(path.outcome, Outcome::not_finite) << method.name << named << bad;
-                EXPECT_NE(path.detail.find("as drawn a number is not finite in "), std::string::npos)
+                EXPECT_NE(path.detail.find("as drawn a number is not finite in "),
+                          std::string::npos)
                     << path.detail;
                 EXPECT_NE(path.detail.find(named), std::string::npos) << path.detail;
                 EXPECT_TRUE(path.points.empty());
@@ -225,13 +237,15 @@ TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
 TEST(Diagnosis, DoesNotDependOnFrameOrOrder) {
     const Scene scene = support::scene("chrono_mcpherson");
     const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Eigen::Vector3d(1, -2, 0.5).normalized()));
-    for (const auto& other : {support::moved(scene, R, {30, -20, 10}), support::reversed(scene),
-                              support::mirrored(scene), support::with_body_axes(scene, {R, R.conjugate()})}) {
+    for (const auto& other :
+         {support::moved(scene, R, {30, -20, 10}), support::reversed(scene),
+          support::mirrored(scene), support::with_body_axes(scene, {R, R.conjugate()})}) {
         const auto a = diagnose(compile(scene)), b = diagnose(compile(other));
         EXPECT_EQ(a.rank, b.rank);
         EXPECT_NEAR(a.length, b.length, 1e-12);
         ASSERT_EQ(b.idle.size(), 1u);
-        EXPECT_NE(b.idle[0].description.find("strut: rotation about the line through"), std::string::npos)
+        EXPECT_NE(b.idle[0].description.find("strut: rotation about the line through"),
+                  std::string::npos)
             << b.idle[0].description;
     }
 }
@@ -244,8 +258,8 @@ using Eigen::VectorXd;
 
 // Φ_q in (Δr, L Δπ), rows of unit length.
 MatrixXd dense_rows(const Model& model, double length) {
-    MatrixXd rows =
-        constraint_jacobian<double>(model, inputs_as_drawn<double>(model), design_state<double>(model));
+    MatrixXd rows = constraint_jacobian<double>(model, inputs_as_drawn<double>(model),
+                                                design_state<double>(model));
     for (Eigen::Index b = 0; b < rows.cols() / 6; ++b) rows.middleCols(6 * b + 3, 3) /= length;
     for (Eigen::Index k = 0; k < rows.rows(); ++k)
         if (rows.row(k).norm() > 0) rows.row(k).normalize();
@@ -264,7 +278,8 @@ void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& 
     const MatrixXd Phi_q = dense_rows(model, d.length);
     EXPECT_EQ(d.rank, dense_rank(Phi_q)) << what;
     std::vector<int> end(model.joints.size(), 0), joint_of_row;
-    for (const auto& c : model.constraints) joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
+    for (const auto& c : model.constraints)
+        joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
     std::vector<std::pair<int, int>> redundant, found;
     int first = 0, before = 0;
     for (int joint = 0; joint < static_cast<int>(model.joints.size()); ++joint) {
@@ -283,9 +298,10 @@ void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& 
     std::vector<std::vector<int>> sets;
     if (d.rank < d.rows) {
         qr.compute(Phi_q);
-        const MatrixXd Q = qr.householderQ(), Y = Q.rightCols(d.rows - d.rank), P = Y * Y.transpose();
-        MatrixXd coupled =
-            MatrixXd::Zero(static_cast<Eigen::Index>(end.size()), static_cast<Eigen::Index>(end.size()));
+        const MatrixXd Q = qr.householderQ(), Y = Q.rightCols(d.rows - d.rank),
+                       P = Y * Y.transpose();
+        MatrixXd coupled = MatrixXd::Zero(static_cast<Eigen::Index>(end.size()),
+                                          static_cast<Eigen::Index>(end.size()));
         for (int k = 0; k < d.rows; ++k)
             for (int l = 0; l < d.rows; ++l)
                 if (std::abs(P(k, l)) > 1e-7)
@@ -339,7 +355,8 @@ TEST(Conditioning, IsThatOfTheDenseSingularValuesOnEveryBuiltInScene) {
         const Conditioning found = conditioning(model, d);
         SaddleMatrix<double> M = saddle_matrix(model);
         VectorXd Phi(d.rows);
-        assemble<double>(model, inputs_as_drawn<double>(model), design_state<double>(model), M, Phi);
+        assemble<double>(model, inputs_as_drawn<double>(model), design_state<double>(model), M,
+                         Phi);
         const VectorXd D = equilibration<double>(M);
         const MatrixXd raw = sparse(M).toDense(), scaled = D.asDiagonal() * raw * D.asDiagonal();
         const auto kappa = [&](const MatrixXd& A) {
@@ -366,13 +383,16 @@ Scene row_of_bodies(int n, const std::function<Vector3d(int)>& at) {
     return scene;
 }
 Vector3d place(const Scene& scene, BodyId b) {
-    return b == ground ? Vector3d(Vector3d::Zero()) : scene.bodies[static_cast<std::size_t>(b)].design.r;
+    return b == ground ? Vector3d(Vector3d::Zero())
+                       : scene.bodies[static_cast<std::size_t>(b)].design.r;
 }
 Revolute hinge(const Scene& scene, BodyId i, BodyId j, const Vector3d& p, const Vector3d& axis) {
     return {{i, p - place(scene, i)}, {j, p - place(scene, j)}, {i, axis}, {j, axis}};
 }
-Bushing mount(const Scene& scene, BodyId i, BodyId j, const Vector3d& p, const Vector6<double>& rates) {
-    Bushing bushing{{i, p - place(scene, i)}, {j, p - place(scene, j)}, {}, elastocheck::Vector6::Zero()};
+Bushing mount(const Scene& scene, BodyId i, BodyId j, const Vector3d& p,
+              const Vector6<double>& rates) {
+    Bushing bushing{
+        {i, p - place(scene, i)}, {j, p - place(scene, j)}, {}, elastocheck::Vector6::Zero()};
     LinearStiffness law;
     law.K.diagonal() = rates;
     bushing.law = law;
@@ -430,7 +450,8 @@ TEST(Diagnosis, TheJointThatClosesALoopOfTwoThousandIsTheOneThatRepeats) {
     for (const double tilt : {0.0, 1e-6}) {
         Scene scene = chain_of_hinges(2000, true);
         const Vector3d end = place(scene, 1999) + Vector3d(0.1, 0.05, 0);
-        scene.joints.push_back({"last", hinge(scene, 1999, ground, end, Vector3d(tilt, 0, 1).normalized())});
+        scene.joints.push_back(
+            {"last", hinge(scene, 1999, ground, end, Vector3d(tilt, 0, 1).normalized())});
         for (const bool first : {false, true}) {
             if (first) std::ranges::rotate(scene.joints, scene.joints.end() - 1);
             const Model model = compile(scene, Detail::everything);
@@ -453,7 +474,8 @@ Scene tower(int loops) {
         return {k % 3 == 1 ? 0.1 : 0.0, 0.1 * (k / 3 + 1), 0};
     });
     for (int k = 0; k < loops; ++k) {
-        const BodyId left = 3 * k, right = 3 * k + 1, top = 3 * k + 2, base = k == 0 ? ground : 3 * k - 1;
+        const BodyId left = 3 * k, right = 3 * k + 1, top = 3 * k + 2,
+                     base = k == 0 ? ground : 3 * k - 1;
         const Vector3d up(0, 0.1 * k, 0), across(0.1, 0, 0), next = up + Vector3d(0, 0.1, 0);
         const std::string name = std::to_string(k);
         const auto join = [&](const char* what, BodyId i, BodyId j, const Vector3d& p) {
@@ -489,7 +511,8 @@ TEST(Diagnosis, AGridOfBallsHasTheJointThatIsThereTwice) {
     });
     const auto ball = [&](BodyId i, BodyId j) {
         const Vector3d p = place(scene, i);
-        scene.joints.push_back({"ball", Spherical{{i, p - place(scene, i)}, {j, p - place(scene, j)}}});
+        scene.joints.push_back(
+            {"ball", Spherical{{i, p - place(scene, i)}, {j, p - place(scene, j)}}});
     };
     for (BodyId b = 0; b < side * side; ++b) {
         scene.elastics.push_back({"k", mount(scene, b, ground, place(scene, b), all_round)});
@@ -506,11 +529,14 @@ TEST(Diagnosis, AGridOfBallsHasTheJointThatIsThereTwice) {
 
 TEST(Diagnosis, AThousandLinksThatSpinAreAModeOfOneBodyEach) {
     // A body with a thousand others on it.
-    Scene scene = row_of_bodies(1001, [](int k) -> Vector3d { return {0.01 * k, 0.5, 0.001 * (k % 7)}; });
+    Scene scene = row_of_bodies(1001, [](int k) -> Vector3d {
+        return {0.01 * k, 0.5, 0.001 * (k % 7)};
+    });
     scene.elastics.push_back({"frame", mount(scene, 0, ground, place(scene, 0), all_round)});
     for (BodyId b = 1; b <= 1000; ++b) {
         const Vector3d p = place(scene, b), other = p - Vector3d(0, 0.3, 0.1);
-        scene.joints.push_back({"ball", Spherical{{b, Vector3d::Zero()}, {0, p - place(scene, 0)}}});
+        scene.joints.push_back(
+            {"ball", Spherical{{b, Vector3d::Zero()}, {0, p - place(scene, 0)}}});
         Vector6<double> rates = all_round;
         rates.tail<3>().setZero();
         scene.elastics.push_back({"k", mount(scene, b, ground, other, rates)});

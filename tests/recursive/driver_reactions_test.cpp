@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/respond.hpp"
-#include "recursive/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "recursive/linear_response.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -30,7 +30,8 @@ constexpr Kind kinds[] = {
     {"length of a distance", "drive: joints.rod, to: 15"},
     {.name = "offset of a plane",
      .branch = "drive: joints.plane, to: -25",
-     .joint = "  plane: {type: in_plane, bodies: [knuckle, ground], at: centre, normal: [0.1, 0.2, 1]}\n"},
+     .joint = "  plane: {type: in_plane, bodies: [knuckle, ground], at: centre, normal: [0.1, 0.2, "
+              "1]}\n"},
     {"angle of a revolute", "drive: joints.hinge, to: 6"},
     {"angle of a cylindrical", "drive: joints.hinge, to: 6", "cylindrical"},
     {"travel of a rack", "drive: joints.rack, to: 20", "revolute",
@@ -100,8 +101,8 @@ Apart apart(const std::vector<Equilibrium>& found, const std::vector<Equilibrium
     for (std::size_t k = 0; k < truth.size(); ++k)
         for (std::size_t j = 0; j < truth[k].reactions.size(); ++j) {
             const Wrench &one = found[k].reactions[j], &other = truth[k].reactions[j];
-            all.most = std::max(
-                {all.most, (one.force - other.force).norm(), (one.moment - other.moment).norm() / lever});
+            all.most = std::max({all.most, (one.force - other.force).norm(),
+                                 (one.moment - other.moment).norm() / lever});
             all.of = std::max({all.of, other.force.norm(), other.moment.norm() / lever});
         }
     return all;
@@ -131,7 +132,8 @@ TEST(Driver, EveryKindByEveryMethodMeetsTheReactionsOfTheEquilibriumLeg) {
         for (const Rung& rung : rungs) {
             Method method = find_method(rung.name).value();
             if (auto* adaptive = std::get_if<Adaptive>(&method.kind)) *adaptive = {1e-9, 1e-9};
-            const auto path = solve(model, branch, {.method = method, .steps = rung.steps, .record = 4});
+            const auto path =
+                solve(model, branch, {.method = method, .steps = rung.steps, .record = 4});
             ASSERT_EQ(path.outcome, Outcome::converged)
                 << kind.name << ", " << rung.name << ": " << path.detail;
             const Apart off = apart(path.points, truth.points);
@@ -143,8 +145,8 @@ TEST(Driver, EveryKindByEveryMethodMeetsTheReactionsOfTheEquilibriumLeg) {
 
 // A body on a joint, a spring and a rod whose driven length is the only driver.
 TEST(Series, ReactionsOfADrivenLengthAreExact) {
-    for (const char* free :
-         {"revolute, bodies: [b, ground], at: o, axis: x", "planar, bodies: [b, ground], at: o, normal: x"}) {
+    for (const char* free : {"revolute, bodies: [b, ground], at: o, axis: x",
+                             "planar, bodies: [b, ground], at: o, normal: x"}) {
         const Model whole = compile(parse_scene(fmt::format(R"(
 elastocheck: 1
 name: rod
@@ -183,10 +185,11 @@ TEST(Respond, ToALengthUnderLoadIsTheDerivativeOfItsBranch) {
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     const Disturbance longer = std::get<Motion>(branch.drivers[0].what);
     const Response response =
-        respond(model, branch, path.points[2], {&longer, 1}, find_method("series").value());
+        linear_response(model, branch, path.points[2], {&longer, 1}, find_method("series").value());
     ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        const Eigen::Vector3d dr = (path.points[3].poses[b].r - path.points[1].poses[b].r) / (2 * h);
+        const Eigen::Vector3d dr =
+            (path.points[3].poses[b].r - path.points[1].poses[b].r) / (2 * h);
         EXPECT_LE((response.increments[0][b].dr - dr).norm(), 1e-6) << b;
     }
 }

@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/solve.hpp"
-#include "recursive/watch.hpp"
+#include "recursive/singularity/branch_events.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -16,7 +16,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-Body body(const char* name, const Vector3d& r) { return {name, {r, Eigen::Quaterniond::Identity()}}; }
+Body body(const char* name, const Vector3d& r) {
+    return {name, {r, Eigen::Quaterniond::Identity()}};
+}
 Point on_ground(const Vector3d& p) { return {ground, p}; }
 
 // A branch with one driver, and the model active on it.
@@ -48,7 +50,9 @@ Direction own_y(BodyId b) { return {b, Vector3d::UnitY()}; }
 Angle crank_angle() {
     return {{0, Vector3d::UnitX()}, {ground, Vector3d::UnitX()}, {ground, -Vector3d::UnitZ()}, 0};
 }
-Vector3d crank_pin(double angle) { return crank_length * Vector3d(std::cos(angle), 0, -std::sin(angle)); }
+Vector3d crank_pin(double angle) {
+    return crank_length * Vector3d(std::cos(angle), 0, -std::sin(angle));
+}
 
 // The rod's far end stays in the plane z = 0.
 constexpr double rod_length = 0.3;
@@ -56,10 +60,11 @@ Driven1 slider_crank(int steps) {
     Scene scene;
     scene.bodies = {body("crank", Vector3d::Zero()), body("rod", {crank_length, 0, 0})};
     const Vector3d pin(crank_length, 0, 0), end(rod_length, 0, 0);
-    scene.joints = {{"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
-                    {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
-                    {"slide", InPlane{{1, end}, on_ground({0, 0, 0}), {ground, Vector3d::UnitZ()}}},
-                    {"motor", crank_angle(), true}};
+    scene.joints = {
+        {"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
+        {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
+        {"slide", InPlane{{1, end}, on_ground({0, 0, 0}), {ground, Vector3d::UnitZ()}}},
+        {"motor", crank_angle(), true}};
     scene.probes = {{"slider", {1, end}}};
     return driven(scene, {Motion{3}, 0, 1}, full_turn, steps);
 }
@@ -86,7 +91,8 @@ TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
         const double coarse = worst_slider(run(d, rung(name), 360, 36)),
                      fine = worst_slider(run(d, rung(name), 720, 36));
         if (fine > 1e-13) {
-            EXPECT_GE(std::log2(coarse / fine), order - 0.2) << name << " " << coarse << " " << fine;
+            EXPECT_GE(std::log2(coarse / fine), order - 0.2)
+                << name << " " << coarse << " " << fine;
         }
     }
 }
@@ -124,25 +130,27 @@ TEST(Driver, AngleTurnsAFourBarThroughAFullTurnOnItsExactGeometry) {
     const auto meet = [&](const Vector3d& pin) -> Vector3d {
         const Vector3d along = (pivot - pin).normalized();
         const double distance = (pivot - pin).norm();
-        const double x = (distance * distance + coupler * coupler - rocker * rocker) / (2 * distance);
+        const double x =
+            (distance * distance + coupler * coupler - rocker * rocker) / (2 * distance);
         const Vector3d up(-along.z(), 0, along.x());
         return pin + x * along + std::sqrt(coupler * coupler - x * x) * up;
     };
     const Vector3d pin = crank_pin(0), end = meet(pin);
     Scene scene;
     scene.bodies = {body("crank", Vector3d::Zero()), body("coupler", pin), body("rocker", pivot)};
-    scene.joints = {{"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
-                    {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
-                    {"pivot", Revolute{{2, Vector3d::Zero()}, on_ground(pivot), own_y(2), y_axis}},
-                    {"knee", InLine{{1, end - pin}, {2, end - pivot}, own_y(2)}},
-                    {"motor", crank_angle(), true}};
+    scene.joints = {
+        {"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
+        {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
+        {"pivot", Revolute{{2, Vector3d::Zero()}, on_ground(pivot), own_y(2), y_axis}},
+        {"knee", InLine{{1, end - pin}, {2, end - pivot}, own_y(2)}},
+        {"motor", crank_angle(), true}};
     scene.probes = {{"knee", {2, end - pivot}}};
     const Driven1 d = driven(scene, {Motion{4}, 0, 1}, full_turn, 360);
     double worst = 0;
     for (const auto& point : run(d, adaptive(1e-12), 36).points)
-        worst = std::max(
-            worst,
-            (point.poses[2].r + point.poses[2].p * (end - pivot) - meet(crank_pin(point.load))).norm());
+        worst = std::max(worst, (point.poses[2].r + point.poses[2].p * (end - pivot) -
+                                 meet(crank_pin(point.load)))
+                                    .norm());
     EXPECT_LE(worst, 1e-12 * base);
 }
 
@@ -150,7 +158,8 @@ TEST(Driver, AngleTurnsAFourBarThroughAFullTurnOnItsExactGeometry) {
 
 Driven1 jacked(const Scene& scene, const Point& at, const Vector3d& drawn, double to, int steps) {
     Scene with = scene;
-    with.joints.push_back({"jack", InPlane{at, on_ground(drawn), {ground, Vector3d::UnitZ()}}, true});
+    with.joints.push_back(
+        {"jack", InPlane{at, on_ground(drawn), {ground, Vector3d::UnitZ()}}, true});
     return driven(with, {Motion{static_cast<int>(with.joints.size()) - 1}, 0, 1}, to, steps);
 }
 
@@ -187,7 +196,9 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
     };
     // Limit of the published sum: ∫ 2k ζ²/(b² + ζ²) dζ, with the spring axes of each step.
     const auto turned_nothing = [&](double z) {
-        return 2 * k * (z - height - half_span * (std::atan(z / half_span) - std::atan(height / half_span)));
+        return 2 * k *
+               (z - height -
+                half_span * (std::atan(z / half_span) - std::atan(height / half_span)));
     };
     const Driven1 d = jacked(scene, scene.probes[0].at, {0, 0, height}, -2 * height - 0.02, 400);
     for (Method method : methods) {
@@ -196,9 +207,10 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
         const auto path = run(d, method, 400);
         double work = 0, worst = 0;
         for (std::size_t n = 0; n < path.points.size(); ++n) {
-            const double jack = path.points[n].reactions.back().force.z(), z = height + path.points[n].load;
-            worst =
-                std::max(worst, std::abs(jack - (method.formal_order > 0 ? force(z) : turned_nothing(z))));
+            const double jack = path.points[n].reactions.back().force.z(),
+                         z = height + path.points[n].load;
+            worst = std::max(
+                worst, std::abs(jack - (method.formal_order > 0 ? force(z) : turned_nothing(z))));
             work += jack * (n == 0 || n + 1 == path.points.size() ? 1 : n % 2 == 1 ? 4 : 2);
         }
         work *= d.branch.to / 400 / 3;
@@ -218,7 +230,8 @@ Scene carriage() {
     Scene scene;
     scene.bodies = {body("carriage", Vector3d::Zero())};
     const Direction along{ground, Vector3d::UnitX()}, own{0, Vector3d::UnitX()};
-    scene.joints = {{"guide", Translational{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own, along}}};
+    scene.joints = {
+        {"guide", Translational{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own, along}}};
     scene.probes = {{"carriage", {0, Vector3d::Zero()}}};
     return scene;
 }
@@ -233,7 +246,8 @@ TEST(Driver, FreeLengthMovesTwoSpringsInSeriesByTheShareOfItsRate) {
         for (const auto& method : methods) {
             if (!steps_or_adapts(method)) continue;
             for (const auto& point : run(d, method).points)
-                EXPECT_NEAR(point.poses[0].r.x(), 0.75 * (start + 2 * point.load), 1e-13) << method.name;
+                EXPECT_NEAR(point.poses[0].r.x(), 0.75 * (start + 2 * point.load), 1e-13)
+                    << method.name;
         }
     }
 }
@@ -242,9 +256,10 @@ TEST(Driver, PreloadPullsABushingBackByItsRate) {
     Scene scene = carriage();
     LinearStiffness law;
     law.K.diagonal() << 2e5, 1e5, 1e5, 10, 10, 10;
-    scene.elastics = {
-        {"mount",
-         Bushing{{ground, Vector3d::Zero()}, {0, Vector3d::Zero()}, law, elastocheck::Vector6::Zero()}}};
+    scene.elastics = {{"mount", Bushing{{ground, Vector3d::Zero()},
+                                        {0, Vector3d::Zero()},
+                                        law,
+                                        elastocheck::Vector6::Zero()}}};
     elastocheck::Vector6 direction = elastocheck::Vector6::Zero();
     direction[0] = 1;
     for (const double start : {0.0, -400.0}) {
@@ -252,7 +267,8 @@ TEST(Driver, PreloadPullsABushingBackByItsRate) {
         for (const auto& method : methods) {
             if (!steps_or_adapts(method)) continue;
             for (const auto& point : run(d, method).points)
-                EXPECT_NEAR(point.poses[0].r.x(), -(start + point.load) / 2e5, 1e-13) << method.name;
+                EXPECT_NEAR(point.poses[0].r.x(), -(start + point.load) / 2e5, 1e-13)
+                    << method.name;
         }
     }
 }
@@ -262,8 +278,9 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
     // starts there.
     const Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
-    const Vector3d drawn = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
-                           scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
+    const Vector3d drawn =
+        scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
+        scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
     Driven1 d = jacked(scene, {wheel.body, wheel.centre_local}, drawn, 0.02, 100);
     d.branch.drivers[0].start = 0.03;
     for (auto& constraint : d.model.constraints)
@@ -274,7 +291,8 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
         const Equilibrium& first = path.points.front();
         const Pose& pose = first.poses[static_cast<std::size_t>(d.model.wheels[0].body)];
         const bool follows = method.formal_order > 0, closes = method.name != "published";
-        EXPECT_NEAR((pose.r + pose.p * wheel.centre_local).z(), drawn.z() + 0.03, closes ? 1e-6 : 1e-3)
+        EXPECT_NEAR((pose.r + pose.p * wheel.centre_local).z(), drawn.z() + 0.03,
+                    closes ? 1e-6 : 1e-3)
             << method.name;
         const auto left = residuals(d.model, d.branch, first);
         EXPECT_LE(left.length, closes ? 1e-6 : 1e-3) << method.name;
@@ -287,18 +305,21 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
 // ---- Regression scenes.
 
 Model found(const std::string& name) {
-    return compile(
-        read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
+    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" +
+                              name + ".yaml"));
 }
 
 TEST(Found, WhatEndsOrLosesItsStabilityIsSaidSoWhateverTheSteps) {
-    for (const char* name : {"adaptive-segfault-arch", "adaptive-segfault-five-links", "arch-past-its-limit",
-                             "straight-column-one-body", "straight-column-two-bodies"}) {
+    for (const char* name :
+         {"adaptive-segfault-arch", "adaptive-segfault-five-links", "arch-past-its-limit",
+          "straight-column-one-body", "straight-column-two-bodies"}) {
         const Model model = found(name);
         for (const char* method : {"tangent", "chord", "midpoint", "adaptive"})
             for (const int steps : {5, 20, 200}) {
-                const auto path = solve(model, model.branches[0], {.method = rung(method), .steps = steps});
-                EXPECT_NE(path.outcome, Outcome::converged) << name << " " << method << " " << steps;
+                const auto path =
+                    solve(model, model.branches[0], {.method = rung(method), .steps = steps});
+                EXPECT_NE(path.outcome, Outcome::converged)
+                    << name << " " << method << " " << steps;
             }
         (void)solve(model, model.branches[0]);
     }
@@ -309,7 +330,8 @@ TEST(Found, AdaptiveEndsAtTheLimitPointOfTheArch) {
     scene.branches[0].to = -219.0436;
     const Model model = compile(scene);
     for (const double tolerance : {1e-4, 1e-5, 1e-7}) {
-        const auto path = solve(model, model.branches[0], {.method = adaptive(tolerance), .steps = 100});
+        const auto path =
+            solve(model, model.branches[0], {.method = adaptive(tolerance), .steps = 100});
         EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
         ASSERT_FALSE(path.points.empty());
         EXPECT_GT(path.points.back().load, -211.6);
@@ -335,20 +357,21 @@ Model bubbles(double k_y, double to, int copies = 1) {
             "  r{0}: {{bodies: [a{0}, ground], from: apex, to: r, rate: 100}}\n",
             k);
         bushings += fmt::format(
-            "  k{0}: {{bodies: [ground, a{0}], at: apex, rates: [0, {1}, 20], rotational_rates: [10, 10, "
+            "  k{0}: {{bodies: [ground, a{0}], at: apex, rates: [0, {1}, 20], rotational_rates: "
+            "[10, 10, "
             "10]}}\n",
             k, k_y);
         loads += fmt::format("  v{0}: {{on: a{0}, at: apex, force: [0, 0, 1]}}\n", k);
         load += fmt::format("{}v{}: 1", k == 0 ? "" : ", ", k);
     }
-    return compile(
-        parse_scene(fmt::format("elastocheck: 1\nname: bubble\nunits: {{length: mm, angle: deg, force: N}}\n"
-                                "points: {{l: [-300, 0, 0], r: [300, 0, 0], apex: [0, 0, 80]}}\n"
-                                "bodies:\n{}joints:\n{}springs:\n{}bushings:\n{}loads:\n{}"
-                                "branches: {{d: {{load: {{{}}}, to: {}, steps: 20}}}}\n"
-                                "probes: {{apex: {{on: a0, at: apex}}}}\n",
-                                bodies, joints, springs, bushings, loads, load, to),
-                    "bubble.yaml"));
+    return compile(parse_scene(
+        fmt::format("elastocheck: 1\nname: bubble\nunits: {{length: mm, angle: deg, force: N}}\n"
+                    "points: {{l: [-300, 0, 0], r: [300, 0, 0], apex: [0, 0, 80]}}\n"
+                    "bodies:\n{}joints:\n{}springs:\n{}bushings:\n{}loads:\n{}"
+                    "branches: {{d: {{load: {{{}}}, to: {}, steps: 20}}}}\n"
+                    "probes: {{apex: {{on: a0, at: apex}}}}\n",
+                    bodies, joints, springs, bushings, loads, load, to),
+        "bubble.yaml"));
 }
 
 // Load [N] at which the body of bubbles() becomes unstable; NaN if k_y keeps it stable.
@@ -395,15 +418,19 @@ std::string upright_bars(double weight) {
         const double rate = k == 0 ? 1000 : 1e-3 * (k + 1);
         points += fmt::format("  foot{0}: [{0}, 0, 0]\n  head{0}: [{0}, 0, 0.5]\n", k);
         bodies += fmt::format("  bar{0}: {{origin: foot{0}}}\n", k);
-        joints += fmt::format("  foot{0}: {{type: spherical, bodies: [bar{0}, ground], at: foot{0}}}\n", k);
+        joints += fmt::format(
+            "  foot{0}: {{type: spherical, bodies: [bar{0}, ground], at: foot{0}}}\n", k);
         bushings += fmt::format(
-            "  b{0}: {{bodies: [bar{0}, ground], at: foot{0}, rates: [0, 0, 0], rotational_rates: [{1}, {1}, "
+            "  b{0}: {{bodies: [bar{0}, ground], at: foot{0}, rates: [0, 0, 0], rotational_rates: "
+            "[{1}, {1}, "
             "{1}]}}\n",
             k, rate);
     }
-    return "elastocheck: 1\nname: upright bars\nunits: {length: m, angle: rad, force: N}\npoints:\n" +
+    return "elastocheck: 1\nname: upright bars\nunits: {length: m, angle: rad, force: "
+           "N}\npoints:\n" +
            points + "bodies:\n" + bodies + "joints:\n" + joints + "bushings:\n" + bushings +
-           fmt::format("static_loads: {{weight: {{on: bar0, at: head0, force: [0, 0, {}]}}}}\n", -weight) +
+           fmt::format("static_loads: {{weight: {{on: bar0, at: head0, force: [0, 0, {}]}}}}\n",
+                       -weight) +
            "loads: {push: {on: bar1, at: head1, force: [1, 0, 0]}}\n"
            "branches: {push: {load: push, to: 1e-3, steps: 4}}\n"
            "probes: {head0: {on: bar0, at: head0}, head1: {on: bar1, at: head1}}\n";
@@ -418,7 +445,8 @@ TEST(Start, ThatIsUnstableIsNamedByEveryMethod) {
             EXPECT_EQ(path.outcome, unstable ? Outcome::singular : Outcome::converged)
                 << method.name << ": " << path.detail;
             EXPECT_EQ(path.points.empty(), unstable) << method.name;
-            EXPECT_EQ(path.detail.find("the equilibrium that settles at 0") != std::string::npos, unstable)
+            EXPECT_EQ(path.detail.find("the equilibrium that settles at 0") != std::string::npos,
+                      unstable)
                 << method.name << ": " << path.detail;
         }
     }
@@ -530,7 +558,8 @@ TEST(Found, AnUnstableStretchIsSeenFromAnyStepsOfItsOwn) {
     // number of points.
     const Model model = found("adaptive-segfault-arch");
     for (const int points : {1, 5, 20, 60}) {
-        const auto path = solve(model, model.branches[0], {.method = adaptive(1e-5), .steps = points});
+        const auto path =
+            solve(model, model.branches[0], {.method = adaptive(1e-5), .steps = points});
         EXPECT_NE(path.outcome, Outcome::converged) << points;
     }
 }

@@ -1,5 +1,5 @@
 // Element stiffness, eqs. (8)-(20), and the force laws.
-#include "recursive/elastic.hpp"
+#include "recursive/formula/elastic.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ Bushing random_bushing(BodyId i, BodyId j, Random& r, bool coupled = true) {
         law.K = r.stiffness();
         for (int k = 0; k < 6; ++k) bushing.preload[k] = r(-500, 500);
     } else {
-        law.K.diagonal() << r(1e5, 1e6), r(1e5, 1e6), r(1e5, 1e6), r(100, 900), r(100, 900), r(100, 900);
+        law.K.diagonal() << r(1e5, 1e6), r(1e5, 1e6), r(1e5, 1e6), r(100, 900), r(100, 900),
+            r(100, 900);
     }
     bushing.law = law;
     return bushing;
@@ -50,12 +51,13 @@ State<double> assembled(const Bushing& b, Random& random) {
     return state_of<double>({i, j});
 }
 
-// The energies of models/mechanism.hpp, written independently.
+// The energies of include/elastocheck/mechanism.hpp, written independently.
 double energy(const ElasticKind& kind, const State<double>& q) {
     const auto place = [&](BodyId b, const Vector3d& s) -> Vector3d { return q[b].r + q[b].p * s; };
     if (const auto* e = std::get_if<AxialSpring>(&kind)) {
         const double stretch =
-            (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() - e->free_length;
+            (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() -
+            e->free_length;
         return std::get<LinearRate>(e->law).k * stretch * stretch / 2;
     }
     const auto& b = std::get<Bushing>(kind);
@@ -120,7 +122,8 @@ TEST(Stiffness, PrintedEquation19IsNeitherSymmetricNorFreeOfForceUnderRigidMotio
     Vector<double> dq(12);
     const Vector3d turn = random.unit();
     for (int b = 0; b < 2; ++b) dq.segment<6>(6 * b) << turn.cross(q[b].r), turn;
-    EXPECT_GT((printed - printed.transpose()).cwiseAbs().maxCoeff(), 1e-2 * K.cwiseAbs().maxCoeff());
+    EXPECT_GT((printed - printed.transpose()).cwiseAbs().maxCoeff(),
+              1e-2 * K.cwiseAbs().maxCoeff());
     EXPECT_GT((printed * dq).cwiseAbs().maxCoeff(), 1e-2 * K.cwiseAbs().maxCoeff());
     // They differ in the second correction and nowhere else: block row 2, columns 3 and 4.
     Matrix<double> difference = K - printed;
@@ -144,8 +147,10 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
                 State<double> plus = q, minus = q;
                 advance(plus, dq);
                 advance(minus, (-dq).eval());
-                const Vector<double> difference = (force_of(model, plus) - force_of(model, minus)) / (2 * h);
-                EXPECT_LE((difference - K.col(c)).cwiseAbs().maxCoeff(), 1e-7 * K.cwiseAbs().maxCoeff());
+                const Vector<double> difference =
+                    (force_of(model, plus) - force_of(model, minus)) / (2 * h);
+                EXPECT_LE((difference - K.col(c)).cwiseAbs().maxCoeff(),
+                          1e-7 * K.cwiseAbs().maxCoeff());
             }
         }
     }
@@ -167,8 +172,10 @@ TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
                 const bool j_free = free == b->j.body;
                 const Eigen::Quaterniond A_other =
                     j_free ? q[b->i.body].p * b->i.A_local : q[b->j.body].p * b->j.A_local;
-                const Eigen::Quaterniond A_free = j_free ? A_other * target : A_other * target.conjugate();
-                q[free].p = (A_free * (j_free ? b->j.A_local : b->i.A_local).conjugate()).normalized();
+                const Eigen::Quaterniond A_free =
+                    j_free ? A_other * target : A_other * target.conjugate();
+                q[free].p =
+                    (A_free * (j_free ? b->j.A_local : b->i.A_local).conjugate()).normalized();
                 q[free].A = q[free].p.toRotationMatrix();
             }
             const auto f = force_of(model_of(kind, 2), q);

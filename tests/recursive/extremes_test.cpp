@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/diagnosis.hpp"
-#include "recursive/loops.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/diagnosis/loops.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -17,14 +17,17 @@ Model door(double skew) {
     return compile(parse_scene(
         fmt::format(
             "elastocheck: 1\nname: door\nunits: {{length: m, angle: rad, force: N, moment: N·m}}\n"
-            "points: {{lower: [0, 0, 0], upper: [0, 0, 1], skew: [{:.17g}, 0, 2], handle: [0, 0.8, 0.5]}}\n"
+            "points: {{lower: [0, 0, 0], upper: [0, 0, 1], skew: [{:.17g}, 0, 2], handle: [0, 0.8, "
+            "0.5]}}\n"
             "bodies: {{door: {{origin: handle}}}}\n"
             "joints:\n"
             "  lower: {{type: revolute, bodies: [door, ground], at: lower, axis: [lower, upper]}}\n"
             "  upper: {{type: revolute, bodies: [door, ground], at: upper, axis: [upper, skew]}}\n"
-            "torsion_springs: {{closer: {{bodies: [door, ground], at: lower, axis: z, rate: 200}}}}\n"
+            "torsion_springs: {{closer: {{bodies: [door, ground], at: lower, axis: z, rate: "
+            "200}}}}\n"
             "loads: {{push: {{on: door, at: handle, force: [1, 0, 0]}}}}\n"
-            "branches: {{open: {{load: push, to: 200, steps: 4}}}}\nprobes: {{handle: {{on: door, at: "
+            "branches: {{open: {{load: push, to: 200, steps: 4}}}}\nprobes: {{handle: {{on: door, "
+            "at: "
             "handle}}}}\n",
             skew),
         "door"));
@@ -34,7 +37,8 @@ TEST(Extremes, ARankThatCannotBeToldIsSaid) {
     for (const double skew : {0.0, 1e-15, 1e-12, 3e-10, 1e-6}) {
         const Model model = door(skew);
         for (const Method& method : methods) {
-            const auto path = solve(model, model.branches[0], {.method = method, .account = true});
+            const auto path =
+                solve(model, model.branches[0], {.method = method, .error_bound = true});
             const bool in_doubt = skew > 1e-13 && skew < 1e-9;
             EXPECT_EQ(path.outcome, in_doubt ? Outcome::singular : Outcome::converged)
                 << method.name << " " << skew << path.detail;
@@ -49,21 +53,25 @@ TEST(Extremes, ARankThatCannotBeToldIsSaid) {
 
 // A bob on a ball joint, and a link from its middle to ground that is longer than their distance.
 Model linked(double apart, const std::string& more = "") {
-    return compile(parse_scene(
-        fmt::format(
-            "elastocheck: 1\nname: linked\nunits: {{length: m, angle: rad, force: N, moment: N·m}}\n"
-            "points: {{ball: [0, 0, 0], wall: [0, 0.5, 0], tip: [0.4, 0, 0]}}\nbodies: {{bob: {{origin: "
-            "tip}}}}\n"
-            "joints:\n"
-            "  ball: {{type: spherical, bodies: [bob, ground], at: ball}}\n"
-            "  link: {{type: distance, bodies: [bob, ground], from: ball, to: wall, length: {:.17g}}}\n"
-            "bushings: {{mount: {{bodies: [bob, ground], at: ball, rates: [0, 0, 0], rotational_rates: [600, "
-            "600, "
-            "600]}}}}\n"
-            "loads: {{pull: {{on: bob, at: tip, force: [0, 0, 1]}}}}\n{}"
-            "branches: {{up: {{load: pull, to: 500, steps: 4}}}}\nprobes: {{tip: {{on: bob, at: tip}}}}\n",
-            0.5 + apart, more),
-        "linked"));
+    return compile(
+        parse_scene(fmt::format("elastocheck: 1\nname: linked\nunits: {{length: m, angle: rad, "
+                                "force: N, moment: N·m}}\n"
+                                "points: {{ball: [0, 0, 0], wall: [0, 0.5, 0], tip: [0.4, 0, "
+                                "0]}}\nbodies: {{bob: {{origin: "
+                                "tip}}}}\n"
+                                "joints:\n"
+                                "  ball: {{type: spherical, bodies: [bob, ground], at: ball}}\n"
+                                "  link: {{type: distance, bodies: [bob, ground], from: ball, to: "
+                                "wall, length: {:.17g}}}\n"
+                                "bushings: {{mount: {{bodies: [bob, ground], at: ball, rates: [0, "
+                                "0, 0], rotational_rates: [600, "
+                                "600, "
+                                "600]}}}}\n"
+                                "loads: {{pull: {{on: bob, at: tip, force: [0, 0, 1]}}}}\n{}"
+                                "branches: {{up: {{load: pull, to: 500, steps: 4}}}}\nprobes: "
+                                "{{tip: {{on: bob, at: tip}}}}\n",
+                                0.5 + apart, more),
+                    "linked"));
 }
 
 TEST(Extremes, JointsThatContradictEachOtherAreRefusedFromNineDigitsOn) {
@@ -71,8 +79,8 @@ TEST(Extremes, JointsThatContradictEachOtherAreRefusedFromNineDigitsOn) {
         const Model model = linked(apart);
         for (const Method& method : methods) {
             const auto path = solve(model, model.branches[0], {.method = method});
-            EXPECT_EQ(path.outcome,
-                      std::abs(apart) < 1e-9 ? Outcome::converged : Outcome::inconsistent_constraints)
+            EXPECT_EQ(path.outcome, std::abs(apart) < 1e-9 ? Outcome::converged
+                                                           : Outcome::inconsistent_constraints)
                 << method.name << " " << apart << path.detail;
         }
     }
@@ -83,18 +91,20 @@ TEST(Extremes, JointsThatContradictEachOtherAreRefusedFromNineDigitsOn) {
 TEST(Extremes, NoPointOfASeriesIsMissingNextToALimitPoint) {
     const auto lever = [](double to) {
         return compile(parse_scene(
-            fmt::format("elastocheck: 1\nname: lever\nunits: {{length: mm, angle: rad, force: N}}\n"
-                        "points: {{hinge: [0, 0, 0], tip: [-100, 0, 280], anchor: [0, 0, -300], behind: "
-                        "[-500, 0, 280]}}\n"
-                        "bodies: {{lever: {{origin: tip}}}}\n"
-                        "joints: {{hinge: {{type: revolute, bodies: [lever, ground], at: hinge, axis: y}}}}\n"
-                        "springs:\n"
-                        "  coil: {{bodies: [lever, ground], from: tip, to: anchor, rate: 100}}\n"
-                        "  back: {{bodies: [lever, ground], from: tip, to: behind, rate: 0.1}}\n"
-                        "loads: {{pull: {{on: lever, at: tip, force: [1, 0, 0]}}}}\n"
-                        "branches: {{pull: {{load: pull, to: {:.17g}, steps: 40}}}}\n"
-                        "probes: {{tip: {{on: lever, at: tip}}}}\n",
-                        to),
+            fmt::format(
+                "elastocheck: 1\nname: lever\nunits: {{length: mm, angle: rad, force: N}}\n"
+                "points: {{hinge: [0, 0, 0], tip: [-100, 0, 280], anchor: [0, 0, -300], behind: "
+                "[-500, 0, 280]}}\n"
+                "bodies: {{lever: {{origin: tip}}}}\n"
+                "joints: {{hinge: {{type: revolute, bodies: [lever, ground], at: hinge, axis: "
+                "y}}}}\n"
+                "springs:\n"
+                "  coil: {{bodies: [lever, ground], from: tip, to: anchor, rate: 100}}\n"
+                "  back: {{bodies: [lever, ground], from: tip, to: behind, rate: 0.1}}\n"
+                "loads: {{pull: {{on: lever, at: tip, force: [1, 0, 0]}}}}\n"
+                "branches: {{pull: {{load: pull, to: {:.17g}, steps: 40}}}}\n"
+                "probes: {{tip: {{on: lever, at: tip}}}}\n",
+                to),
             "lever"));
     };
     int converged = 0;
@@ -117,7 +127,8 @@ TEST(Extremes, ASpringIsNotFollowedThroughALengthOfNothing) {
         "joints: {guide: {type: translational, bodies: [slider, ground], at: seat, axis: z}}\n"
         "springs: {coil: {bodies: [slider, ground], from: seat, to: top, rate: 20000}}\n"
         "loads: {lift: {on: slider, at: seat, force: [0, 0, 1]}}\n"
-        "branches: {lift: {load: lift, to: 100000, steps: 40}}\nprobes: {seat: {on: slider, at: seat}}\n",
+        "branches: {lift: {load: lift, to: 100000, steps: 40}}\nprobes: {seat: {on: slider, at: "
+        "seat}}\n",
         "slider"));
     for (const Method& method : methods)
         EXPECT_NE(solve(model, model.branches[0], {.method = method}).outcome, Outcome::converged)
@@ -129,14 +140,19 @@ TEST(Extremes, ASpringIsNotFollowedThroughALengthOfNothing) {
 TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
     for (const double to : {300., 320.}) {
         const Model model = compile(parse_scene(
-            fmt::format("elastocheck: 1\nname: bar\nunits: {{length: m, angle: rad, force: N, moment: N·m}}\n"
-                        "points: {{foot: [0, 0, 0], head: [0, 0, 0.5]}}\nbodies: {{bar: {{origin: head}}}}\n"
-                        "joints: {{foot: {{type: revolute, bodies: [bar, ground], at: foot, axis: y}}}}\n"
-                        "torsion_springs: {{foot: {{bodies: [bar, ground], at: foot, axis: y, rate: 100}}}}\n"
-                        "loads: {{twist: {{on: bar, moment: [0, 1, 0]}}}}\n"
-                        "branches: {{twist: {{load: twist, to: {}, steps: 20}}}}\nprobes: {{head: {{on: bar, "
-                        "at: head}}}}\n",
-                        to),
+            fmt::format(
+                "elastocheck: 1\nname: bar\nunits: {{length: m, angle: rad, force: N, moment: "
+                "N·m}}\n"
+                "points: {{foot: [0, 0, 0], head: [0, 0, 0.5]}}\nbodies: {{bar: {{origin: "
+                "head}}}}\n"
+                "joints: {{foot: {{type: revolute, bodies: [bar, ground], at: foot, axis: y}}}}\n"
+                "torsion_springs: {{foot: {{bodies: [bar, ground], at: foot, axis: y, rate: "
+                "100}}}}\n"
+                "loads: {{twist: {{on: bar, moment: [0, 1, 0]}}}}\n"
+                "branches: {{twist: {{load: twist, to: {}, steps: 20}}}}\nprobes: {{head: {{on: "
+                "bar, "
+                "at: head}}}}\n",
+                to),
             "bar"));
         const auto path = solve(model, model.branches[0], {.method = *find_method("series")});
         EXPECT_EQ(path.outcome == Outcome::converged, to < 314) << to << path.detail;
@@ -199,8 +215,9 @@ TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
         const Model pulled = rod("", 500), pushed = rod("", -500);
         EXPECT_EQ(solve(pulled, pulled.branches[0], {.method = method}).outcome, Outcome::converged)
             << method.name;
-        const auto falls = solve(pushed, pushed.branches[0], {.method = method, .account = true});
-        EXPECT_EQ(falls.outcome, Outcome::dividing_point) << method.name << falls.detail;
+        const auto falls =
+            solve(pushed, pushed.branches[0], {.method = method, .error_bound = true});
+        EXPECT_EQ(falls.outcome, Outcome::bifurcation_point) << method.name << falls.detail;
         EXPECT_LE(falls.points.size(), 1u) << method.name;  // at most the first point
     }
 }
@@ -210,14 +227,15 @@ TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
     const char* const push = "static_loads: {weight: {on: rod, at: tip, force: [-50, 0, 0]}}";
     for (const Method& method : methods) {
         const Model hangs = rod(pull, 100), stands = rod(push, 10), falls = rod(pull, -100);
-        const auto path = solve(hangs, hangs.branches[0], {.method = method, .account = true});
+        const auto path = solve(hangs, hangs.branches[0], {.method = method, .error_bound = true});
         EXPECT_EQ(path.outcome, Outcome::converged) << method.name << path.detail;
         const auto none = solve(stands, stands.branches[0], {.method = method});
         EXPECT_EQ(none.outcome, Outcome::singular) << method.name;
-        EXPECT_NE(none.detail.find("that settles at 0"), none.detail.npos) << method.name << none.detail;
+        EXPECT_NE(none.detail.find("that settles at 0"), none.detail.npos)
+            << method.name << none.detail;
         // Hangs until the load exceeds its weight, at 50 N.
         const auto over = solve(falls, falls.branches[0], {.method = method});
-        EXPECT_EQ(over.outcome, Outcome::dividing_point) << method.name << over.detail;
+        EXPECT_EQ(over.outcome, Outcome::bifurcation_point) << method.name << over.detail;
         ASSERT_FALSE(over.points.empty());
         EXPECT_NEAR(over.points.back().load, -50, 13) << method.name;
         EXPECT_GE(over.points.back().load, -50 * (1 + 1e-5)) << method.name;

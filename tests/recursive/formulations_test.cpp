@@ -1,10 +1,10 @@
-// Laws, formulations and followers against an independent implementation of models/mechanism.hpp.
+// Laws, formulations and followers against an independent implementation of include/elastocheck/mechanism.hpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "models/curve.hpp"
-#include "recursive/elastic.hpp"
-#include "recursive/knots.hpp"
+#include "recursive/formula/elastic.hpp"
+#include "recursive/stepping/knots.hpp"
 #include "tests/recursive/elements.hpp"
 
 namespace elastocheck::recursive {
@@ -39,11 +39,13 @@ Long energy_of(const Curve& f, Long x) {
     return x < 0 ? -sum : sum;
 }
 Long energy_of(const ScalarLaw& law, Long x) {
-    if (const auto* linear = std::get_if<LinearRate>(&law)) return static_cast<Long>(linear->k) * x * x / 2;
+    if (const auto* linear = std::get_if<LinearRate>(&law))
+        return static_cast<Long>(linear->k) * x * x / 2;
     return energy_of(std::get<Curve>(law), x);
 }
 Long energy_of(const SpatialLaw& law, const Vector6<Long>& e) {
-    if (const auto* linear = std::get_if<LinearStiffness>(&law)) return e.dot(linear->K.cast<Long>() * e) / 2;
+    if (const auto* linear = std::get_if<LinearStiffness>(&law))
+        return e.dot(linear->K.cast<Long>() * e) / 2;
     Long sum = 0;
     for (int k = 0; k < 6; ++k)
         sum += energy_of(std::get<PerAxis>(law).axis[static_cast<std::size_t>(k)], e[k]);
@@ -65,7 +67,8 @@ Vector6<Long> measured(const Bushing& b, const State<Long>& q) {
     switch (b.formulation.angles) {
         case Formulation::Angles::rotation_vector: theta = turn.angle() * turn.axis(); break;
         case Formulation::Angles::cardan:
-            theta = {std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)), std::atan2(-B(0, 1), B(0, 0))};
+            theta = {std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)),
+                     std::atan2(-B(0, 1), B(0, 0))};
             break;
         case Formulation::Angles::projected:
             theta = {std::atan2(-B(1, 2), B(2, 2)), std::atan2(B(0, 2), B(2, 2)),
@@ -140,7 +143,8 @@ double gradient_error(const Element& element, const std::vector<Pose>& poses) {
             advance(q, Vector<Long>(share * h * Vector<Long>::Unit(12, c)));
             return energy(element, q);
         };
-        const Long slope = (45 * (at(1) - at(-1)) - 9 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60 * h);
+        const Long slope =
+            (45 * (at(1) - at(-1)) - 9 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60 * h);
         worst = std::max(worst, std::abs(slope - f[c]));
     }
     return static_cast<double>(worst / f.cwiseAbs().maxCoeff());
@@ -161,14 +165,15 @@ TEST(Law, OfACurveIsItsPolynomialAndTheDerivativeOfIt) {
                                         (12 * h)),
                     1e-8);
         EXPECT_NEAR(gradient<double>(f, x),
-                    static_cast<double>((energy_of(f, at + h) - energy_of(f, at - h)) / (2 * h)), 1e-3);
+                    static_cast<double>((energy_of(f, at + h) - energy_of(f, at - h)) / (2 * h)),
+                    1e-3);
     }
     for (std::size_t k = 0; k < f.knots.size(); ++k) {
         const auto piece = static_cast<Piece>(k);
         EXPECT_EQ(piece_at(f, f.knots[k]), piece + 1);  // a knot belongs to the piece behind it
         EXPECT_EQ(piece_at(f, std::nextafter(f.knots[k], -9.0)), piece);
-        EXPECT_NEAR(gradient<double>(f, f.knots[k], piece), gradient<double>(f, f.knots[k], piece + 1),
-                    1e-10);
+        EXPECT_NEAR(gradient<double>(f, f.knots[k], piece),
+                    gradient<double>(f, f.knots[k], piece + 1), 1e-10);
     }
 }
 
@@ -204,14 +209,17 @@ TEST(Formulation, OfASpringWithACurveHasTheForcesOfItsEnergy) {
     Random random;
     int compared = 0;
     for (int trial = 0; trial < 50; ++trial) {
-        const AxialSpring s{
-            {0, random.vector()}, {1, random.vector()}, random_curve(random, 1, 1e3), random(0.1, 2)};
+        const AxialSpring s{{0, random.vector()},
+                            {1, random.vector()},
+                            random_curve(random, 1, 1e3),
+                            random(0.1, 2)};
         const std::vector<Pose> poses{random.pose(), random.pose()};
         if (near_a_knot(s, state_of<double>(poses)) ||
             force_of<double>(s, state_of<double>(poses)).norm() < 10)
             continue;
         const auto q = state_of<double>(poses);
-        if ((q[0].r + q[0].lever(s.i.s_local) - q[1].r - q[1].lever(s.j.s_local)).norm() < 0.3) continue;
+        if ((q[0].r + q[0].lever(s.i.s_local) - q[1].r - q[1].lever(s.j.s_local)).norm() < 0.3)
+            continue;
         EXPECT_LE(gradient_error(s, poses), 1e-10);
         ++compared;
     }
@@ -231,11 +239,13 @@ TEST(Formulation, WithoutEnergyHasTheForcesAsStated) {
             measured(b, state_of<Long>({{q[0].r, q[0].p}, {q[1].r, q[1].p}})).cast<double>();
         const Vector6<double> stress = gradient<double>(b.law, e) + b.preload;
         const Vector3d F = A_i * stress.head<3>(), M = A_i * stress.tail<3>();
-        const Vector3d p_j = q[1].r + q[1].lever(b.j.s_local), p_i = q[0].r + q[0].lever(b.i.s_local);
+        const Vector3d p_j = q[1].r + q[1].lever(b.j.s_local),
+                       p_i = q[0].r + q[0].lever(b.i.s_local);
         Vector<double> stated(12);
         stated << -F, -((formulation.offset_moment ? p_j : p_i) - q[0].r).cross(F) - M, F,
             (p_j - q[1].r).cross(F) + M;
-        EXPECT_LE((force_of<double>(b, q) - stated).norm(), 1e-12 * stated.norm()) << name_of(formulation);
+        EXPECT_LE((force_of<double>(b, q) - stated).norm(), 1e-12 * stated.norm())
+            << name_of(formulation);
     }
 }
 
@@ -276,7 +286,8 @@ TEST(Formulation, OfAnyKindIsTheSameLawAtSmallDeformations) {
     const double size = 1e-6;
     std::vector<Pose> poses = somewhere(b, size, random);
     const State<double> q = state_of<double>(poses);
-    poses[1].r += q[0].r + q[0].lever(b.i.s_local) - q[1].r - q[1].lever(b.j.s_local) + size * random.unit();
+    poses[1].r +=
+        q[0].r + q[0].lever(b.i.s_local) - q[1].r - q[1].lever(b.j.s_local) + size * random.unit();
     const Vector<double> f = force_of<double>(b, state_of<double>(poses));
     for (const Formulation& formulation : every_formulation()) {
         b.formulation = formulation;
@@ -293,15 +304,16 @@ TEST(Formulation, OnJIsTheBushingTurnedRound) {
         for (int trial = 0; trial < 10; ++trial) {
             Bushing b = bushing(random, {Formulation::Frame::on_j}, curves);
             const auto poses = somewhere(b, 0.9, random);
-            const Bushing turned = turned_round(b);
+            const Bushing turned = markers_swapped(b);
             ASSERT_EQ(turned.formulation.frame, Formulation::Frame::on_i);
             if (near_a_knot(turned, state_of<double>(poses))) continue;
             const auto straight = [&](const State<Long>& q) {
                 const auto axes = [&](const Marker& m) -> Matrix3L {
-                    return q[m.body].p.toRotationMatrix() * m.A_local.cast<Long>().toRotationMatrix();
+                    return q[m.body].p.toRotationMatrix() *
+                           m.A_local.cast<Long>().toRotationMatrix();
                 };
-                const Vector3L D =
-                    q[1].r + q[1].p * b.j.s_local.cast<Long>() - q[0].r - q[0].p * b.i.s_local.cast<Long>();
+                const Vector3L D = q[1].r + q[1].p * b.j.s_local.cast<Long>() - q[0].r -
+                                   q[0].p * b.i.s_local.cast<Long>();
                 const Eigen::AngleAxis<Long> turn(Matrix3L(axes(b.i).transpose() * axes(b.j)));
                 Vector6<Long> e;
                 e << axes(b.j).transpose() * D, turn.angle() * turn.axis();
@@ -318,7 +330,8 @@ TEST(Formulation, OnJIsTheBushingTurnedRound) {
                 };
                 const Long slope =
                     (45 * (at(1) - at(-1)) - 9 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60 * h);
-                EXPECT_LE(static_cast<double>(std::abs(slope - f[c])), 1e-10 * static_cast<double>(f.norm()));
+                EXPECT_LE(static_cast<double>(std::abs(slope - f[c])),
+                          1e-10 * static_cast<double>(f.norm()));
             }
         }
 }
@@ -335,7 +348,9 @@ TEST(Formulation, CardanAnglesMakeTheRotation) {
         EXPECT_LE((made - B).cwiseAbs().maxCoeff(), 1e-14);
         const Middle<double> half = middle<double>(B);
         EXPECT_LE((half.S * half.S - B).cwiseAbs().maxCoeff(), 1e-14);
-        EXPECT_LE((jacobian(half) * (half.S + B) - Matrix3<double>::Identity()).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LE(
+            (jacobian(half) * (half.S + B) - Matrix3<double>::Identity()).cwiseAbs().maxCoeff(),
+            1e-14);
     }
 }
 

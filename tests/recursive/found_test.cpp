@@ -3,18 +3,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
 namespace {
 
 Model found(const std::string& name) {
-    return compile(
-        read_scene(fmt::format("{}/../../tests/recursive/found/{}.yaml", ELASTOCHECK_SCENES, name)));
+    return compile(read_scene(
+        fmt::format("{}/../../tests/recursive/found/{}.yaml", ELASTOCHECK_SCENES, name)));
 }
 Method named(const char* name) { return find_method(name).value(); }
 
@@ -60,12 +60,14 @@ TEST(Found, NoLimitPointOfAnImperfectColumn) {
             const Model model = compile(parse_scene(
                 fmt::format(
                     "elastocheck: 1\nname: column\nunits: {{length: m, angle: rad, force: N}}\n"
-                    "points: {{foot: [0, 0, 0], head: [{}, 0, 0.5]}}\nbodies: {{b: {{origin: foot}}}}\n"
+                    "points: {{foot: [0, 0, 0], head: [{}, 0, 0.5]}}\nbodies: {{b: {{origin: "
+                    "foot}}}}\n"
                     "joints: {{s: {{type: revolute, bodies: [b, ground], at: foot, axis: y}}}}\n"
                     "bushings: {{k: {{bodies: [b, ground], at: foot, rates: [0, 0, 0], "
                     "rotational_rates: [1000, 1000, 1000]}}}}\n"
                     "loads: {{p: {{on: b, at: head, force: [0, 0, -1]}}}}\n"
-                    "branches: {{r: {{load: p, to: {}, steps: 20}}}}\nprobes: {{h: {{on: b, at: head}}}}\n",
+                    "branches: {{r: {{load: p, to: {}, steps: 20}}}}\nprobes: {{h: {{on: b, at: "
+                    "head}}}}\n",
                     off, to),
                 "column.yaml"));
             for (const char* method : {"series", "adaptive"}) {
@@ -82,7 +84,7 @@ TEST(Series, SeesStabilityLostAndRegainedInsideAnExpansion) {
     const Model model = found("unstable-inside-an-expansion");
     for (const int order : {8, 16, 24}) {
         const auto path = series::follow(model, model.branches[0], {.order = order});
-        EXPECT_EQ(path.outcome, Outcome::dividing_point) << order << ": " << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << order << ": " << path.detail;
         ASSERT_FALSE(path.expansions.empty());
         const auto place = series::Place{path.expansions.size() - 1, path.expansions.back().reach};
         const auto last = series::evaluate(model, model.branches[0], path, place);
@@ -111,17 +113,21 @@ TEST(Recursion, IsTheSameFarFromTheOrigin) {
         for (const char* method : {"published", "tangent", "adaptive", "series"}) {
             const Options options{.method = named(method), .steps = 40, .record = 4};
             const auto near = solve(here, branch, options), path = solve(there, branch, options);
-            ASSERT_EQ(path.outcome, Outcome::converged) << far << " " << method << ": " << path.detail;
+            ASSERT_EQ(path.outcome, Outcome::converged)
+                << far << " " << method << ": " << path.detail;
             ASSERT_EQ(path.points.size(), near.points.size());
             const double digits = 1e-15 * far;
             for (std::size_t k = 0; k < near.points.size(); ++k) {
                 for (std::size_t b = 0; b < near.points[k].poses.size(); ++b) {
-                    const Eigen::Vector3d off = path.points[k].poses[b].r - c - near.points[k].poses[b].r;
+                    const Eigen::Vector3d off =
+                        path.points[k].poses[b].r - c - near.points[k].poses[b].r;
                     EXPECT_LE(off.norm(), 20 * digits) << far << " " << method;
                 }
                 for (std::size_t j = 0; j < near.points[k].reactions.size(); ++j)
-                    EXPECT_LE((path.points[k].reactions[j].force - near.points[k].reactions[j].force).norm(),
-                              1e7 * digits + 1e-6)
+                    EXPECT_LE(
+                        (path.points[k].reactions[j].force - near.points[k].reactions[j].force)
+                            .norm(),
+                        1e7 * digits + 1e-6)
                         << far << " " << method;
             }
         }
@@ -137,14 +143,15 @@ TEST(Series, CountsItsExpansionsForEachKnot) {
         table += fmt::format("{}[{}, {}]", k > 0 ? ", " : "", x, 1e4 * x * (1 + 10 * x));
     }
     const Model model = compile(parse_scene(
-        fmt::format("elastocheck: 1\nname: rows\nunits: {{length: m, angle: rad, force: N}}\n"
-                    "points: {{a: [0, 0, 0], b: [0, 0, 0.5]}}\nbodies: {{m: {{origin: a}}}}\n"
-                    "joints: {{g: {{type: translational, bodies: [m, ground], at: a, axis: z}}}}\n"
-                    "springs: {{s: {{bodies: [m, ground], from: a, to: b, curve: {{table: [{}], symmetric: "
-                    "true}}}}}}\n"
-                    "loads: {{f: {{on: m, at: a, force: [0, 0, 1]}}}}\n"
-                    "branches: {{d: {{load: f, to: 1900, steps: 10}}}}\nprobes: {{a: {{on: m, at: a}}}}\n",
-                    table),
+        fmt::format(
+            "elastocheck: 1\nname: rows\nunits: {{length: m, angle: rad, force: N}}\n"
+            "points: {{a: [0, 0, 0], b: [0, 0, 0.5]}}\nbodies: {{m: {{origin: a}}}}\n"
+            "joints: {{g: {{type: translational, bodies: [m, ground], at: a, axis: z}}}}\n"
+            "springs: {{s: {{bodies: [m, ground], from: a, to: b, curve: {{table: [{}], symmetric: "
+            "true}}}}}}\n"
+            "loads: {{f: {{on: m, at: a, force: [0, 0, 1]}}}}\n"
+            "branches: {{d: {{load: f, to: 1900, steps: 10}}}}\nprobes: {{a: {{on: m, at: a}}}}\n",
+            table),
         "rows.yaml"));
     const auto path = series::follow(model, model.branches[0], {.expansions = 5});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;

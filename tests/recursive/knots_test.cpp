@@ -4,12 +4,12 @@
 
 #include <numbers>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/curve.hpp"
-#include "recursive/analysis.hpp"
-#include "recursive/diagnosis.hpp"
-#include "recursive/knots.hpp"
-#include "recursive/solve.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/stepping/knots.hpp"
 #include "tests/recursive/elements.hpp"
 #include "tests/recursive/walks.hpp"
 
@@ -54,7 +54,8 @@ struct Arm {
         const double x = out * std::cos(phi), z = -out * std::sin(phi);  // of the head
         const double length = std::hypot(x - out, z + below), stretch = length - below;
         const double f = rate * stretch + gradient<double>(curve, stretch);
-        const double slope = ((x - out) * -out * std::sin(phi) + (z + below) * -out * std::cos(phi)) / length;
+        const double slope =
+            ((x - out) * -out * std::sin(phi) + (z + below) * -out * std::cos(phi)) / length;
         return f * slope + load * std::cos(phi);  // ∂V/∂φ, V = u - load z_end, z_end = -sin φ
     }
     // Its zero, by bisection.
@@ -81,7 +82,8 @@ struct Errors {
 Errors errors(const Arm& arm, const Method& method, int steps) {
     const Model model = arm.model();
     const auto path = solve(model, model.branches[0], {.method = method, .steps = steps});
-    EXPECT_EQ(path.outcome, Outcome::converged) << method.name << " " << steps << ": " << path.detail;
+    EXPECT_EQ(path.outcome, Outcome::converged)
+        << method.name << " " << steps << ": " << path.detail;
     Errors e;
     for (const auto& point : path.points) {
         e.last = std::abs(angle_of(point) - arm.angle(point.load));
@@ -119,7 +121,8 @@ TEST(Knots, StopsAreHitInOneStepOfFirstOrderAndLeaveTheRungsTheirOwnBehind) {
     // ... and with a stop the point behind the knot has the error of the overshoot.
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
-        const Errors coarse = errors_near(with_stop, method, 400), fine = errors_near(with_stop, method, 800);
+        const Errors coarse = errors_near(with_stop, method, 400),
+                     fine = errors_near(with_stop, method, 800);
         EXPECT_NEAR(order(coarse.worst, fine.worst), 1, 0.1) << method.name;
         if (method.formal_order > 0) {
             EXPECT_NEAR(order(coarse.last, fine.last), method.formal_order, 0.05) << method.name;
@@ -140,7 +143,8 @@ TEST(Knots, OfACurveLeaveOneStepOfSecondOrderAndThirdWhereItIsCorrected) {
 }
 
 TEST(Knots, AdaptiveLandsOnThemAndHoldsTheToleranceInFewSteps) {
-    for (const auto& [name, arm, most] : {std::tuple{"stop", with_stop, 16}, {"curve", with_curve, 50}})
+    for (const auto& [name, arm, most] :
+         {std::tuple{"stop", with_stop, 16}, {"curve", with_curve, 50}})
         for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7}) {
             Method method = rung("adaptive");
             method.kind = Adaptive{tolerance, tolerance};
@@ -149,7 +153,8 @@ TEST(Knots, AdaptiveLandsOnThemAndHoldsTheToleranceInFewSteps) {
             const Errors e = errors(arm, method, 100);
             EXPECT_LE(e.worst, tolerance) << name;
             // A fourth-order method needs 10^¼ times as many steps for a tenth of the tolerance.
-            EXPECT_LE(path.counts.factorisations, most * std::pow(1e-5 / std::min(tolerance, 1e-5), 0.25))
+            EXPECT_LE(path.counts.factorisations,
+                      most * std::pow(1e-5 / std::min(tolerance, 1e-5), 0.25))
                 << name;
         }
 }
@@ -225,7 +230,8 @@ TEST(Knots, WhereThePathTurnsBackEndIt) {
     const Model model = arm.model();
     const double phi = std::asin(0.02 / Arm::out);  // nearly: the spring leans a little
     for (const auto& method : methods) {
-        if (std::holds_alternative<Series>(method.kind) || std::holds_alternative<Linear>(method.kind))
+        if (std::holds_alternative<Series>(method.kind) ||
+            std::holds_alternative<Linear>(method.kind))
             continue;
         const auto path = solve(model, model.branches[0], {.method = method, .steps = 300});
         EXPECT_EQ(path.outcome, Outcome::limit_point) << method.name << " " << path.detail;
@@ -246,11 +252,13 @@ Model torsion_arm(const LoadKind& load, double to, double rate) {
                                        {ground, Vector3d::UnitY()},
                                        {0, Vector3d::UnitY()}}}};
     // θ_z of markers whose z is the hinge's y.
-    const Eigen::Quaterniond axes = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitY());
+    const Eigen::Quaterniond axes =
+        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitY());
     PerAxis law;
     law.axis.fill(LinearRate{0});
     law.axis[5] = LinearRate{rate};
-    scene.elastics = {{"bar", Bushing{{ground, Vector3d::Zero(), axes}, {0, Vector3d::Zero(), axes}, law}}};
+    scene.elastics = {
+        {"bar", Bushing{{ground, Vector3d::Zero(), axes}, {0, Vector3d::Zero(), axes}, law}}};
     scene.branches = {{"wind", 0, to, 50, ParameterUnit::newton, {{Load{"load", load}, 0, 1}}}};
     scene.probes = {{"end", {0, Vector3d(0.4, 0, 0)}}};
     return compile(scene);
@@ -259,7 +267,8 @@ Model torsion_arm(const LoadKind& load, double to, double rate) {
 TEST(Follower, AtRightAnglesTurnsAnArmByForceTimesLeverOverRate) {
     const double rate = 300, lever = 0.4;
     for (const auto& [kind, moment] :
-         {std::pair<LoadKind, double>{FollowerForce{{0, Vector3d(lever, 0, 0)}, Vector3d::UnitZ()}, -lever},
+         {std::pair<LoadKind, double>{FollowerForce{{0, Vector3d(lever, 0, 0)}, Vector3d::UnitZ()},
+                                      -lever},
           {FollowerMoment{0, Vector3d::UnitY()}, 1}}) {
         const Model model = torsion_arm(kind, 900, rate);
         for (const auto& method : methods) {
@@ -280,7 +289,8 @@ TEST(Follower, AtRightAnglesTurnsAnArmByForceTimesLeverOverRate) {
 
 TEST(Follower, ThatABranchDrivesMustBeInTheModelThatWasAnalysed) {
     const Model other = torsion_arm(DeadForce{{0, Vector3d(0.4, 0, 0)}, Vector3d::UnitZ()}, 1, 300);
-    const Model model = torsion_arm(FollowerForce{{0, Vector3d(0.4, 0, 0)}, Vector3d::UnitZ()}, 1, 300);
+    const Model model =
+        torsion_arm(FollowerForce{{0, Vector3d(0.4, 0, 0)}, Vector3d::UnitZ()}, 1, 300);
     Model free = other;  // nothing but the follower joins force and rotation of the body
     EXPECT_NO_THROW((void)solve(model, model.branches[0], {}, analyse(model)));
     EXPECT_THROW((void)solve(
@@ -318,13 +328,14 @@ TEST(Formulation, OfEveryKindLeavesTheRungsTheirOrder) {
              1,
              100,
              ParameterUnit::none,
-             {{Load{"force", FollowerForce{{0, Vector3d(0.1, 0.05, 0)}, Vector3d(900, 500, 1200)}}, 0, 1},
+             {{Load{"force", FollowerForce{{0, Vector3d(0.1, 0.05, 0)}, Vector3d(900, 500, 1200)}},
+               0, 1},
               {Load{"moment", DeadMoment{0, Vector3d(120, -60, 200)}}, 0, 1}}}};
         scene.probes = {{"p", {0, Vector3d(0.1, 0.05, 0)}}};
         const Model model = compile(scene);
         const auto last = [&](const char* name, int steps) {
-            const auto path =
-                solve(model, model.branches[0], {.method = rung(name), .steps = steps, .record = 1});
+            const auto path = solve(model, model.branches[0],
+                                    {.method = rung(name), .steps = steps, .record = 1});
             EXPECT_EQ(path.outcome, Outcome::converged)
                 << name_of(formulation) << " " << name << ": " << path.detail;
             return path.points.back().poses[0];

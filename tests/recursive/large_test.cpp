@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/analysis.hpp"
-#include "recursive/loops.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/diagnosis/loops.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/solve.hpp"
 #include "tests/support/cantilever.hpp"
 
 namespace elastocheck::recursive {
@@ -24,17 +24,19 @@ Scene springs_in_series(int n) {
         points += fmt::format("  p{}: [{}, 0, 0]\n", i, i * pitch);
         bodies += fmt::format("  b{}: {{origin: p{}}}\n", i, i);
         bushings += fmt::format(
-            "  s{}: {{bodies: [b{}, {}], at: p{}, rates: [{}, 2e6, 3e6], rotational_rates: [100, 200, "
+            "  s{}: {{bodies: [b{}, {}], at: p{}, rates: [{}, 2e6, 3e6], rotational_rates: [100, "
+            "200, "
             "300]}}\n",
             i, i, i == 1 ? std::string("ground") : fmt::format("b{}", i - 1), i - 1, k);
     }
     return parse_scene(
-        fmt::format("elastocheck: 1\nname: springs in series\n"
-                    "units: {{length: m, angle: rad, force: N}}\npoints:\n{}bodies:\n{}bushings:\n{}"
-                    "loads:\n  pull: {{on: b{}, at: p{}, force: [1, 0, 0]}}\n"
-                    "branches:\n  pull: {{load: pull, to: {}, steps: 5}}\n"
-                    "probes:\n  end: {{on: b{}, at: p{}}}\n",
-                    points, bodies, bushings, n, n, F, n, n),
+        fmt::format(
+            "elastocheck: 1\nname: springs in series\n"
+            "units: {{length: m, angle: rad, force: N}}\npoints:\n{}bodies:\n{}bushings:\n{}"
+            "loads:\n  pull: {{on: b{}, at: p{}, force: [1, 0, 0]}}\n"
+            "branches:\n  pull: {{load: pull, to: {}, steps: 5}}\n"
+            "probes:\n  end: {{on: b{}, at: p{}}}\n",
+            points, bodies, bushings, n, n, F, n, n),
         "springs");
 }
 
@@ -44,13 +46,15 @@ TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
         ASSERT_EQ(model.bodies.size(), static_cast<std::size_t>(n));
         const Analysis analysis = analyse(model);
         for (const Method& method : methods) {
-            const auto path = solve(model, model.branches[0], {.method = method, .steps = 5}, analysis);
+            const auto path =
+                solve(model, model.branches[0], {.method = method, .steps = 5}, analysis);
             ASSERT_EQ(path.outcome, Outcome::converged) << method.name << " " << path.detail;
             for (const auto& point : path.points)
                 for (int i = 1; i <= n; ++i) {
                     const Pose& pose = point.poses[static_cast<std::size_t>(i - 1)];
                     const Eigen::Vector3d there(i * pitch + i * point.load / k, 0, 0);
-                    EXPECT_LE((pose.r - there).norm(), 1e-10 * i) << method.name << " " << i << " of " << n;
+                    EXPECT_LE((pose.r - there).norm(), 1e-10 * i)
+                        << method.name << " " << i << " of " << n;
                     EXPECT_LE(pose.p.vec().norm(), 1e-10) << method.name;
                 }
         }
@@ -61,12 +65,12 @@ TEST(Large, SpringsInSeriesAddUpTheirCompliancesByEveryMethod) {
 // expansions would become arbitrarily short.
 TEST(Large, ALongLeafIsBentInFewExpansions) {
     using namespace support;
-    const Model model = compile(
-        parse_scene("elastocheck: 1\nname: leaf\nunits: {length: m, angle: rad, force: N}\n" + leaf(100) +
-                        fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
-                                    "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
-                                    10 * EI / (L * L)),
-                    "leaf"));
+    const Model model = compile(parse_scene(
+        "elastocheck: 1\nname: leaf\nunits: {length: m, angle: rad, force: N}\n" + leaf(100) +
+            fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
+                        "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
+                        10 * EI / (L * L)),
+        "leaf"));
     const series::Path path = series::follow(model, model.branches[0], {}, analyse(model));
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     EXPECT_LE(path.expansions.size(), 40u);
@@ -81,8 +85,10 @@ TEST(Large, MemoryOfTheFactorsGrowsAsTheChain) {
     };
     const double few = entries(50), many = entries(200);
     EXPECT_LE(many, 4.2 * few);
-    EXPECT_LE(many, 200 * (2 * 36 +
-                           30));  // of every body: the triangles of its own block, and the next one's twice
+    EXPECT_LE(
+        many,
+        200 * (2 * 36 +
+               30));  // of every body: the triangles of its own block, and the next one's twice
 }
 
 // n carriers on bushings to ground, side by side along y, each connected to the next by a rod with
@@ -93,16 +99,18 @@ Scene carriers_and_rods(int n) {
         points += fmt::format("  p{}: [0, {}, 0]\n", i, 0.3 * i);
         bodies += fmt::format("  c{}: {{origin: p{}}}\n", i, i);
         bushings += fmt::format(
-            "  s{}: {{bodies: [c{}, ground], at: p{}, rates: [1e4, 2e4, 3e4], rotational_rates: [100, 200, "
+            "  s{}: {{bodies: [c{}, ground], at: p{}, rates: [1e4, 2e4, 3e4], rotational_rates: "
+            "[100, 200, "
             "300]}}\n",
             i, i, i);
         if (i == 0) continue;
         points += fmt::format("  m{}: [{}, {}, 0.02]\n", i, 0.01 * (i % 3), 0.3 * i - 0.1);
         points += fmt::format("  e{}: [{}, {}, 0.05]\n", i, 0.02 * (i % 3), 0.3 * i - 0.02);
         bodies += fmt::format("  rod{}: {{origin: m{}}}\n", i, i);
+        joints += fmt::format("  a{}: {{type: spherical, bodies: [rod{}, c{}], at: p{}}}\n", i, i,
+                              i - 1, i - 1);
         joints +=
-            fmt::format("  a{}: {{type: spherical, bodies: [rod{}, c{}], at: p{}}}\n", i, i, i - 1, i - 1);
-        joints += fmt::format("  b{}: {{type: spherical, bodies: [rod{}, c{}], at: e{}}}\n", i, i, i, i);
+            fmt::format("  b{}: {{type: spherical, bodies: [rod{}, c{}], at: e{}}}\n", i, i, i, i);
     }
     return parse_scene(
         fmt::format("elastocheck: 1\nname: carriers and rods\n"
@@ -134,8 +142,9 @@ TEST(Large, RodsThatSpinAreHeldEachOnItsOwnBodyAndMoveNothingElse) {
         for (std::size_t b = 0; b < rods.bodies.size(); ++b)
             for (std::size_t c = 0; c < distances.bodies.size(); ++c)
                 if (rods.bodies[b].name == distances.bodies[c].name)
-                    worst = std::max(worst,
-                                     (one.points.back().poses[b].r - other.points.back().poses[c].r).norm());
+                    worst = std::max(
+                        worst,
+                        (one.points.back().poses[b].r - other.points.back().poses[c].r).norm());
         EXPECT_LE(worst, name == std::string("series") ? 1e-11 : 1e-4) << name;
     }
 }
@@ -157,15 +166,15 @@ TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
         joints += stiff_link(i);
     }
     const Model model = compile(
-        parse_scene(
-            fmt::format("elastocheck: 1\nname: repeated hinges\nunits: {{length: m, angle: rad, force: N}}\n"
-                        "points:\n{}bodies:\n{}joints:\n{}torsion_springs:\n"
-                        "  t: {{bodies: [link0, ground], at: q0, axis: y, rate: 50}}\n"
-                        "loads:\n  push: {{on: link0, at: r0, force: [1, 0, 0]}}\n"
-                        "branches:\n  push: {{load: push, to: 1, steps: 2}}\n"
-                        "probes:\n  end: {{on: link0, at: r0}}\n",
-                        points, bodies, joints),
-            "hinges"),
+        parse_scene(fmt::format("elastocheck: 1\nname: repeated hinges\nunits: {{length: m, angle: "
+                                "rad, force: N}}\n"
+                                "points:\n{}bodies:\n{}joints:\n{}torsion_springs:\n"
+                                "  t: {{bodies: [link0, ground], at: q0, axis: y, rate: 50}}\n"
+                                "loads:\n  push: {{on: link0, at: r0, force: [1, 0, 0]}}\n"
+                                "branches:\n  push: {{load: push, to: 1, steps: 2}}\n"
+                                "probes:\n  end: {{on: link0, at: r0}}\n",
+                                points, bodies, joints),
+                    "hinges"),
         Detail::everything);
     const std::vector<int> loop = loops(model);
     ASSERT_EQ(loop.size(), static_cast<std::size_t>(10 * n));
@@ -213,7 +222,8 @@ probes: {end: {on: c, at: s}}
     EXPECT_EQ(of("cd"), of("de"));
     EXPECT_EQ(of("cd"), of("ec"));
     for (const char* alone : {"bc", "fg"})
-        for (const char* other : {"ga", "cd"}) EXPECT_NE(of(alone), of(other)) << alone << " " << other;
+        for (const char* other : {"ga", "cd"})
+            EXPECT_NE(of(alone), of(other)) << alone << " " << other;
     EXPECT_NE(of("ga"), of("cd"));
     EXPECT_NE(of("bc"), of("fg"));
 }

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "models/compile.hpp"
-#include "recursive/diagnosis.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -27,8 +27,8 @@ double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath
     for (std::size_t k = 0; k < std::min(a.points.size(), b.points.size()); ++k)
         for (std::size_t body = 0; body < idle.size(); ++body) {
             const Pose &in_a = a.points[k].poses[body], &in_b = b.points[k].poses[body];
-            worst =
-                std::max({worst, (in_a.r - in_b.r).norm(), idle[body] ? 0 : in_a.p.angularDistance(in_b.p)});
+            worst = std::max(
+                {worst, (in_a.r - in_b.r).norm(), idle[body] ? 0 : in_a.p.angularDistance(in_b.p)});
         }
     return worst;
 }
@@ -44,25 +44,29 @@ EquilibriumPath truth(const Model& model, const Branch& branch) {
 }
 
 TEST(Methods, EachRungHasItsOrderToTheTruth) {
-    for (const char* name :
-         {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar", "bushing_pair", "two_spring_arch"}) {
+    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar",
+                             "bushing_pair", "two_spring_arch"}) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             const auto exact = truth(model, branch);
             for (const auto& method : methods) {
                 if (!has_steps(method)) continue;
                 const auto error = [&](int steps) {
-                    const auto path = solve(model, branch, {.method = method, .steps = steps, .record = 10});
+                    const auto path =
+                        solve(model, branch, {.method = method, .steps = steps, .record = 10});
                     EXPECT_EQ(path.outcome, Outcome::converged)
                         << name << " " << method.name << ": " << path.detail;
                     return apart(model, path, exact);
                 };
                 // Fine enough for the asymptotic order, coarse enough to stay above round-off.
-                const int steps = method.formal_order == 2 ? 4000 : method.formal_order == 3 ? 500 : 1000;
+                const int steps = method.formal_order == 2   ? 4000
+                                  : method.formal_order == 3 ? 500
+                                                             : 1000;
                 const double coarse = error(steps), fine = error(2 * steps);
                 if (fine < 1e-11) continue;
                 EXPECT_NEAR(std::log2(coarse / fine), method.formal_order,
                             method.formal_order > 0 ? 0.15 : 0.12)
-                    << name << " " << branch.name << " " << method.name << ": " << coarse << " " << fine;
+                    << name << " " << branch.name << " " << method.name << ": " << coarse << " "
+                    << fine;
             }
         }
     }
@@ -84,7 +88,8 @@ TEST(Methods, RecordedPointsAreThoseOfTheFullRun) {
     for (const auto& method : methods) {
         if (!has_steps(method)) continue;
         const auto full = solve(model, model.branches[0], {.method = method, .steps = 60});
-        const auto some = solve(model, model.branches[0], {.method = method, .steps = 60, .record = 12});
+        const auto some =
+            solve(model, model.branches[0], {.method = method, .steps = 60, .record = 12});
         ASSERT_EQ(some.points.size(), 13u);
         for (std::size_t k = 0; k < 13; ++k) {
             EXPECT_EQ(some.points[k].load, full.points[5 * k].load);
@@ -97,10 +102,12 @@ TEST(Methods, RecordedPointsAreThoseOfTheFullRun) {
 TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
     for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
-            const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 6000, .record = 150});
+            const auto exact =
+                solve(model, branch, {.method = rung("chord"), .steps = 6000, .record = 150});
             for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
                 const auto path = solve(
-                    model, branch, {.method = {"adaptive", 3, Adaptive{tolerance, tolerance}}, .steps = 150});
+                    model, branch,
+                    {.method = {"adaptive", 3, Adaptive{tolerance, tolerance}}, .steps = 150});
                 ASSERT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
                 EXPECT_LE(apart(model, path, exact), tolerance + 1e-9)
                     << name << " " << branch.name << " " << tolerance;
@@ -126,8 +133,10 @@ TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
     const auto exact = truth(model, model.branches[0]);
     Method method;
     method.kind = Linear{.follow = everything};
-    const auto coarse = solve(model, model.branches[0], {.method = method, .steps = 200, .record = 10}),
-               fine = solve(model, model.branches[0], {.method = method, .steps = 400, .record = 10});
+    const auto coarse =
+                   solve(model, model.branches[0], {.method = method, .steps = 200, .record = 10}),
+               fine =
+                   solve(model, model.branches[0], {.method = method, .steps = 400, .record = 10});
     EXPECT_NEAR(std::log2(apart(model, coarse, exact) / apart(model, fine, exact)), 1, 0.1);
 }
 
@@ -137,16 +146,19 @@ TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
     double worst_share = 0;
     for (const auto& name : support::small_scene_names()) {
         for (auto [model, branch] : one_ways(compile(support::scene(name)))) {
-            if (branch.unit == ParameterUnit::radian) branch.to /= 2;  // a full turn ends where it began
-            const auto exact = solve(model, branch, {.method = rung("chord"), .steps = 3000, .record = 1});
+            if (branch.unit == ParameterUnit::radian)
+                branch.to /= 2;  // a full turn ends where it began
+            const auto exact =
+                solve(model, branch, {.method = rung("chord"), .steps = 3000, .record = 1});
             double moved = 0;
             for (std::size_t body = 0; body < model.bodies.size(); ++body)
-                moved =
-                    std::max({moved, (exact.points[1].poses[body].r - exact.points[0].poses[body].r).norm(),
-                              exact.points[1].poses[body].p.angularDistance(exact.points[0].poses[body].p)});
+                moved = std::max(
+                    {moved, (exact.points[1].poses[body].r - exact.points[0].poses[body].r).norm(),
+                     exact.points[1].poses[body].p.angularDistance(exact.points[0].poses[body].p)});
             for (const auto& method : methods)
                 for (const int steps : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17, 20}) {
-                    const auto path = solve(model, branch, {.method = method, .steps = steps, .record = 1});
+                    const auto path =
+                        solve(model, branch, {.method = method, .steps = steps, .record = 1});
                     if (path.outcome != Outcome::converged) continue;
                     const double share = apart(model, path, exact) / moved;
                     EXPECT_LE(share, sees_the_truth(method) ? 0.5 : 2)
@@ -178,10 +190,11 @@ TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
             .points.back()
             .constraint_error;
     };
-    const double single = Phi(Precision::single), twofold = Phi(Precision::twofold),
+    const double single = Phi(Precision::single),
+                 double_precision = Phi(Precision::double_precision),
                  extended = Phi(Precision::extended);
-    EXPECT_GT(single, 1e3 * twofold);
-    EXPECT_GT(twofold, 3 * extended);
+    EXPECT_GT(single, 1e3 * double_precision);
+    EXPECT_GT(double_precision, 3 * extended);
 }
 
 TEST(Methods, SinglePrecisionClosesJointsAsFarAsItCan) {
@@ -192,8 +205,8 @@ TEST(Methods, SinglePrecisionClosesJointsAsFarAsItCan) {
     Branch branch = model.branches[0];
     branch.to = 1000;
     for (const char* name : {"balanced", "tangent", "chord", "midpoint"}) {
-        const auto path =
-            solve(model, branch, {.method = rung(name), .steps = 40, .precision = Precision::single});
+        const auto path = solve(
+            model, branch, {.method = rung(name), .steps = 40, .precision = Precision::single});
         EXPECT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
     }
 }

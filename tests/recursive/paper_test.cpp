@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
-#include "models/compile.hpp"
-#include "recursive/diagnosis.hpp"
-#include "recursive/reactions.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/formula/reactions.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -24,10 +24,12 @@ TEST(Paper, TheSweepIsItsLoopOnEveryScene) {
     for (const auto& name : support::small_scene_names()) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
             // The paper's loop starts at the design position.
-            if (std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; })) continue;
+            if (std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; }))
+                continue;
             ++compared;
             std::vector<bool> idle(model.bodies.size(), false);  // idle rotation is not compared
-            for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
+            for (const auto& mode : diagnose(model).idle)
+                idle[static_cast<std::size_t>(mode.body)] = true;
             const auto sweep = solve(model, branch, {.steps = N});
             const auto loop = paper(model, branch, N);
             ASSERT_EQ(sweep.points.size(), loop.size()) << name << ": " << sweep.detail;
@@ -35,8 +37,9 @@ TEST(Paper, TheSweepIsItsLoopOnEveryScene) {
                 for (std::size_t b = 0; b < model.bodies.size(); ++b) {
                     const auto& body = loop[k].q[static_cast<BodyId>(b)];
                     const Pose& pose = sweep.points[k].poses[b];
-                    const double apart =
-                        idle[b] ? 0 : std::max((pose.r - body.r).norm(), pose.p.angularDistance(body.p));
+                    const double apart = idle[b] ? 0
+                                                 : std::max((pose.r - body.r).norm(),
+                                                            pose.p.angularDistance(body.p));
                     if (apart > worst) {
                         worst = apart;
                         where = fmt::format("{} {} point {} body {}", name, branch.name, k, b);

@@ -4,8 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "models/mechanism.hpp"
-#include "recursive/state.hpp"
+#include "elastocheck/mechanism.hpp"
+#include "recursive/formula/state.hpp"
 
 namespace elastocheck::recursive {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "models/scene.hpp"
+#include "elastocheck/scene.hpp"
 #include "tests/recursive/random.hpp"
 
 namespace elastocheck::recursive {
@@ -21,8 +21,12 @@ struct Builder {
     Pose pose(BodyId b) const {
         return b == ground ? Pose{} : scene.bodies[static_cast<std::size_t>(b)].design;
     }
-    Point point(BodyId b, const Vector3d& p) const { return {b, pose(b).p.conjugate() * (p - pose(b).r)}; }
-    Direction direction(BodyId b, const Vector3d& u) const { return {b, pose(b).p.conjugate() * u}; }
+    Point point(BodyId b, const Vector3d& p) const {
+        return {b, pose(b).p.conjugate() * (p - pose(b).r)};
+    }
+    Direction direction(BodyId b, const Vector3d& u) const {
+        return {b, pose(b).p.conjugate() * u};
+    }
     Marker marker(BodyId b, const Vector3d& p, const Quaterniond& A) const {
         return {b, point(b, p).s_local, pose(b).p.conjugate() * A};
     }
@@ -58,7 +62,8 @@ inline Scene random_scene(int number) {
     Builder at;
     at.random.engine.seed(static_cast<unsigned>(number));
     const int nb = 1 + number % 5;
-    for (int b = 0; b < nb; ++b) at.scene.bodies.push_back({fmt::format("body{}", b), at.random.pose()});
+    for (int b = 0; b < nb; ++b)
+        at.scene.bodies.push_back({fmt::format("body{}", b), at.random.pose()});
     for (auto& body : at.scene.bodies) body.design.r *= 0.4;
     for (BodyId b = 0; b < nb; ++b) {
         for (int k = at.chance(0.6) + at.chance(0.3); k > 0; --k)
@@ -68,20 +73,26 @@ inline Scene random_scene(int number) {
         for (int k = 1 + at.chance(0.5); k > 0; --k) {
             const Vector3d p = at.random.vector(0.4);
             const Quaterniond A = at.random.rotation();
-            Bushing bushing{
-                at.marker(b, p, A), at.marker(at.earlier(b), p, A), {}, elastocheck::Vector6::Zero()};
+            Bushing bushing{at.marker(b, p, A),
+                            at.marker(at.earlier(b), p, A),
+                            {},
+                            elastocheck::Vector6::Zero()};
             LinearStiffness law;
-            const double rate = at.decades(4, 6.5), rotational = at.chance(0.2) ? 0 : at.decades(1, 3.5);
-            for (int a = 0; a < 6; ++a) law.K(a, a) = (a < 3 ? rate : rotational) * at.decades(-0.7, 0.7);
+            const double rate = at.decades(4, 6.5),
+                         rotational = at.chance(0.2) ? 0 : at.decades(1, 3.5);
+            for (int a = 0; a < 6; ++a)
+                law.K(a, a) = (a < 3 ? rate : rotational) * at.decades(-0.7, 0.7);
             bushing.law = law;
             if (at.chance(0.3)) bushing.preload.head<3>() = at.random.vector(500);
-            at.scene.elastics.push_back({fmt::format("bushing{}", at.scene.elastics.size()), bushing});
+            at.scene.elastics.push_back(
+                {fmt::format("bushing{}", at.scene.elastics.size()), bushing});
         }
         if (at.chance(0.5)) {
             const Vector3d p = at.random.vector(0.4), other = at.random.vector(0.4);
             at.scene.elastics.push_back(
                 {fmt::format("spring{}", at.scene.elastics.size()),
-                 AxialSpring{at.point(b, p), at.point(at.earlier(b), other), LinearRate{at.decades(3, 5)},
+                 AxialSpring{at.point(b, p), at.point(at.earlier(b), other),
+                             LinearRate{at.decades(3, 5)},
                              (p - other).norm() * (at.chance(0.4) ? at.random(0.8, 1.2) : 1)}});
         }
     }

@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
-#include "models/compile.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/recursive.hpp"
 #include "tests/recursive/random_scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -43,7 +43,8 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
         const Analysis analysis = analyse(model);
         std::map<std::string_view, EquilibriumPath> paths;
         for (const auto& method : methods) {
-            const auto& path = paths[method.name] = solve(model, branch, {.method = method}, analysis);
+            const auto& path = paths[method.name] =
+                solve(model, branch, {.method = method}, analysis);
             EXPECT_EQ(path.outcome == Outcome::converged, path.detail.empty())
                 << number << " " << method.name;
             EXPECT_TRUE(path.outcome != Outcome::converged || path.points.size() == 21u)
@@ -61,8 +62,8 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
                                 : EquilibriumPath{Outcome::branch_lost, {}, {}, {}};
         double references = 0;
         for (std::size_t k = 0; k < std::min(energy.points.size(), equilibrium.points.size()); ++k)
-            references = std::max(
-                references, apart(analysis.diagnosis, energy.points[k], equilibrium.points[k], 1e-7, 1e-7));
+            references = std::max(references, apart(analysis.diagnosis, energy.points[k],
+                                                    equilibrium.points[k], 1e-7, 1e-7));
         if (energy.outcome != Outcome::converged || !(references <= 1)) continue;
         ++judged;
         for (const auto& [name, length, angle] :
@@ -76,7 +77,8 @@ TEST(RandomScenes, AreRightOrSaidToBeUnsolved) {
                 continue;
             }
             for (std::size_t k = 0; k < loads.size(); ++k)
-                EXPECT_LE(apart(analysis.diagnosis, path.points[5 * k], equilibrium.points[k], length, angle),
+                EXPECT_LE(apart(analysis.diagnosis, path.points[5 * k], equilibrium.points[k],
+                                length, angle),
                           1)
                     << number << " " << name << " at " << loads[k];
         }
@@ -110,8 +112,8 @@ TEST(RandomScenes, NoMethodGoesOnWhereBothReferencesEnd) {
             const auto path = solve(model, branch, {.method = method}, analysis);
             if (path.outcome != Outcome::converged) continue;
             ++went_on[std::string(method.name)];
-            ADD_FAILURE() << number << ": " << method.name << " converges, " << equilibrium.detail << "; "
-                          << energy.detail;
+            ADD_FAILURE() << number << ": " << method.name << " converges, " << equilibrium.detail
+                          << "; " << energy.detail;
         }
     }
     for (const auto& [how, count] : ended) RecordProperty(how, count);

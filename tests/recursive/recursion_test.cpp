@@ -4,13 +4,13 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/assembly.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
 
-#include "recursive/diagnosis.hpp"
-#include "recursive/pattern.hpp"
-#include "recursive/solve.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/linear_algebra/pattern.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -25,7 +25,8 @@ Vector3d place(const Equilibrium& state, const Point& p) {
 }
 
 Vector3d leading_point(const Model& model, const Equilibrium& state) {
-    if (!model.wheels.empty()) return place(state, {model.wheels[0].body, model.wheels[0].centre_local});
+    if (!model.wheels.empty())
+        return place(state, {model.wheels[0].body, model.wheels[0].centre_local});
     return place(state, model.probes.front().at);
 }
 
@@ -57,12 +58,15 @@ std::vector<OwnLimit> own_limits() {
     }
     {  // (2 k a² + 2 k_R) θ = F e cos θ; true: 2 k a² sin θ + 2 k_R θ
         const double t =
-            root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); }, 0, 1.5);
-        limits.push_back({"bushing_pair", 6000, {0.25 * std::cos(t), 0, 6000 / 4e5 + 0.25 * std::sin(t)}});
+            root([](double x) { return (2 * 2e5 * 0.0225 + 1000) * x - 6000 * 0.25 * std::cos(x); },
+                 0, 1.5);
+        limits.push_back(
+            {"bushing_pair", 6000, {0.25 * std::cos(t), 0, 6000 / 4e5 + 0.25 * std::sin(t)}});
     }
     {  // k_R θ = F L cos θ: exact, no force is stored with a lever
         const double t = root([](double x) { return 600 * x - 1500 * 0.4 * std::cos(x); }, 0, 1.5);
-        limits.push_back({"pendulum", 1500, {0.32 * std::cos(t), 0.24 * std::cos(t), 0.4 * std::sin(t)}});
+        limits.push_back(
+            {"pendulum", 1500, {0.32 * std::cos(t), 0.24 * std::cos(t), 0.4 * std::sin(t)}});
     }
     {  // F = ∫ 2k ζ²/(b²+ζ²) dζ from h to z; true: 2k (ℓ - ℓ₀) z / ℓ
         const auto F = [](double z) {
@@ -70,11 +74,13 @@ std::vector<OwnLimit> own_limits() {
         };
         limits.push_back(
             {"two_spring_arch", -200, {0, 0, root([&](double z) { return F(z) + 200; }, 0, 0.08)}});
-        limits.push_back(
-            {"two_spring_arch", 2000, {0, 0, root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
+        limits.push_back({"two_spring_arch",
+                          2000,
+                          {0, 0, root([&](double z) { return F(z) - 2000; }, 0.08, 0.5)}});
     }
-    limits.push_back({"single_bushing", 4000,
-                      Vector3d(0.1, 0.2, 0.3) + 4000 * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5)});
+    limits.push_back(
+        {"single_bushing", 4000,
+         Vector3d(0.1, 0.2, 0.3) + 4000 * Vector3d(0.6 / 2e5, 0.48 / 3e5, 0.64 / 5e5)});
     limits.push_back({"parallel_springs", 3000, {0, 0, 0.4 + 3000 / 75e3}});
     return limits;
 }
@@ -102,8 +108,10 @@ TEST(Recursion, LinearScenesAreExactWithOneStep) {
         const Model model = compile(support::scene(name));
         const auto one = solve(model, model.branches[0], {.steps = 1}),
                    many = solve(model, model.branches[0], {.steps = 1000});
-        EXPECT_LE((leading_point(model, one.points.back()) - leading_point(model, many.points.back())).norm(),
-                  1e-12)
+        EXPECT_LE(
+            (leading_point(model, one.points.back()) - leading_point(model, many.points.back()))
+                .norm(),
+            1e-12)
             << name;
     }
 }
@@ -137,8 +145,8 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
         Vector<double> Phi(m);
         assemble<double>(model, drawn, q, kept, Phi);
         const Matrix<double> M = sparse(kept);
-        external_force<double>(model, branch, inputs_at<double>(model, branch, branch.to * (k + 1) / N), q,
-                               f);
+        external_force<double>(model, branch,
+                               inputs_at<double>(model, branch, branch.to * (k + 1) / N), q, f);
         Vector<double> rhs = Vector<double>::Zero(n + m);
         rhs.head(n) = f - stored;
         const Vector<double> x = M.fullPivLu().solve(rhs);
@@ -150,8 +158,8 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
 }
 
 TEST(Recursion, Equation29IsEquation28AlsoWhereTheLeverOfTheLoadMoves) {
-    for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch", "single_bushing",
-                             "parallel_springs"}) {
+    for (const char* name : {"pinned_bar", "bushing_pair", "pendulum", "two_spring_arch",
+                             "single_bushing", "parallel_springs"}) {
         const Model model = compile(support::scene(name));
         for (const auto& branch : model.branches) {
             const auto path = solve(model, branch, {.steps = 25});
@@ -216,7 +224,8 @@ TEST(JointWrench, OfASupportedLeverFollowsFromStatics) {
         "  rod: {type: distance, bodies: [bar, ground], from: b, to: foot}\n"
         "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\n"
         "branches: {up: {load: up, to: 90, steps: 3}}\nprobes: {tip: {on: bar, at: c}}\n";
-    for (const auto& [bodies, sign] : {std::pair{"bar, ground", 1.0}, std::pair{"ground, bar", -1.0}}) {
+    for (const auto& [bodies, sign] :
+         {std::pair{"bar, ground", 1.0}, std::pair{"ground, bar", -1.0}}) {
         std::string scene = text;
         scene.replace(scene.find("BODIES"), 6, bodies);
         const Model model = compile(parse_scene(scene, "lever"));
@@ -240,7 +249,8 @@ TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
     const Eigen::DiagonalMatrix<double, 3> S(1, -1, 1);
     for (const auto& name : support::small_scene_names()) {
         const Scene scene = support::scene(name);
-        const auto drawn = one_ways(compile(scene)), moved = one_ways(compile(support::moved(scene, R, t))),
+        const auto drawn = one_ways(compile(scene)),
+                   moved = one_ways(compile(support::moved(scene, R, t))),
                    axes = one_ways(compile(support::with_body_axes(scene, {R, Q}))),
                    mirrored = one_ways(compile(support::mirrored(scene))),
                    reversed = one_ways(compile(support::reversed(scene)));
@@ -254,7 +264,8 @@ TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
             const auto& [model, branch] = drawn[b];
             const Vector3d p = point(drawn);
             const double bound =
-                1e-9 * (p - leading_point(model, solve(model, branch, {.steps = 1}).points[0])).norm();
+                1e-9 *
+                (p - leading_point(model, solve(model, branch, {.steps = 1}).points[0])).norm();
             EXPECT_LE((point(moved) - (R * p + t)).norm(), bound) << name << ": moved";
             EXPECT_LE((point(axes) - p).norm(), bound) << name << ": body axes";
             EXPECT_LE((point(mirrored) - S * p).norm(), bound) << name << ": mirrored";
@@ -323,11 +334,13 @@ TEST(Outcome, ADrivenPreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
             "rotational_rates: [0, 10, 10]}}\n"
             "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n");
     ASSERT_EQ(diagnose(model).idle.size(), 1u);
-    model.branches[0].drivers.push_back({elastocheck::Preload{0, elastocheck::Vector6::Unit(3)}, 0, 0.01});
+    model.branches[0].drivers.push_back(
+        {elastocheck::Preload{0, elastocheck::Vector6::Unit(3)}, 0, 0.01});
     for (const auto& method : methods) {
         const auto path = solve(model, model.branches[0], {.method = method});
         EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << method.name << ": " << path.detail;
-        EXPECT_NE(path.detail.find("bar: rotation"), std::string::npos) << method.name << ": " << path.detail;
+        EXPECT_NE(path.detail.find("bar: rotation"), std::string::npos)
+            << method.name << ": " << path.detail;
     }
     // A moment about another axis is carried by the guide.
     std::get<elastocheck::Preload>(model.branches[0].drivers.back().what).direction =
@@ -347,12 +360,15 @@ TEST(Outcome, APreloadThatTurnsOntoAnIdleModeIsAnErrorOfEveryMethod) {
         "bodies: {arm: {origin: hinge}, block: {origin: block}}\n"
         "joints:\n  hinge: {type: revolute, bodies: [arm, ground], at: hinge, axis: z}\n"
         "  slide: {type: translational, bodies: [block, arm], at: block, axis: x}\n"
-        "bushings: {stiff: {bodies: [arm, ground], at: hinge, rates: [1e3, 1e3, 1e3], rotational_rates: "
+        "bushings: {stiff: {bodies: [arm, ground], at: hinge, rates: [1e3, 1e3, 1e3], "
+        "rotational_rates: "
         "[1e3, 1e3, 1e3]}}\n"
-        "springs: {pull: {bodies: [block, ground], from: block, to: far, curve: {table: [[-1, -1], [0, 0], "
+        "springs: {pull: {bodies: [block, ground], from: block, to: far, curve: {table: [[-1, -1], "
+        "[0, 0], "
         "[1, 1]]}}}\n"
         "loads: {turn: {on: arm, moment: [0, 0, 1]}}\n"
-        "branches: {out: {load: turn, to: 100, steps: 20}}\nprobes: {block: {on: block, at: block}}\n",
+        "branches: {out: {load: turn, to: 100, steps: 20}}\nprobes: {block: {on: block, at: "
+        "block}}\n",
         "constant force"));
     Curve& pull = std::get<Curve>(std::get<AxialSpring>(model.elastics.at(0).kind).law);
     for (auto& piece : pull.pieces) piece = {};
@@ -380,7 +396,8 @@ Model free_play(double to) {
         "springs: {drive: {bodies: [cart, ground], from: cart, to: end, rate: 1000}}\n"
         "bushings: {play: {bodies: [cart, block], at: block, rates: [1e3, 1e3, 1e3]}}\n"
         "loads: {pull: {on: cart, at: cart, force: [1, 0, 0]}}\n"
-        "branches: {out: {load: pull, to: 100, steps: 50}}\nprobes: {block: {on: block, at: block}}\n",
+        "branches: {out: {load: pull, to: 100, steps: 50}}\nprobes: {block: {on: block, at: "
+        "block}}\n",
         "free play"));
     PerAxis law;
     law.axis.fill(LinearRate{0});
@@ -404,7 +421,8 @@ TEST(Outcome, FreePlayThatHoldsNothingIsIdleUntilItCloses) {
         for (const int steps : {1, 2, 50}) {
             const auto path = solve(closes, closes.branches[0], {.method = method, .steps = steps});
             EXPECT_EQ(path.outcome, Outcome::singular) << method.name << ": " << path.detail;
-            EXPECT_NE(path.detail.find("no longer is"), std::string::npos) << method.name << path.detail;
+            EXPECT_NE(path.detail.find("no longer is"), std::string::npos)
+                << method.name << path.detail;
         }
 }
 TEST(Outcome, FreePlayThatIsPushedIsALoadedIdleMode) {
@@ -423,7 +441,8 @@ TEST(Outcome, ForcesWithoutEnergyOnAnIdleModeAreAnErrorOfEveryMethod) {
     Model model =
         bar("bodies: {bar: {origin: a}}\n"
             "joints: {ball: {type: spherical, bodies: [bar, ground], at: a}}\n"
-            "bushings: {k: {bodies: [ground, bar], at: a, rates: [1, 1, 1], rotational_rates: [0, 10, 10], "
+            "bushings: {k: {bodies: [ground, bar], at: a, rates: [1, 1, 1], rotational_rates: [0, "
+            "10, 10], "
             "formulation: {angles: cardan, conjugate: false}}}\n"
             "loads: {load: {on: bar, moment: [0, 1, 1]}}\n");
     ASSERT_EQ(diagnose(model).idle.size(), 1u);
@@ -440,8 +459,8 @@ TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
         "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n";
     const Model idle =
         bar("joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
-    const Model held =
-        bar("joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
+    const Model held = bar(
+        "joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
     const auto a = solve(idle, idle.branches[0]), b = solve(held, held.branches[0]);
     ASSERT_EQ(a.outcome, Outcome::converged) << a.detail;
     EXPECT_LE((a.points.back().poses[0].r - b.points.back().poses[0].r).norm(), 1e-14);
@@ -460,7 +479,8 @@ TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
         "springs:\n  tie: {bodies: [block, cart], from: block, to: cart, rate: 1000}\n"
         "  drive: {bodies: [cart, ground], from: cart, to: end, rate: 1000}\n"
         "loads: {pull: {on: cart, at: cart, force: [1, 0, 0]}}\n"
-        "branches: {out: {load: pull, to: 500, steps: 50}}\nprobes: {block: {on: block, at: block}}\n",
+        "branches: {out: {load: pull, to: 500, steps: 50}}\nprobes: {block: {on: block, at: "
+        "block}}\n",
         "dead centre"));
     ASSERT_EQ(diagnose(model).idle.size(), 1u);
     const auto path = solve(model, model.branches[0]);
@@ -476,8 +496,8 @@ TEST(Outcome, RedundantButConsistentConstraintsGiveTheRightMotion) {
     const std::string hinge_1 =
         "joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n";
     const Model once = bar(hinge_1 + rest);
-    const Model twice =
-        bar(hinge_1 + "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n" + rest);
+    const Model twice = bar(
+        hinge_1 + "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n" + rest);
     const auto a = solve(once, once.branches[0]), b = solve(twice, twice.branches[0]);
     ASSERT_EQ(b.outcome, Outcome::converged) << b.detail;
     EXPECT_LE(a.points.back().poses[0].p.angularDistance(b.points.back().poses[0].p), 1e-13);
@@ -496,7 +516,8 @@ TEST(Outcome, JointsThatCannotBeClosedAreInconsistent) {
         std::get<DistanceBetween>(longer.constraints.back().kind).length = 5;
         const auto path = solve(longer, longer.branches[0], {.method = method});
         if (method.name == "series") continue;
-        EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << method.name << ": " << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints)
+            << method.name << ": " << path.detail;
         EXPECT_TRUE(path.points.empty());
     }
 }
@@ -543,9 +564,9 @@ TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {
 
 TEST(Outcome, NamesAreDistinct) {
     std::vector<std::string> names;
-    for (const auto outcome :
-         {Outcome::converged, Outcome::singular, Outcome::loaded_idle_mode, Outcome::inconsistent_constraints,
-          Outcome::not_finite, Outcome::iteration_limit, Outcome::diverged, Outcome::branch_lost})
+    for (const auto outcome : {Outcome::converged, Outcome::singular, Outcome::loaded_idle_mode,
+                               Outcome::inconsistent_constraints, Outcome::not_finite,
+                               Outcome::iteration_limit, Outcome::diverged, Outcome::branch_lost})
         names.emplace_back(name(outcome));
     std::ranges::sort(names);
     EXPECT_EQ(std::ranges::adjacent_find(names), names.end());

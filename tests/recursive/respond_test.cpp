@@ -1,5 +1,5 @@
 // Linear response against derivatives of solutions, closed forms and the paper's first step.
-#include "recursive/respond.hpp"
+#include "recursive/linear_response.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/slopes.hpp"
 
@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using support::apart, support::at_wheel, support::bare, support::OneWay, support::stacked, support::way_of;
+using support::apart, support::at_wheel, support::bare, support::OneWay, support::stacked,
+    support::way_of;
 
 Method rung(const char* name) { return find_method(name).value(); }
 
@@ -31,7 +32,8 @@ Equilibrium end_of(const Model& model, const Branch& branch) {
 }
 VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& disturbance,
              const Method& method = rung("series")) {
-    const Response response = respond(way.model, way.branch, bare(state), {&disturbance, 1}, method);
+    const Response response =
+        linear_response(way.model, way.branch, bare(state), {&disturbance, 1}, method);
     EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
     return response.increments.size() == 1 ? stacked(response.increments[0])
                                            : VectorXd::Constant(6, std::nan(""));
@@ -41,9 +43,10 @@ BodyId body_named(const Model& model, const std::string& name) {
         if (model.bodies[b].name == name) return static_cast<BodyId>(b);
     throw std::logic_error("no body " + name);
 }
-void expect_slope(const OneWay& way, const Disturbance& disturbance, double h, const std::string& where) {
-    support::expect_slope(one(way, end_of(way.model, way.branch), disturbance), way, disturbance, h, end_of,
-                          where);
+void expect_slope(const OneWay& way, const Disturbance& disturbance, double h,
+                  const std::string& where) {
+    support::expect_slope(one(way, end_of(way.model, way.branch), disturbance), way, disturbance, h,
+                          end_of, where);
 }
 
 TEST(Respond, IsTheSlopeOfTheOwnSolutionFarFromDesign) {
@@ -66,8 +69,9 @@ TEST(Respond, IsTheSlopeOfTheOwnSolutionFarFromDesign) {
 }
 
 TEST(Respond, IsTheSlopeOfTheOwnSolutionOverADrivenOffset) {
-    const char* all[][2] = {
-        {"double_wishbone", "steering"}, {"front_axle", "parallel"}, {"semi_trailing_arm", "travel"}};
+    const char* all[][2] = {{"double_wishbone", "steering"},
+                            {"front_axle", "parallel"},
+                            {"semi_trailing_arm", "travel"}};
     for (const auto& [scene, branch] : all) {
         const OneWay way = way_of(scene, branch, 1);
         for (std::size_t j = 0; j < way.model.joints.size(); ++j)
@@ -89,7 +93,8 @@ TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     const auto& load = std::get<DeadForce>(std::get<Load>(way.branch.drivers[0].what).kind);
     const auto path = solve(way.model, way.branch);
     const double step = path.points[1].load;
-    const VectorXd dq = step * one(way, path.points[0], UnitWrench{load.at, load.f}, rung("published"));
+    const VectorXd dq =
+        step * one(way, path.points[0], UnitWrench{load.at, load.f}, rung("published"));
     for (std::size_t b = 0; b < way.model.bodies.size(); ++b) {
         const auto at = static_cast<Eigen::Index>(6 * b);
         const Pose &from = path.points[0].poses[b], &to = path.points[1].poses[b];
@@ -110,17 +115,21 @@ struct Taut {
         Scene s;
         s.bodies = {{"slider", {}}};
         const Direction x{ground, Vector3d::UnitX()}, own_x{0, Vector3d::UnitX()};
-        s.joints = {{"guide", Translational{{0, Vector3d::Zero()}, {ground, Vector3d::Zero()}, own_x, x}}};
+        s.joints = {
+            {"guide", Translational{{0, Vector3d::Zero()}, {ground, Vector3d::Zero()}, own_x, x}}};
         s.elastics = {
-            {"along", AxialSpring{{ground, {-0.3, 0, 0}}, {0, Vector3d::Zero()}, LinearRate{k}, 0.3}},
+            {"along",
+             AxialSpring{{ground, {-0.3, 0, 0}}, {0, Vector3d::Zero()}, LinearRate{k}, 0.3}},
             {"across",
-             AxialSpring{{ground, {0, -l, 0}}, {0, Vector3d::Zero()}, LinearRate{rate}, l - T / rate}}};
-        s.branches = {{"pull",
-                       0,
-                       100,
-                       10,
-                       ParameterUnit::newton,
-                       {{Load{"pull", DeadForce{{0, Vector3d::Zero()}, Vector3d::UnitX()}}, 0, 1}}}};
+             AxialSpring{
+                 {ground, {0, -l, 0}}, {0, Vector3d::Zero()}, LinearRate{rate}, l - T / rate}}};
+        s.branches = {
+            {"pull",
+             0,
+             100,
+             10,
+             ParameterUnit::newton,
+             {{Load{"pull", DeadForce{{0, Vector3d::Zero()}, Vector3d::UnitX()}}, 0, 1}}}};
         s.probes = {{"slider", {0, Vector3d::Zero()}}};
         return s;
     }
@@ -133,7 +142,8 @@ TEST(Respond, OnlyTheConsistentTangentKnowsThatTheTautSpringIsStiffAcross) {
     const UnitWrench pull{{0, Vector3d::Zero()}, Vector3d::UnitX()};
     for (const Method& method : methods) {
         const bool linear = std::holds_alternative<Linear>(method.kind);
-        EXPECT_NEAR(one(way, state, pull, method)[0] * (linear ? taut.k : taut.k + taut.T / taut.l), 1, 1e-14)
+        EXPECT_NEAR(one(way, state, pull, method)[0] * (linear ? taut.k : taut.k + taut.T / taut.l),
+                    1, 1e-14)
             << method.name;
     }
 }
@@ -142,7 +152,8 @@ TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
-    const VectorXd linear = one(way, state, side, rung("published")), consistent = one(way, state, side);
+    const VectorXd linear = one(way, state, side, rung("published")),
+                   consistent = one(way, state, side);
     for (const Method& method : methods)
         EXPECT_EQ(one(way, state, side, method),
                   std::holds_alternative<Linear>(method.kind) ? linear : consistent)
@@ -154,9 +165,9 @@ TEST(Respond, OnlyThePosesAndTheParameterOfAStateAreRead) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     Equilibrium state = end_of(way.model, way.branch);
     const std::vector<Disturbance> side{at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero())};
-    const auto first = respond(way.model, way.branch, state, side, rung("tangent"));
+    const auto first = linear_response(way.model, way.branch, state, side, rung("tangent"));
     for (Wrench& reaction : state.reactions) reaction.force.setConstant(std::nan(""));
-    const auto second = respond(way.model, way.branch, state, side, rung("tangent"));
+    const auto second = linear_response(way.model, way.branch, state, side, rung("tangent"));
     ASSERT_EQ(second.outcome, Outcome::converged) << second.detail;
     EXPECT_EQ(stacked(first.increments[0]), stacked(second.increments[0]));
 }
@@ -168,7 +179,8 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
     const Vector3d f(0.3, -2, 0.7), m(5, 1, -3);
     const std::vector<Disturbance> both{UnitWrench{at, f}, UnitWrench{at, Vector3d::Zero(), m},
                                         UnitWrench{at, f, m}};
-    const auto response = respond(way.model, way.branch, state, both, rung("series"), analyse(way.model));
+    const auto response =
+        linear_response(way.model, way.branch, state, both, rung("series"), analyse(way.model));
     ASSERT_EQ(response.increments.size(), 3u) << response.detail;
     EXPECT_EQ(stacked(response.increments[0]), one(way, state, both[0]));
     EXPECT_LE(apart(stacked(response.increments[0]) + stacked(response.increments[1]),
@@ -185,12 +197,14 @@ TEST(Respond, WhatPushesAnIdleModeIsRefusedAndTheModeNamed) {
     const Vector3d axis = state.poses[static_cast<std::size_t>(strut)].p * Vector3d::UnitZ();
     for (const Method& method : methods) {
         const Disturbance twist = UnitWrench{{strut, Vector3d::Zero()}, Vector3d::Zero(), axis};
-        const Response response = respond(way.model, way.branch, state, {&twist, 1}, method);
+        const Response response =
+            linear_response(way.model, way.branch, state, {&twist, 1}, method);
         EXPECT_EQ(response.outcome, Outcome::loaded_idle_mode) << method.name;
         EXPECT_TRUE(response.increments.empty());
-        EXPECT_NE(response.detail.find("a wrench on 'strut' pushes what no joint and no rate resists as "
-                                       "drawn: strut: rotation about"),
-                  std::string::npos)
+        EXPECT_NE(
+            response.detail.find("a wrench on 'strut' pushes what no joint and no rate resists as "
+                                 "drawn: strut: rotation about"),
+            std::string::npos)
             << response.detail;
     }
 }
@@ -223,7 +237,8 @@ Scene hinged(bool twice) {
     s.joints = {{"hinge", hinge}};
     const Point along{0, {0, 0.3, 0}}, along_ground{ground, {0, 0.3, 0}};
     if (twice) s.joints.push_back({"again", Revolute{along, along_ground, own_y, y}});
-    s.elastics = {{"spring", AxialSpring{{ground, {0.5, 0, -0.4}}, {0, {0.5, 0, 0}}, LinearRate{3e4}, 0.4}}};
+    s.elastics = {
+        {"spring", AxialSpring{{ground, {0.5, 0, -0.4}}, {0, {0.5, 0, 0}}, LinearRate{3e4}, 0.4}}};
     s.branches = {{"lift",
                    0,
                    800,
@@ -252,14 +267,19 @@ TEST(Respond, AnOffsetThatASecondJointHoldsIsSaidToContradict) {
     };
     s.joints.push_back({"jack", stand({0.8, 0, 0})});
     s.joints.push_back({"stop", stand({0.8, 0.1, 0})});
-    s.branches[0] = {
-        "still", 0, 0.01, 10, ParameterUnit::metre, {{Load{"none", DeadForce{{0, Vector3d::Zero()}}}, 0, 1}}};
+    s.branches[0] = {"still",
+                     0,
+                     0.01,
+                     10,
+                     ParameterUnit::metre,
+                     {{Load{"none", DeadForce{{0, Vector3d::Zero()}}}, 0, 1}}};
     const OneWay way = way_of(s, "still", 1);
     const Equilibrium state{0, {way.model.bodies[0].design}, {}, 0};
     const Disturbance up = Motion{1};
-    const Response response = respond(way.model, way.branch, state, {&up, 1});
+    const Response response = linear_response(way.model, way.branch, state, {&up, 1});
     EXPECT_EQ(response.outcome, Outcome::inconsistent_constraints);
-    EXPECT_NE(response.detail.find("moving 'jack' would open joints"), std::string::npos) << response.detail;
+    EXPECT_NE(response.detail.find("moving 'jack' would open joints"), std::string::npos)
+        << response.detail;
 }
 
 TEST(Respond, AStateThatIsNoLongerStiffHasNoAnswer) {
@@ -268,11 +288,13 @@ TEST(Respond, AStateThatIsNoLongerStiffHasNoAnswer) {
     const OneWay way = way_of(Taut{4096, 0.25, -1024, 65536}.scene(), "pull", 1);
     const Equilibrium state{0, {way.model.bodies[0].design}, {}, 0};
     const Disturbance pull = UnitWrench{{0, Vector3d::Zero()}, Vector3d::UnitX()};
-    const Response response = respond(way.model, way.branch, state, {&pull, 1}, rung("series"));
+    const Response response =
+        linear_response(way.model, way.branch, state, {&pull, 1}, rung("series"));
     EXPECT_EQ(response.outcome, Outcome::singular);
     EXPECT_TRUE(response.increments.empty());
     EXPECT_NE(response.detail.find("no one response"), std::string::npos) << response.detail;
-    EXPECT_NEAR(one(way, state, pull, rung("published"))[0] * 4096, 1, 1e-14) << "which knows of no pressure";
+    EXPECT_NEAR(one(way, state, pull, rung("published"))[0] * 4096, 1, 1e-14)
+        << "which knows of no pressure";
 }
 
 TEST(Respond, StatesThatAreNoNumbersAreSaidToBeNone) {
@@ -281,7 +303,7 @@ TEST(Respond, StatesThatAreNoNumbersAreSaidToBeNone) {
     state.poses[1].r.y() = std::numeric_limits<double>::quiet_NaN();
     const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
     for (const char* method : {"published", "series"})
-        EXPECT_EQ(respond(way.model, way.branch, state, {&side, 1}, rung(method)).outcome,
+        EXPECT_EQ(linear_response(way.model, way.branch, state, {&side, 1}, rung(method)).outcome,
                   Outcome::not_finite);
 }
 
@@ -289,9 +311,10 @@ TEST(Respond, WhatIsNotOfTheModelIsRefused) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     Equilibrium state = end_of(way.model, way.branch);
     const auto ask = [&](const Disturbance& disturbance) {
-        return respond(way.model, way.branch, state, {&disturbance, 1});
+        return linear_response(way.model, way.branch, state, {&disturbance, 1});
     };
-    EXPECT_THROW(ask(UnitWrench{{ground, Vector3d::Zero()}, Vector3d::UnitX()}), std::invalid_argument);
+    EXPECT_THROW(ask(UnitWrench{{ground, Vector3d::Zero()}, Vector3d::UnitX()}),
+                 std::invalid_argument);
     EXPECT_THROW(ask(UnitWrench{{99, Vector3d::Zero()}, Vector3d::UnitX()}), std::invalid_argument);
     EXPECT_THROW(ask(Motion{-1}), std::invalid_argument);
     EXPECT_THROW(ask(Motion{99}), std::invalid_argument);
@@ -300,7 +323,8 @@ TEST(Respond, WhatIsNotOfTheModelIsRefused) {
             EXPECT_THROW(ask(Motion{static_cast<int>(j)}), std::invalid_argument);
         }
     state.poses.pop_back();
-    EXPECT_THROW(ask(at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero())), std::invalid_argument);
+    EXPECT_THROW(ask(at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero())),
+                 std::invalid_argument);
 }
 
 }  // namespace

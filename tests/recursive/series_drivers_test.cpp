@@ -7,15 +7,15 @@
 #include <numbers>
 #include <thread>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/analysis.hpp"
-#include "recursive/assembly.hpp"
-#include "recursive/pattern.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
+#include "recursive/linear_algebra/pattern.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/solve.hpp"
 #include "tests/recursive/random.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -84,10 +84,12 @@ Scene mcpherson_on_a_jack(Branch& branch) {
     const Eigen::Vector3d centre =
         scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
         scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
-    scene.joints.push_back(
-        {"jack",
-         InPlane{{wheel.body, wheel.centre_local}, {ground, centre}, {ground, Eigen::Vector3d::UnitZ()}, 0},
-         true});
+    scene.joints.push_back({"jack",
+                            InPlane{{wheel.body, wheel.centre_local},
+                                    {ground, centre},
+                                    {ground, Eigen::Vector3d::UnitZ()},
+                                    0},
+                            true});
     branch.name = "travel";
     branch.unit = ParameterUnit::metre;
     branch.steps = 100;
@@ -184,10 +186,11 @@ TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
     Scene scene;
     const Eigen::Vector3d O(0, 0, 0), A(r, 0, 0), B(r + l, 0, 0);
     scene.bodies = {bar("crank", O, A), bar("rod", A, B)};
-    scene.joints = {hinge("main", 0, O, ground, O),
-                    hinge("pin", 0, A, 1, O),
-                    {"slide", InPlane{{1, {l, 0, 0}}, {ground, O}, {ground, Eigen::Vector3d::UnitY()}, 0}},
-                    crank_drive(0)};
+    scene.joints = {
+        hinge("main", 0, O, ground, O),
+        hinge("pin", 0, A, 1, O),
+        {"slide", InPlane{{1, {l, 0, 0}}, {ground, O}, {ground, Eigen::Vector3d::UnitY()}, 0}},
+        crank_drive(0)};
     scene.probes = {{"slider", {1, {l, 0, 0}}}};
     const Walked w = walked(scene, full_turn(3));
     ASSERT_EQ(w.model.bodies.size(), 2u);
@@ -197,22 +200,27 @@ TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
     const auto sampled = sample(w.model, path, w.branch, 360);
     ASSERT_EQ(sampled.points.size(), 361u);
     for (const auto& point : sampled.points) {
-        const double x = r * std::cos(point.load) + std::sqrt(l * l - std::pow(r * std::sin(point.load), 2));
-        const Eigen::Vector3d slider = point.poses[1].r + point.poses[1].p * Eigen::Vector3d(l, 0, 0);
+        const double x =
+            r * std::cos(point.load) + std::sqrt(l * l - std::pow(r * std::sin(point.load), 2));
+        const Eigen::Vector3d slider =
+            point.poses[1].r + point.poses[1].p * Eigen::Vector3d(l, 0, 0);
         worst = std::max(worst, (slider - Eigen::Vector3d(x, 0, 0)).norm() / x);
     }
     EXPECT_LE(worst, 1e-12);
 }
 
 TEST(SeriesDrivers, FourBarGoesAFullTurn) {
-    const double crank = 0.1, coupler = 0.3, rocker = 0.25, base = 0.28;  // Grashof: the crank turns
+    const double crank = 0.1, coupler = 0.3, rocker = 0.25,
+                 base = 0.28;  // Grashof: the crank turns
     // Intersection of coupler and rocker, always on the same side of the diagonal.
     const auto joint = [&](double angle) {
         const Eigen::Vector2d A(crank * std::cos(angle), crank * std::sin(angle)), D(base, 0);
         const Eigen::Vector2d d = D - A;
-        const double along = (d.squaredNorm() + coupler * coupler - rocker * rocker) / (2 * d.norm());
+        const double along =
+            (d.squaredNorm() + coupler * coupler - rocker * rocker) / (2 * d.norm());
         const double across = std::sqrt(coupler * coupler - along * along);
-        const Eigen::Vector2d u = d.normalized(), C = A + along * u + across * Eigen::Vector2d(-u.y(), u.x());
+        const Eigen::Vector2d u = d.normalized(),
+                              C = A + along * u + across * Eigen::Vector2d(-u.y(), u.x());
         return Eigen::Vector3d(C.x(), C.y(), 0);
     };
     const Eigen::Vector3d O(0, 0, 0), A(crank, 0, 0), C = joint(0), D(base, 0, 0);
@@ -232,7 +240,8 @@ TEST(SeriesDrivers, FourBarGoesAFullTurn) {
     const auto sampled = sample(w.model, path, w.branch, 360);
     ASSERT_EQ(sampled.points.size(), 361u);
     for (const auto& point : sampled.points) {
-        const Eigen::Vector3d at = point.poses[1].r + point.poses[1].p * Eigen::Vector3d(coupler, 0, 0);
+        const Eigen::Vector3d at =
+            point.poses[1].r + point.poses[1].p * Eigen::Vector3d(coupler, 0, 0);
         worst = std::max(worst, (at - joint(point.load)).norm() / coupler);
     }
     EXPECT_LE(worst, 1e-12);
@@ -243,7 +252,9 @@ TEST(SeriesDrivers, TheArchIsPushedThroughBothOfItsLimitPoints) {
     const double b = 0.3, h = 0.08, k = 100e3, l_0 = std::hypot(b, h);
     const Eigen::Vector3d apex = scene.bodies[0].design.r;
     scene.joints.push_back(
-        {"jack", InPlane{{0, Eigen::Vector3d::Zero()}, {ground, apex}, {ground, Eigen::Vector3d::UnitZ()}, 0},
+        {"jack",
+         InPlane{
+             {0, Eigen::Vector3d::Zero()}, {ground, apex}, {ground, Eigen::Vector3d::UnitZ()}, 0},
          true});
     Branch branch;
     branch.name = "push";
@@ -284,12 +295,14 @@ TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
     for (std::size_t k = 0; k < scene.elastics.size(); ++k)
         if (std::holds_alternative<AxialSpring>(scene.elastics[k].kind))
             branch.drivers.push_back({FreeLength{static_cast<int>(k)}, 0.02, 0.1});
-        else if (preload.direction[0] == 300 && scene.elastics[k].name.find("arm_front") != std::string::npos)
+        else if (preload.direction[0] == 300 &&
+                 scene.elastics[k].name.find("arm_front") != std::string::npos)
             preload.elastic = static_cast<int>(k);
     branch.drivers.push_back({preload, 1, 3});
-    branch.drivers.push_back({Load{"brake", DeadForce{{scene.wheels[0].body, scene.wheels[0].contact_local},
-                                                      Eigen::Vector3d(-1, 0, 0)}},
-                              800, 1e4});
+    branch.drivers.push_back(
+        {Load{"brake", DeadForce{{scene.wheels[0].body, scene.wheels[0].contact_local},
+                                 Eigen::Vector3d(-1, 0, 0)}},
+         800, 1e4});
     const Walked w = walked(scene, branch);
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -321,15 +334,15 @@ TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
 // ---- Regression scenes: the result is right, or the outcome is a failure.
 
 Model found(const std::string& name) {
-    return compile(
-        read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" + name + ".yaml"));
+    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" +
+                              name + ".yaml"));
 }
 
 TEST(SeriesFound, AStraightColumnIsNotFollowedPastItsBucklingLoad) {
     for (const char* name : {"straight-column-one-body", "straight-column-two-bodies"}) {
         const Model model = found(name);
         const Path path = follow(model, model.branches[0]);
-        EXPECT_EQ(path.outcome, Outcome::dividing_point) << name << " " << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << name << " " << path.detail;
         // Below that load the branch converges.
         Branch below = model.branches[0];
         below.to /= 10;
@@ -354,8 +367,9 @@ TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
             for (const auto& point : sampled.points)
                 EXPECT_LE(apart(model, point, newton(w, point.load, point.poses)), 1e-11)
                     << name << " " << point.load;
-            EXPECT_TRUE(path.outcome == Outcome::converged || path.outcome == Outcome::limit_point ||
-                        path.outcome == Outcome::dividing_point || path.outcome == Outcome::singular)
+            EXPECT_TRUE(
+                path.outcome == Outcome::converged || path.outcome == Outcome::limit_point ||
+                path.outcome == Outcome::bifurcation_point || path.outcome == Outcome::singular)
                 << name << " " << path.detail;
         }
     }
@@ -369,7 +383,8 @@ TEST(Analysis, ServesBranchesAndThreadsAlike) {
     std::vector<Path> shared(4);
     std::vector<std::thread> threads;
     for (std::size_t k = 0; k < shared.size(); ++k)
-        threads.emplace_back([&, k] { shared[k] = follow(model, model.branches[k % 2], {}, analysis); });
+        threads.emplace_back(
+            [&, k] { shared[k] = follow(model, model.branches[k % 2], {}, analysis); });
     for (auto& thread : threads) thread.join();
     for (std::size_t k = 0; k < shared.size(); ++k) {
         const Path own = follow(model, model.branches[k % 2]);
@@ -380,8 +395,9 @@ TEST(Analysis, ServesBranchesAndThreadsAlike) {
 
 TEST(Analysis, OfAnotherModelIsRefused) {
     const Model model = compile(support::scene("chrono_mcpherson"));
-    EXPECT_THROW(follow(model, model.branches[0], {}, analyse(compile(support::scene("pinned_bar")))),
-                 std::invalid_argument);
+    EXPECT_THROW(
+        follow(model, model.branches[0], {}, analyse(compile(support::scene("pinned_bar")))),
+        std::invalid_argument);
 }
 
 // ---- Sparsity pattern of (24).
@@ -389,14 +405,15 @@ TEST(Analysis, OfAnotherModelIsRefused) {
 // The matrix at a random state, without accidental zeros.
 Matrix<double> anywhere(const Model& model, Random& random, Pattern& pattern) {
     State<double> q = design_state<double>(model);
-    Vector<double> dq(coordinates(model)), lambda(constraint_rows(model)), Phi(constraint_rows(model));
+    Vector<double> dq(coordinates(model)), lambda(constraint_rows(model)),
+        Phi(constraint_rows(model));
     for (auto& value : dq) value = random(-0.3, 0.3);
     for (auto& value : lambda) value = random(-1e3, 1e3);
     advance(q, dq);
     SaddleMatrix<double> M = saddle_matrix(model);
     const Branch& branch = model.branches[0];
-    assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q, lambda, M,
-                                Phi);
+    assemble_consistent<double>(model, branch, inputs_at<double>(model, branch, branch.to / 2), q,
+                                lambda, M, Phi);
     pattern = recursive::pattern(model);
     return sparse(M);
 }
@@ -431,7 +448,8 @@ TEST(Pattern, HoldsAllThatIsNotZero) {
 TEST(Pattern, OfASuspensionIsAtMostATwentiethMoreThanThat) {
     // Planar mechanisms are excluded: their pattern includes the third dimension.
     Random random;
-    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "chrono_mcpherson_travel"}) {
+    for (const char* name :
+         {"chrono_mcpherson", "chrono_mcpherson_preload", "chrono_mcpherson_travel"}) {
         const Coverage c = coverage(compile(support::scene(name)), random);
         EXPECT_LE(c.held, 1.05 * c.met) << name;
     }

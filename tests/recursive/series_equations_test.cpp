@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "recursive/assembly.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
 #include "tests/recursive/random.hpp"
@@ -13,7 +13,8 @@ namespace elastocheck::recursive::series {
 namespace {
 
 constexpr BodyId bodies = 2;
-const std::vector<std::pair<BodyId, BodyId>> sides{{0, 1}, {1, 0}, {ground, 0}, {0, ground}, {1, ground}};
+const std::vector<std::pair<BodyId, BodyId>> sides{
+    {0, 1}, {1, 0}, {ground, 0}, {0, ground}, {1, ground}};
 
 struct Case {
     Model model;
@@ -80,7 +81,8 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
             f -= (1 - a[0]) * e.G_d;
             Phi -= (1 - a[0]) * e.Phi_d;
         }
-        EXPECT_LE((sum.head(n) - f).norm(), 1e-12 * left.topRows(n).norm()) << what << ", τ = " << tau;
+        EXPECT_LE((sum.head(n) - f).norm(), 1e-12 * left.topRows(n).norm())
+            << what << ", τ = " << tau;
         EXPECT_LE((sum.tail(m) - Phi).norm(), 1e-12 * (1 + left.bottomRows(m).norm()))
             << what << ", τ = " << tau;
     }
@@ -104,14 +106,16 @@ TEST(SeriesEquations, HoldForEveryConstraintBetweenAnyBodies) {
         for (int trial = 0; trial < 10; ++trial) {
             const Point at_i{i, random.vector()}, at_j{j, random.vector()};
             const Direction along_i{i, random.unit()}, along_j{j, random.unit()};
-            const std::vector<ConstraintKind> kinds{
-                CoincidentPoints{at_i, at_j}, PointInPlane{at_i, at_j, along_j, random()},
-                PerpendicularDirections{along_i, along_j}, DistanceBetween{at_i, at_j, random(0.3, 2)},
-                angle_between(along_i, along_j, random)};
+            const std::vector<ConstraintKind> kinds{CoincidentPoints{at_i, at_j},
+                                                    PointInPlane{at_i, at_j, along_j, random()},
+                                                    PerpendicularDirections{along_i, along_j},
+                                                    DistanceBetween{at_i, at_j, random(0.3, 2)},
+                                                    angle_between(along_i, along_j, random)};
             for (const auto& kind : kinds) {
                 Case c = anywhere(random);
                 c.model.constraints.push_back({0, kind});
-                expect_same(c, random, fmt::format("constraint {} between {} and {}", kind.index(), i, j));
+                expect_same(c, random,
+                            fmt::format("constraint {} between {} and {}", kind.index(), i, j));
             }
         }
 }
@@ -121,9 +125,11 @@ TEST(SeriesEquations, HoldForASpringBetweenAnyBodies) {
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
-            const AxialSpring e{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
+            const AxialSpring e{
+                {i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
             // The force is not analytic near coincident ends.
-            if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local)).norm() < 1)
+            if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local))
+                    .norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", e});
             expect_same(c, random, fmt::format("spring between {} and {}", i, j));
@@ -152,8 +158,8 @@ TEST(SeriesEquations, HoldForABushingWithoutMoments) {
         Case c = anywhere(random);
         Matrix6<double> K = Matrix6<double>::Zero();
         K.topLeftCorner<3, 3>() = random.stiffness().topLeftCorner<3, 3>();
-        c.model.elastics.push_back({"mount", Bushing{marker(i, random), marker(j, random), LinearStiffness{K},
-                                                     Vector6<double>::Zero()}});
+        c.model.elastics.push_back({"mount", Bushing{marker(i, random), marker(j, random),
+                                                     LinearStiffness{K}, Vector6<double>::Zero()}});
         expect_same(c, random, fmt::format("mount between {} and {}", i, j));
         // Until a driver adds a moment.
         Preload preload{0, Vector6<double>::Zero()};
@@ -182,7 +188,8 @@ Bushing any_bushing(BodyId i, BodyId j, double angle, const State<double>& q, Ra
     Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()}};
     e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
     e.undeformed = Vector6<double>::NullaryExpr([&] { return random(-0.3, 0.3); });
-    e.j.A_local = q[j].p.conjugate() * q[i].p * e.i.A_local * exponential<double>(angle * random.unit());
+    e.j.A_local =
+        q[j].p.conjugate() * q[i].p * e.i.A_local * exponential<double>(angle * random.unit());
     return e;
 }
 
@@ -191,9 +198,12 @@ TEST(SeriesEquations, HoldForASpringOnAnyPieceOfACurve) {
     for (const auto& [i, j] : sides)
         for (int trial = 0; trial < 20; ++trial) {
             Case c = anywhere(random);
-            const AxialSpring e{
-                {i, random.vector()}, {j, random.vector()}, curve(random, 0.5, 1e4), random(0.1, 3)};
-            if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local)).norm() < 1)
+            const AxialSpring e{{i, random.vector()},
+                                {j, random.vector()},
+                                curve(random, 0.5, 1e4),
+                                random(0.1, 3)};
+            if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local))
+                    .norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", e});
             c.branch.drivers.push_back({FreeLength{0}, random(), random()});
@@ -222,9 +232,10 @@ TEST(SeriesEquations, HoldForEveryFormulationOfABushing) {
                             for (auto& value : preload.direction) value = random(-500, 500);
                             c.branch.drivers.push_back({preload, random(), random()});
                             const std::string what = fmt::format(
-                                "frame {}, angles {}, conjugate {}, offset moment {}: {} to {} at {} rad",
-                                static_cast<int>(frame), static_cast<int>(angles), conjugate, offset_moment,
-                                i, j, angle);
+                                "frame {}, angles {}, conjugate {}, offset moment {}: {} to {} at "
+                                "{} rad",
+                                static_cast<int>(frame), static_cast<int>(angles), conjugate,
+                                offset_moment, i, j, angle);
                             expect_same(c, random, what);
                             PerAxis law;
                             for (auto& axis : law.axis) axis = curve(random, 0.5, 1e3);
@@ -232,7 +243,8 @@ TEST(SeriesEquations, HoldForEveryFormulationOfABushing) {
                             law.axis[4] = LinearRate{70};
                             std::get<Bushing>(c.model.elastics[0].kind).law = law;
                             expect_same(c, random, what + " on curves");
-                            for (int k = 3; k < 6; ++k) law.axis[static_cast<std::size_t>(k)] = LinearRate{0};
+                            for (int k = 3; k < 6; ++k)
+                                law.axis[static_cast<std::size_t>(k)] = LinearRate{0};
                             std::get<Bushing>(c.model.elastics[0].kind).law = law;
                             std::get<Bushing>(c.model.elastics[0].kind).preload.tail<3>().setZero();
                             c.branch.drivers.clear();
@@ -284,7 +296,8 @@ TEST(SeriesEquations, HoldForEveryOffsetThatMoves) {
                 // Two drivers of one joint are added.
                 for (int k = 0; k < 2; ++k)
                     c.branch.drivers.push_back({Motion{0}, random(0, 0.3), random(0, 0.3)});
-                expect_same(c, random, fmt::format("offset {} between {} and {}", kind.index(), i, j));
+                expect_same(c, random,
+                            fmt::format("offset {} between {} and {}", kind.index(), i, j));
             }
         }
 }
@@ -296,12 +309,13 @@ TEST(SeriesEquations, HoldForFreeLengthsAndPreloadsThatMove) {
             Case c = anywhere(random);
             const AxialSpring spring{
                 {i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
-            if ((c.q[i].r + c.q[i].lever(spring.i.s_local) - c.q[j].r - c.q[j].lever(spring.j.s_local))
+            if ((c.q[i].r + c.q[i].lever(spring.i.s_local) - c.q[j].r -
+                 c.q[j].lever(spring.j.s_local))
                     .norm() < 1)
                 continue;
             c.model.elastics.push_back({"spring", spring});
-            Bushing bushing{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()},
-                            Vector6<double>::Zero()};
+            Bushing bushing{marker(i, random), marker(j, random),
+                            LinearStiffness{random.stiffness()}, Vector6<double>::Zero()};
             bushing.j.A_local = c.q[j].p.conjugate() * c.q[i].p * bushing.i.A_local *
                                 exponential<double>(random(0, 1.5) * random.unit());
             c.model.elastics.push_back({"bushing", bushing});

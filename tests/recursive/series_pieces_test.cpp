@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/series/pieces.hpp"
-#include "recursive/solve.hpp"
 #include "tests/recursive/random.hpp"
 
 namespace elastocheck::recursive::series {
@@ -39,23 +39,26 @@ constexpr BodyId slider = 0;
 Scene on_the_x_axis(std::vector<Elastic> elastics) {
     Scene scene;
     scene.bodies = {{"slider", {Eigen::Vector3d(1, 0, 0), Eigen::Quaterniond::Identity()}}};
-    const Direction along{ground, Eigen::Vector3d::UnitX()}, on_slider{slider, Eigen::Vector3d::UnitX()};
-    scene.joints = {
-        {"rail",
-         Translational{
-             {slider, Eigen::Vector3d::Zero()}, {ground, Eigen::Vector3d::Zero()}, on_slider, along}}};
+    const Direction along{ground, Eigen::Vector3d::UnitX()},
+        on_slider{slider, Eigen::Vector3d::UnitX()};
+    scene.joints = {{"rail", Translational{{slider, Eigen::Vector3d::Zero()},
+                                           {ground, Eigen::Vector3d::Zero()},
+                                           on_slider,
+                                           along}}};
     scene.elastics = std::move(elastics);
     scene.probes = {{"slider", {slider, Eigen::Vector3d::Zero()}}};
     return scene;
 }
 // A spring with the slider's displacement as stretch, plus `drawn`.
 Elastic along_x(const std::string& name, const ScalarLaw& law, double drawn = 0) {
-    return {name, AxialSpring{
-                      {ground, Eigen::Vector3d::Zero()}, {slider, Eigen::Vector3d::Zero()}, law, 1 - drawn}};
+    return {
+        name,
+        AxialSpring{
+            {ground, Eigen::Vector3d::Zero()}, {slider, Eigen::Vector3d::Zero()}, law, 1 - drawn}};
 }
 Driver push(double start, double rate) {
-    return {Load{"push", DeadForce{{slider, Eigen::Vector3d::Zero()}, Eigen::Vector3d::UnitX()}}, start,
-            rate};
+    return {Load{"push", DeadForce{{slider, Eigen::Vector3d::Zero()}, Eigen::Vector3d::UnitX()}},
+            start, rate};
 }
 double moved(const Equilibrium& point) { return point.poses[slider].r.x() - 1; }
 
@@ -72,7 +75,8 @@ double value(const Curve& f, double x) {
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
 }
 // Hermite interpolant with the given slopes, linear outside.
-Curve hermite(const std::vector<double>& x, const std::vector<double>& f, const std::vector<double>& slope) {
+Curve hermite(const std::vector<double>& x, const std::vector<double>& f,
+              const std::vector<double>& slope) {
     Curve curve{x, {{f[0], slope[0], 0, 0}}};
     for (std::size_t k = 0; k + 1 < x.size(); ++k) {
         const double h = x[k + 1] - x[k], s = (f[k + 1] - f[k]) / h;
@@ -94,7 +98,8 @@ Curve rising() {
 
 TEST(SeriesPieces, ABodyOnACurveMovesByItsInverse) {
     for (const double to : {6000.0, -4000.0}) {
-        const Walked w = walked(on_the_x_axis({along_x("spring", rising())}), loaded(to, {push(0, 1)}));
+        const Walked w =
+            walked(on_the_x_axis({along_x("spring", rising())}), loaded(to, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         int knots = 0;
@@ -111,11 +116,13 @@ TEST(SeriesPieces, ABodyOnACurveMovesByItsInverse) {
 }
 
 TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
-    const Walked w = walked(on_the_x_axis({along_x("spring", rising())}), loaded(6000, {push(0, 1)}));
+    const Walked w =
+        walked(on_the_x_axis({along_x("spring", rising())}), loaded(6000, {push(0, 1)}));
     const Path path = follow(w.model, w.branch);
     std::vector<double> met;
     for (std::size_t k = 0; k + 1 < path.expansions.size(); ++k)
-        if (path.expansions[k].knots > 0) met.push_back(path.expansions[k + 1].start[slider].r.x() - 1);
+        if (path.expansions[k].knots > 0)
+            met.push_back(path.expansions[k + 1].start[slider].r.x() - 1);
     ASSERT_EQ(met.size(), 3u);
     EXPECT_NEAR(met[0], 0.005, 1e-15);
     EXPECT_NEAR(met[1], 0.02, 1e-15);
@@ -124,8 +131,9 @@ TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
 
 TEST(SeriesPieces, AStopThatClosesTakesItsShareFromThere) {
     const double k = 20e3, c = 0.03, K = 300e3;
-    const Walked w = walked(on_the_x_axis({along_x("spring", LinearRate{k}), along_x("stop", stop(c, K))}),
-                            loaded(2000, {push(0, 1)}));
+    const Walked w =
+        walked(on_the_x_axis({along_x("spring", LinearRate{k}), along_x("stop", stop(c, K))}),
+               loaded(2000, {push(0, 1)}));
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     EXPECT_EQ(path.expansions.size(), 2u);
@@ -135,22 +143,24 @@ TEST(SeriesPieces, AStopThatClosesTakesItsShareFromThere) {
         const double F = point.load, x = F <= k * c ? F / k : c + (F - k * c) / (k + K);
         EXPECT_NEAR(moved(point), x, 1e-15) << F;
     }
-    const double contact = K * (moved(sampled.points.back()) - c), by_hand = K * (2000 - k * c) / (k + K);
+    const double contact = K * (moved(sampled.points.back()) - c),
+                 by_hand = K * (2000 - k * c) / (k + K);
     EXPECT_NEAR(contact / by_hand, 1, 1e-12);
 }
 
 TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
     // ... two knots at the same place within rounding.
     for (const double apart : {-1e-17, 0.0, 1e-17, 1e-15, 1e-12, 1e-9}) {
-        const Walked w =
-            walked(on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("left", stop(0.03, 1e5)),
-                                  along_x("right", stop(0.03 + apart, 2e5))}),
-                   loaded(2000, {push(0, 1)}));
+        const Walked w = walked(
+            on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("left", stop(0.03, 1e5)),
+                           along_x("right", stop(0.03 + apart, 2e5))}),
+            loaded(2000, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << apart << path.detail;
         EXPECT_LE(path.expansions.size(), std::abs(apart) < 1e-13 ? 2u : 3u) << apart;
         const auto sampled = sample(w.model, path, w.branch, 50);
-        EXPECT_NEAR(moved(sampled.points.back()), (2000 + 0.03 * 1e5 + (0.03 + apart) * 2e5) / 320e3, 1e-14)
+        EXPECT_NEAR(moved(sampled.points.back()),
+                    (2000 + 0.03 * 1e5 + (0.03 + apart) * 2e5) / 320e3, 1e-14)
             << apart;
     }
 }
@@ -189,7 +199,8 @@ TEST(SeriesPieces, ManyKnotsAtTheStartAgreeOnTheirPieces) {
         }
         scene.probes = {{"block", {0, Eigen::Vector3d::Zero()}}};
         const Walked w = walked(
-            scene, loaded(100, {{Load{"f", DeadForce{{0, random.vector(0.1)}, random.unit()}}, 0, 1}}));
+            scene,
+            loaded(100, {{Load{"f", DeadForce{{0, random.vector(0.1)}, random.unit()}}, 0, 1}}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << trial << " " << path.detail;
         for (const auto& point : sample(w.model, path, w.branch, 7).points) {
@@ -205,10 +216,10 @@ TEST(SeriesPieces, ManyKnotsAtTheStartAgreeOnTheirPieces) {
 Scene beside_the_rail(double h, const ScalarLaw& law, double free_length, double from) {
     Scene scene = on_the_x_axis({});
     scene.bodies[0].design.r = Eigen::Vector3d(from, 0, 0);
-    scene.elastics = {
-        {"spring",
-         AxialSpring{
-             {ground, Eigen::Vector3d(0, h, 0)}, {slider, Eigen::Vector3d::Zero()}, law, free_length}}};
+    scene.elastics = {{"spring", AxialSpring{{ground, Eigen::Vector3d(0, h, 0)},
+                                             {slider, Eigen::Vector3d::Zero()},
+                                             law,
+                                             free_length}}};
     scene.joints.push_back({"jack",
                             InPlane{{slider, Eigen::Vector3d::Zero()},
                                     {ground, scene.bodies[0].design.r},
@@ -230,8 +241,8 @@ Branch jacked(double to) {
 TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
     // The spring is shortest at x = 0, where its stretch is h - ℓ₀ = `deep` beyond the knot at 0.
     const double h = 0.1;
-    for (const double deep : {0.0, 1e-17, -1e-17, 1e-16, -1e-16, 1e-14, -1e-14, 5e-14, -1e-13, 1e-12, -1e-12,
-                              1e-10, -1e-10, 1e-6, -1e-6}) {
+    for (const double deep : {0.0, 1e-17, -1e-17, 1e-16, -1e-16, 1e-14, -1e-14, 5e-14, -1e-13,
+                              1e-12, -1e-12, 1e-10, -1e-10, 1e-6, -1e-6}) {
         const Curve f = bent(200e3, 4e3);
         const double free_length = h + deep;
         const Walked w = walked(beside_the_rail(h, f, free_length, -0.06), jacked(0.12));
@@ -268,7 +279,8 @@ TEST(SeriesPieces, FromAKnotAMotionBeginsAcrossTheSpring) {
 Curve falling() { return {{0.01, 0.02}, {{100, 1e4, 0, 0}, {100, -5e3, 0, 0}, {50, 1e4, 0, 0}}}; }
 
 TEST(SeriesPieces, WhereAStopGivesWayIsALimitPoint) {
-    const Walked w = walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
+    const Walked w =
+        walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
     const Path path = follow(w.model, w.branch);
     EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
     ASSERT_EQ(path.limits.size(), 1u);
@@ -278,20 +290,23 @@ TEST(SeriesPieces, WhereAStopGivesWayIsALimitPoint) {
 }
 
 TEST(SeriesPieces, ArcLengthGoesOnThroughTheTurnsOfACurve) {
-    const Walked w = walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
+    const Walked w =
+        walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
     const Path path = follow(w.model, w.branch, {.arc_length = true});
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     ASSERT_EQ(path.limits.size(), 2u);
     EXPECT_NEAR(path.limits[0], 100, 1e-10);
     EXPECT_NEAR(path.limits[1], 50, 1e-10);
     const auto sampled = sample(w.model, path, w.branch, 70);
-    for (const auto& point : sampled.points) EXPECT_NEAR(value(falling(), moved(point)), point.load, 1e-9);
+    for (const auto& point : sampled.points)
+        EXPECT_NEAR(value(falling(), moved(point)), point.load, 1e-9);
     EXPECT_NEAR(sampled.points.back().load, 200, 1e-9);
 }
 
 TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
     for (const double held : {700.0, 3000.0, -900.0}) {
-        const Walked w = walked(on_the_x_axis({along_x("spring", rising())}), loaded(1500, {push(held, 1)}));
+        const Walked w =
+            walked(on_the_x_axis({along_x("spring", rising())}), loaded(1500, {push(held, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& point : sample(w.model, path, w.branch, 30).points)
@@ -299,9 +314,9 @@ TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
     }
     // Exactly to a knot, and on from there, in both directions.
     for (const double to : {300.0, -300.0}) {
-        const Walked w =
-            walked(on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("stop", stop(0.03, 3e5))}),
-                   loaded(to, {push(600, 1)}));
+        const Walked w = walked(
+            on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("stop", stop(0.03, 3e5))}),
+            loaded(to, {push(600, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& point : sample(w.model, path, w.branch, 30).points)
@@ -324,7 +339,8 @@ TEST(SeriesFormulations, EveryOneHoldsInItsOwnFullEquations) {
                 for (const bool offset_moment : {true, false}) {
                     if (!conjugate && frame == Frame::middle) continue;
                     Scene scene;
-                    scene.bodies = {{"arm", {Eigen::Vector3d(0.2, 0, 0), Eigen::Quaterniond::Identity()}}};
+                    scene.bodies = {
+                        {"arm", {Eigen::Vector3d(0.2, 0, 0), Eigen::Quaterniond::Identity()}}};
                     for (const double side : {-0.1, 0.1}) {
                         Bushing e{{ground, Eigen::Vector3d(0, side, 0), random.rotation(0.3)},
                                   {0, Eigen::Vector3d(-0.2, side, 0), random.rotation(0.3)},
@@ -334,19 +350,21 @@ TEST(SeriesFormulations, EveryOneHoldsInItsOwnFullEquations) {
                         scene.elastics.push_back({"bushing", e});
                     }
                     scene.probes = {{"tip", {0, Eigen::Vector3d(0.2, 0, 0)}}};
-                    const Load load{"tip",
-                                    DeadForce{{0, Eigen::Vector3d(0.2, 0, 0)}, Eigen::Vector3d(0, 0.2, 1)}};
+                    const Load load{"tip", DeadForce{{0, Eigen::Vector3d(0.2, 0, 0)},
+                                                     Eigen::Vector3d(0, 0.2, 1)}};
                     const Walked w = walked(scene, loaded(300, {{load, 0, 1}}));
                     const Path path = follow(w.model, w.branch);
                     const std::string what = std::to_string(static_cast<int>(frame)) +
                                              std::to_string(static_cast<int>(angles)) +
-                                             (conjugate ? "" : " free") + (offset_moment ? "" : " offset");
+                                             (conjugate ? "" : " free") +
+                                             (offset_moment ? "" : " offset");
                     ASSERT_EQ(path.outcome, Outcome::converged) << what << path.detail;
                     const auto sampled = sample(w.model, path, w.branch, 20);
                     ASSERT_EQ(sampled.points.size(), 21u);
                     for (const auto& point : sampled.points) {
                         const auto left = recursive::residuals(w.model, w.branch, point);
-                        EXPECT_LE(std::max(left.force, left.moment), 1e-9 * 300) << what << point.load;
+                        EXPECT_LE(std::max(left.force, left.moment), 1e-9 * 300)
+                            << what << point.load;
                     }
                 }
 }
@@ -360,7 +378,8 @@ Scene chain(int n, double L) {
     K.diagonal() << EA / L, 12 * EI / (L * L * L), 12 * EI / (L * L * L), GJ / L, EI / L, EI / L;
     for (int b = 0; b < n; ++b)
         scene.bodies.push_back(
-            {"b" + std::to_string(b), {Eigen::Vector3d((b + 1) * L, 0, 0), Eigen::Quaterniond::Identity()}});
+            {"b" + std::to_string(b),
+             {Eigen::Vector3d((b + 1) * L, 0, 0), Eigen::Quaterniond::Identity()}});
     for (int b = 0; b < n; ++b) {
         const Eigen::Vector3d half(L / 2, 0, 0);
         Bushing e{{b == 0 ? ground : b - 1, half}, {b, -half}, LinearStiffness{K}};
@@ -387,8 +406,10 @@ TEST(SeriesFormulations, AChainOfBeamsHoldsInItsFullEquations) {
         double turned = 0;
         for (const auto& point : sampled.points) {
             const auto left = recursive::residuals(w.model, w.branch, point);
-            EXPECT_LE(std::max(left.force, left.moment), 1e-9 * 3000) << kind.index() << " at " << point.load;
-            turned = std::max(turned, point.poses.back().p.angularDistance(Eigen::Quaterniond::Identity()));
+            EXPECT_LE(std::max(left.force, left.moment), 1e-9 * 3000)
+                << kind.index() << " at " << point.load;
+            turned = std::max(turned,
+                              point.poses.back().p.angularDistance(Eigen::Quaterniond::Identity()));
         }
         EXPECT_GT(turned, 0.3) << kind.index();
     }
@@ -399,19 +420,22 @@ TEST(SeriesFormulations, AChainUnderATipMomentRollsIntoAnArc) {
     // that more.
     const int n = 5;
     const double L = 0.2, EI = 2.4e3, M = 6000;
-    const Walked w = walked(
-        chain(n, L), loaded(M, {{Load{"tip", FollowerMoment{n - 1, Eigen::Vector3d::UnitZ()}}, 0, 1}}));
+    const Walked w =
+        walked(chain(n, L),
+               loaded(M, {{Load{"tip", FollowerMoment{n - 1, Eigen::Vector3d::UnitZ()}}, 0, 1}}));
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& point : sample(w.model, path, w.branch, 20).points) {
         const double theta = point.load * L / EI;
-        Eigen::Vector3d r(L / 2, 0, 0);  // of the first joint: no force, so that no beam is stretched
+        Eigen::Vector3d r(L / 2, 0,
+                          0);  // of the first joint: no force, so that no beam is stretched
         for (int b = 0; b < n; ++b) {
             const Pose& pose = point.poses[static_cast<std::size_t>(b)];
             const double angle = (b + 1) * theta;
             const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0);
             EXPECT_LE((pose.r - r - L / 2 * along).norm(), 1e-11) << b;
-            EXPECT_NEAR(std::remainder(2 * std::atan2(pose.p.z(), pose.p.w()) - angle, 2 * std::numbers::pi),
+            EXPECT_NEAR(std::remainder(2 * std::atan2(pose.p.z(), pose.p.w()) - angle,
+                                       2 * std::numbers::pi),
                         0, 1e-11);
             r += L * along;
         }
@@ -425,20 +449,21 @@ TEST(SeriesFollowers, AForceAtALeverTurnsWithItsBody) {
     scene.bodies = {{"block", {}}};
     Matrix6<double> K = Matrix6<double>::Zero();
     K.diagonal() << k, k, k, k_theta, k_theta, k_theta;
-    scene.elastics = {
-        {"bed",
-         Bushing{{ground, Eigen::Vector3d::Zero()}, {0, Eigen::Vector3d::Zero()}, LinearStiffness{K}}}};
+    scene.elastics = {{"bed", Bushing{{ground, Eigen::Vector3d::Zero()},
+                                      {0, Eigen::Vector3d::Zero()},
+                                      LinearStiffness{K}}}};
     scene.probes = {{"block", {0, Eigen::Vector3d::Zero()}}};
     const Eigen::Vector3d s(0.1, -0.3, 0), f(0.8, 0.6, 0);
     const double m = -0.1, arm = s.x() * f.y() - s.y() * f.x() + m;
-    const Walked w =
-        walked(scene, loaded(1500, {{Load{"push", FollowerForce{{0, s}, f}}, 0, 1},
-                                    {Load{"turn", FollowerMoment{0, Eigen::Vector3d(0, 0, m)}}, 0, 1}}));
+    const Walked w = walked(
+        scene, loaded(1500, {{Load{"push", FollowerForce{{0, s}, f}}, 0, 1},
+                             {Load{"turn", FollowerMoment{0, Eigen::Vector3d(0, 0, m)}}, 0, 1}}));
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& point : sample(w.model, path, w.branch, 60).points) {
         const double theta = point.load * arm / k_theta;
-        const Eigen::Vector3d d = Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()) * f * point.load / k;
+        const Eigen::Vector3d d =
+            Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()) * f * point.load / k;
         EXPECT_LE((point.poses[0].r - d).norm(), 1e-12);
         EXPECT_NEAR(2 * std::atan2(point.poses[0].p.z(), point.poses[0].p.w()), theta, 1e-11);
     }

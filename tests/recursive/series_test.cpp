@@ -4,13 +4,13 @@
 #include <cmath>
 #include <random>
 
-#include "models/compile.hpp"
-#include "recursive/diagnosis.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/path.hpp"
-#include "recursive/settle.hpp"
-#include "recursive/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "recursive/stepping/settle.hpp"
 #include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -46,7 +46,8 @@ struct PinnedBar {
         for (std::size_t k = 1; k <= p; ++k) {
             const Poly t2 = times(t, t);
             double sum = 0;
-            for (std::size_t i = 0; i < k; ++i) sum += ((i == 0 ? 1 : 0) + t2[i]) * d[k - 1 - i] / 2;
+            for (std::size_t i = 0; i < k; ++i)
+                sum += ((i == 0 ? 1 : 0) + t2[i]) * d[k - 1 - i] / 2;
             t[k] = sum / static_cast<double>(k);
         }
         half_angle_tangent = t;
@@ -68,14 +69,16 @@ TEST(Series, CoefficientsAreThoseOfTheClosedForm) {
         const double size = std::pow(0.5, k);  // typical size of this order: the radius is 2
         EXPECT_LE(std::abs(computed - expected), 1e-12 * std::max(expected, 1e-3 * size)) << k;
     }
-    EXPECT_NEAR(first.singularity.radius * branch.to, 20e3 * 0.5, 0.01 * 20e3 * 0.5);  // F = ± i k L
+    EXPECT_NEAR(first.singularity.radius * branch.to, 20e3 * 0.5,
+                0.01 * 20e3 * 0.5);  // F = ± i k L
     EXPECT_NEAR(first.singularity.angle, std::acos(-1) / 2, 0.01);
 }
 
 TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
     // Orders 1 to 3 by central differences of the other leg, at two step sizes that must agree as
     // h².
-    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "pendulum"}) {
+    for (const char* name :
+         {"chrono_mcpherson", "chrono_mcpherson_preload", "bushing_pair", "pendulum"}) {
         const Model model = compile(support::scene(name));
         const Branch& branch = model.branches[0];
         const Path path = follow(model, branch);
@@ -90,16 +93,18 @@ TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
                 const auto solved = reference::equilibrium::solve(model, other, at);
                 EXPECT_EQ(solved.outcome, Outcome::converged) << solved.detail;
                 const std::size_t k = share == 0 ? 0 : 1;
-                r.push_back(k < solved.points.size()
-                                ? solved.points[k].poses.front().r
-                                : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+                r.push_back(
+                    k < solved.points.size()
+                        ? solved.points[k].poses.front().r
+                        : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
             }
             return r;
         };
         const double h = 0.02;
         const auto f = values(h);
         const Eigen::Vector3d first = (f[0] - 8 * f[1] + 8 * f[3] - f[4]) / (12 * h),
-                              second = (-f[0] + 16 * f[1] - 30 * f[2] + 16 * f[3] - f[4]) / (24 * h * h),
+                              second =
+                                  (-f[0] + 16 * f[1] - 30 * f[2] + 16 * f[3] - f[4]) / (24 * h * h),
                               third = (-f[0] + 2 * f[1] - 2 * f[3] + f[4]) / (12 * h * h * h);
         EXPECT_LE((x.col(1).head<3>() - first).norm(), 1e-4 * first.norm() + 1e-12) << name;
         EXPECT_LE((x.col(2).head<3>() - second).norm(), 1e-3 * first.norm()) << name;
@@ -140,7 +145,8 @@ TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
                 worst = std::max(worst, apart(model, point, reference.points[k]));
                 for (std::size_t j = 0; j < point.reactions.size(); ++j)
                     force = std::max(
-                        force, (point.reactions[j].force - reference.points[k].reactions[j].force).norm());
+                        force,
+                        (point.reactions[j].force - reference.points[k].reactions[j].force).norm());
             }
             EXPECT_LE(worst, 1e-12) << name << " " << branch.name;  // 1e-9 mm
             EXPECT_LE(force, 1e-5) << name << " " << branch.name;
@@ -157,7 +163,8 @@ TEST(Series, EveryExpansionHoldsInTheFullEquationsOfAllLegs) {
             for (const auto& point : path.points) {
                 const auto own = recursive::residuals(model, branch, point),
                            other = reference::equilibrium::residuals(model, branch, point);
-                EXPECT_LE(std::max({own.force, own.moment, other.force, other.moment}), 1e-5) << name;
+                EXPECT_LE(std::max({own.force, own.moment, other.force, other.moment}), 1e-5)
+                    << name;
                 EXPECT_LE(std::max(own.length, other.length), 1e-12) << name;
             }
         }
@@ -169,7 +176,8 @@ TEST(Series, ErrorFallsAsReachToTheOrderPlusOne) {
     const Branch& branch = model.branches[0];
     const Path exact = follow(model, branch, {.order = 24});
     for (const int p : {2, 4, 6, 8, 10}) {
-        const Path path = follow(model, branch, {.order = p, .tolerance = 1e-4, .expansions = 2000});
+        const Path path =
+            follow(model, branch, {.order = p, .tolerance = 1e-4, .expansions = 2000});
         ASSERT_FALSE(path.expansions.empty());
         const auto error = [&](double tau) {
             return apart(model, evaluate(model, branch, path, {0, tau}),
@@ -189,15 +197,15 @@ TEST(Series, OrderOneIsTheTangent) {
         const Path path = follow(model, branch);
         Branch little = branch;
         little.to = 1e-6 * branch.to;
-        const auto step = recursive::solve(model, little, {.method = *find_method("tangent"), .steps = 1});
+        const auto step =
+            recursive::solve(model, little, {.method = *find_method("tangent"), .steps = 1});
         ASSERT_EQ(step.outcome, Outcome::converged) << step.detail;
         const Eigen::VectorXd first = 1e-6 * path.expansions.front().x.col(1);
         for (std::size_t b = 0; b < model.bodies.size(); ++b) {
             const auto row = static_cast<Eigen::Index>(6 * b);
-            const Eigen::Vector3d dr = step.points[1].poses[b].r - step.points[0].poses[b].r,
-                                  dpi =
-                                      2 * (step.points[1].poses[b].p * step.points[0].poses[b].p.conjugate())
-                                              .vec();
+            const Eigen::Vector3d
+                dr = step.points[1].poses[b].r - step.points[0].poses[b].r,
+                dpi = 2 * (step.points[1].poses[b].p * step.points[0].poses[b].p.conjugate()).vec();
             EXPECT_LE((dr - first.segment<3>(row)).norm(), 1e-4 * first.norm()) << name;
             EXPECT_LE((dpi - first.segment<3>(row + 3)).norm(), 1e-4 * first.norm()) << name;
         }
@@ -212,16 +220,20 @@ TEST(Series, RatesAreTheDerivativesOfWhatItEvaluates) {
         for (const double share : {0.0, 0.1, 0.35, 0.6, 0.9}) {
             const double h = 1e-4 * branch.to, load = branch.to * share + 2 * h;
             const auto at = [&](double a) { return evaluate(model, branch, path, *find(path, a)); };
-            const auto m2 = at(load - 2 * h), m1 = at(load - h), p1 = at(load + h), p2 = at(load + 2 * h);
+            const auto m2 = at(load - 2 * h), m1 = at(load - h), p1 = at(load + h),
+                       p2 = at(load + 2 * h);
             const Rates exact = rates(path, *find(path, load));
             for (std::size_t b = 0; b < model.bodies.size(); ++b) {
                 const Eigen::Vector3d dr =
-                    (m2.poses[b].r - 8 * m1.poses[b].r + 8 * p1.poses[b].r - p2.poses[b].r) / (12 * h);
+                    (m2.poses[b].r - 8 * m1.poses[b].r + 8 * p1.poses[b].r - p2.poses[b].r) /
+                    (12 * h);
                 EXPECT_LE((dr - exact.dr[b]).norm(), 1e-8 * (exact.dr[b].norm() + 1e-6)) << name;
-                const Eigen::Vector3d omega = (8 * 2 * (p1.poses[b].p * m1.poses[b].p.conjugate()).vec() -
-                                               2 * (p2.poses[b].p * m2.poses[b].p.conjugate()).vec()) /
-                                              (12 * h);
-                EXPECT_LE((omega - exact.omega[b]).norm(), 1e-6 * (exact.omega[b].norm() + 1e-6)) << name;
+                const Eigen::Vector3d omega =
+                    (8 * 2 * (p1.poses[b].p * m1.poses[b].p.conjugate()).vec() -
+                     2 * (p2.poses[b].p * m2.poses[b].p.conjugate()).vec()) /
+                    (12 * h);
+                EXPECT_LE((omega - exact.omega[b]).norm(), 1e-6 * (exact.omega[b].norm() + 1e-6))
+                    << name;
             }
         }
     }
@@ -244,7 +256,8 @@ TEST(Series, FindsWhereThePathEnds) {
             EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
             ASSERT_EQ(path.limits.size(), 1u);
             EXPECT_NEAR(path.limits[0] / limit_of_the_arch(), 1, 1e-6) << to << " " << order;
-            EXPECT_NE(path.detail.find("limit point near -211.5165"), std::string::npos) << path.detail;
+            EXPECT_NE(path.detail.find("limit point near -211.5165"), std::string::npos)
+                << path.detail;
             EXPECT_FALSE(find(path, -212));
         }
 }
@@ -281,7 +294,8 @@ TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
             const double tolerance = std::pow(10, -3 - k / 100.0);
             const Path path =
                 follow(model, branch, {.order = order, .tolerance = tolerance, .arc_length = true});
-            ASSERT_EQ(path.outcome, Outcome::converged) << order << " " << tolerance << " " << path.detail;
+            ASSERT_EQ(path.outcome, Outcome::converged)
+                << order << " " << tolerance << " " << path.detail;
             ASSERT_EQ(path.limits.size(), 2u) << order << " " << tolerance;
             rejected += path.rejected;
         }
@@ -289,9 +303,11 @@ TEST(Series, EveryTurnIsRecordedOnceWhereverTheExpansionsMeet) {
 }
 
 TEST(Series, ArcLengthAndLoadDescribeTheSameBranch) {
-    for (const char* name : {"chrono_mcpherson", "pinned_bar", "pendulum", "chrono_mcpherson_preload"}) {
+    for (const char* name :
+         {"chrono_mcpherson", "pinned_bar", "pendulum", "chrono_mcpherson_preload"}) {
         for (const auto& [model, branch] : one_ways(compile(support::scene(name)))) {
-            const Path by_load = follow(model, branch), by_arc = follow(model, branch, {.arc_length = true});
+            const Path by_load = follow(model, branch),
+                       by_arc = follow(model, branch, {.arc_length = true});
             ASSERT_EQ(by_arc.outcome, Outcome::converged) << by_arc.detail;
             EXPECT_TRUE(by_arc.limits.empty());
             for (int k = 0; k <= 16; ++k) {
@@ -312,13 +328,15 @@ TEST(Series, KeepsTheToleranceItIsTold) {
             const Path exact = follow(model, branch, {.order = 20});
             for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10})
                 for (const int order : {6, 10, 16}) {
-                    const Path path = follow(model, branch, {.order = order, .tolerance = tolerance});
+                    const Path path =
+                        follow(model, branch, {.order = order, .tolerance = tolerance});
                     ASSERT_EQ(path.outcome, Outcome::converged) << name << " " << path.detail;
                     double worst = 0;
                     for (int k = 0; k <= 97; ++k) {
                         const double load = branch.to * k / 97;
-                        worst = std::max(worst, apart(model, evaluate(model, branch, path, *find(path, load)),
-                                                      evaluate(model, branch, exact, *find(exact, load))));
+                        worst = std::max(
+                            worst, apart(model, evaluate(model, branch, path, *find(path, load)),
+                                         evaluate(model, branch, exact, *find(exact, load))));
                     }
                     EXPECT_LE(worst, tolerance)
                         << name << " " << branch.name << " " << order << " " << tolerance;
@@ -356,7 +374,7 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
     // vanish.
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
-        March<double> s(model, branch, analyse(model));
+        SteppingState<double> s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied = Vector<double>::Zero(s.n());
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
@@ -369,11 +387,13 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
             const Matrix<double> M = sparse(s.system.M);
             const Vector<double> elastic = M.topLeftCorner(s.n(), s.n()) * c.x.col(k).head(s.n()),
                                  reaction = M.topRightCorner(s.n(), s.m()) * c.x.col(k).tail(s.m());
-            const double size = elastic.lpNorm<Eigen::Infinity>() + reaction.lpNorm<Eigen::Infinity>() +
-                                std::abs(c.load[k]) + 1e-3 * std::abs(branch.to);
+            const double size = elastic.lpNorm<Eigen::Infinity>() +
+                                reaction.lpNorm<Eigen::Infinity>() + std::abs(c.load[k]) +
+                                1e-3 * std::abs(branch.to);
             EXPECT_LE(e.G.cwiseAbs().maxCoeff(), 1e-10 * size) << name << " " << k;
             if (s.m() > 0) {
-                EXPECT_LE(e.Phi.cwiseAbs().maxCoeff(), 1e-12 * c.x.col(k).norm() + 1e-16) << name << " " << k;
+                EXPECT_LE(e.Phi.cwiseAbs().maxCoeff(), 1e-12 * c.x.col(k).norm() + 1e-16)
+                    << name << " " << k;
             }
         }
     }
@@ -384,7 +404,9 @@ TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
         std::vector<double> f1(13), f3(13);
         taylor_of_F(1, s_0, f1);
         taylor_of_F(3, s_0, f3);
-        const auto exact_1 = [](double s) { return s == 0 ? 1 : std::atan(std::sqrt(s)) / std::sqrt(s); };
+        const auto exact_1 = [](double s) {
+            return s == 0 ? 1 : std::atan(std::sqrt(s)) / std::sqrt(s);
+        };
         EXPECT_NEAR(f1[0], exact_1(s_0), 4e-16) << s_0;
         if (s_0 >= 1e-3) {
             EXPECT_NEAR(f3[0], (1 - exact_1(s_0)) / s_0, 4e-16 / s_0) << s_0;
@@ -399,9 +421,10 @@ TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
 
 TEST(Series, OtherPrecisionsAreRefused) {
     const Model model = compile(support::scene("pinned_bar"));
-    EXPECT_THROW(recursive::solve(model, model.branches[0],
-                                  {.method = *find_method("series"), .precision = Precision::single}),
-                 std::invalid_argument);
+    EXPECT_THROW(
+        recursive::solve(model, model.branches[0],
+                         {.method = *find_method("series"), .precision = Precision::single}),
+        std::invalid_argument);
 }
 
 }  // namespace

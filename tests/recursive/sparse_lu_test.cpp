@@ -1,5 +1,5 @@
 // Sparse LU against a dense factorisation, and its sparsity.
-#include "recursive/sparse_lu.hpp"
+#include "recursive/linear_algebra/sparse_lu.hpp"
 
 #include <gtest/gtest.h>
 
@@ -126,7 +126,8 @@ TEST(SparseLU, OfALargeMatrixAFewColumnsFindNearlyTheOrderThatAllEntriesDo) {
             search(found, pattern, values.data());
             return static_cast<double>(found.below.size() + found.right.size());
         };
-        const double all = entries(detail::search_all<double>), few = entries(detail::search_few<double>);
+        const double all = entries(detail::search_all<double>),
+                     few = entries(detail::search_few<double>);
         EXPECT_LE(few, 1.25 * all) << n;
         EXPECT_GE(few, 0.8 * all) << n;
     }
@@ -170,7 +171,8 @@ TEST(SparseLU, TheUnknownsThatAreWantedAreThoseOfTheWholeSolution) {
             double some[4];
             solve_unit(lu, j, wanted.data(), 4, some);
             for (std::size_t k = 0; k < 4; ++k)
-                EXPECT_NEAR(some[k], x[wanted[k]], 1e-12 * x.cwiseAbs().maxCoeff()) << n << " " << j;
+                EXPECT_NEAR(some[k], x[wanted[k]], 1e-12 * x.cwiseAbs().maxCoeff())
+                    << n << " " << j;
         }
     }
 }
@@ -203,7 +205,8 @@ TEST(SparseLU, ALargeOrderIsChosenAnewWhenAPivotShrinks) {
     Vector<double> x(n + m);
     for (int k = 0; k < n; k += 7) {
         Matrix<double> other = M;
-        other(lu.order.row[static_cast<std::size_t>(k)], lu.order.col[static_cast<std::size_t>(k)]) *= 1e-14;
+        other(lu.order.row[static_cast<std::size_t>(k)],
+              lu.order.col[static_cast<std::size_t>(k)]) *= 1e-14;
         ASSERT_GT(factorise(lu, other), 0);
         solve(lu, b.data(), x.data());
         EXPECT_LE((other * x - b).norm(), 1e-12 * other.norm() * x.norm()) << k;

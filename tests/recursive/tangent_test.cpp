@@ -1,11 +1,11 @@
 // The consistent tangent against finite differences of its residual.
-#include "recursive/tangent.hpp"
+#include "recursive/formula/tangent.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "recursive/assembly.hpp"
-#include "recursive/knots.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
+#include "recursive/stepping/knots.hpp"
 #include "tests/recursive/elements.hpp"
 
 namespace elastocheck::recursive {
@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 using Long = long double;
 
 constexpr BodyId bodies = 2;
-const std::vector<std::pair<BodyId, BodyId>> sides{{0, 1}, {1, 0}, {ground, 0}, {0, ground}, {1, ground}};
+const std::vector<std::pair<BodyId, BodyId>> sides{
+    {0, 1}, {1, 0}, {ground, 0}, {0, ground}, {1, ground}};
 
 // All inputs of ∂G/∂q.
 struct Case {
@@ -35,7 +36,8 @@ Case anywhere(Random& random) {
 
 void add(Case& c, const ConstraintKind& kind, Random& random) {
     c.model.constraints.push_back({0, kind});
-    c.lambda = Vector<double>::NullaryExpr(constraint_rows(c.model), [&] { return random(-1e3, 1e3); });
+    c.lambda =
+        Vector<double>::NullaryExpr(constraint_rows(c.model), [&] { return random(-1e3, 1e3); });
 }
 
 template <class Real>
@@ -78,7 +80,8 @@ template <class Real>
 Matrix<Real> tangent(const Case& c) {
     Matrix<Real> T = Matrix<Real>::Zero(6 * bodies, 6 * bodies);
     const Vector<Real> lambda = c.lambda.cast<Real>();
-    add_consistent_tangent<Real>(c.model, c.branch, inputs_of<Real>(c), state_of<Real>(c.poses), lambda, T);
+    add_consistent_tangent<Real>(c.model, c.branch, inputs_of<Real>(c), state_of<Real>(c.poses),
+                                 lambda, T);
     return T;
 }
 
@@ -122,11 +125,13 @@ TEST(Tangent, OfASpringIsTheDerivativeOfItsForce) {
             Case c = anywhere(random);
             c.model.elastics.push_back(
                 {"spring",
-                 AxialSpring{{i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)}});
+                 AxialSpring{
+                     {i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)}});
             // The fifth derivative of a direction grows as ℓ⁻⁵ when the random ends come close.
             const auto& e = std::get<AxialSpring>(c.model.elastics[0].kind);
             const State<double> q = state_of<double>(c.poses);
-            if ((q[i].r + q[i].lever(e.i.s_local) - q[j].r - q[j].lever(e.j.s_local)).norm() < 0.3) continue;
+            if ((q[i].r + q[i].lever(e.i.s_local) - q[j].r - q[j].lever(e.j.s_local)).norm() < 0.3)
+                continue;
             expect_derivative(c, fmt::format("bodies {} {}", i, j));
         }
 }
@@ -135,8 +140,8 @@ TEST(Tangent, OfABushingIsTheDerivativeOfItsForceAtAnyAngle) {
     const double at_switch = std::sqrt(1e-3);  // upper end of the small-angle series
     Random random;
     for (const auto& [i, j] : sides)
-        for (const double angle :
-             {0.0, 1e-9, 1e-4, 0.01, at_switch * (1 - 1e-9), at_switch * (1 + 1e-9), 0.04, 0.3, 1.0, 2.5}) {
+        for (const double angle : {0.0, 1e-9, 1e-4, 0.01, at_switch * (1 - 1e-9),
+                                   at_switch * (1 + 1e-9), 0.04, 0.3, 1.0, 2.5}) {
             Case c = anywhere(random);
             const Bushing e = bushing(i, j, random);
             turn_to(angle * random.unit(), e, c.poses);
@@ -161,13 +166,13 @@ TEST(Tangent, OfEveryLawAndFormulationIsTheDerivativeOfItsForce) {
                     bool at_a_knot = false;
                     for (const auto& at : curves_of(c.model))
                         for (const double knot : at.curve->knots)
-                            at_a_knot =
-                                at_a_knot || std::abs(deflection<double>(c.model, inputs_of<double>(c),
-                                                                         state_of<double>(c.poses), at) -
-                                                      knot) < 1e-3;
+                            at_a_knot = at_a_knot ||
+                                        std::abs(deflection<double>(c.model, inputs_of<double>(c),
+                                                                    state_of<double>(c.poses), at) -
+                                                 knot) < 1e-3;
                     if (!at_a_knot)
-                        expect_derivative(
-                            c, fmt::format("{}, bodies {} {}, {} rad", name_of(formulation), i, j, angle));
+                        expect_derivative(c, fmt::format("{}, bodies {} {}, {} rad",
+                                                         name_of(formulation), i, j, angle));
                 }
 }
 
@@ -185,11 +190,11 @@ TEST(Tangent, OfASpringWithACurveIsTheDerivativeOfItsForceOnEveryPieceEvenPastIt
         const State<Long> q = state_of<Long>(c.poses);
         const Long x = deformation<Long>(spring, q).length - inputs.rest[0].free_length, h = 1e-4L;
         const auto f = [&](Long at) { return gradient<Long>(spring.law, at, piece); };
-        EXPECT_NEAR(
-            static_cast<double>(hessian<Long>(
-                spring.law, [&] { return x; }, piece)),
-            static_cast<double>((8 * (f(x + h) - f(x - h)) - (f(x + 2 * h) - f(x - 2 * h))) / (12 * h)),
-            1e-6);
+        EXPECT_NEAR(static_cast<double>(hessian<Long>(
+                        spring.law, [&] { return x; }, piece)),
+                    static_cast<double>(
+                        (8 * (f(x + h) - f(x - h)) - (f(x + 2 * h) - f(x - 2 * h))) / (12 * h)),
+                    1e-6);
         expect_derivative(c, "spring with a curve");
     }
 }
@@ -200,10 +205,12 @@ TEST(Tangent, OfFollowersIsTheDerivativeOfTheirForces) {
         for (const double a : {0.0, 0.7, -3000.0}) {
             Case c = anywhere(random);
             c.a = a;
-            c.model.static_loads = {{"thrust", FollowerForce{{body, random.vector()}, random.vector(600)}},
-                                    {"torque", FollowerMoment{body, random.vector(50)}}};
-            c.branch.drivers = {{Load{"push", FollowerForce{{body, random.vector()}, random.unit()}}, 30, 1},
-                                {Load{"turn", FollowerMoment{1 - body, random.unit()}}, 0, -2}};
+            c.model.static_loads = {
+                {"thrust", FollowerForce{{body, random.vector()}, random.vector(600)}},
+                {"torque", FollowerMoment{body, random.vector(50)}}};
+            c.branch.drivers = {
+                {Load{"push", FollowerForce{{body, random.vector()}, random.unit()}}, 30, 1},
+                {Load{"turn", FollowerMoment{1 - body, random.unit()}}, 0, -2}};
             expect_derivative(c, fmt::format("body {}, a = {}", body, a));
         }
 }
@@ -237,10 +244,12 @@ TEST(Tangent, OfLoadsIsTheDerivativeOfTheirMoments) {
         for (const double a : {0.0, 0.7, -3000.0}) {
             Case c = anywhere(random);
             c.a = a;
-            c.model.static_loads = {{"weight", DeadForce{{body, random.vector()}, random.vector(600)}},
-                                    {"torque", DeadMoment{body, random.vector(50)}}};
-            c.branch.drivers = {{Load{"push", DeadForce{{body, random.vector()}, random.unit()}}, 30, 1},
-                                {Load{"turn", DeadMoment{1 - body, random.unit()}}, 0, -2}};
+            c.model.static_loads = {
+                {"weight", DeadForce{{body, random.vector()}, random.vector(600)}},
+                {"torque", DeadMoment{body, random.vector(50)}}};
+            c.branch.drivers = {
+                {Load{"push", DeadForce{{body, random.vector()}, random.unit()}}, 30, 1},
+                {Load{"turn", DeadMoment{1 - body, random.unit()}}, 0, -2}};
             expect_derivative(c, fmt::format("body {}, a = {}", body, a));
         }
 }
@@ -249,10 +258,10 @@ Case everything_at_once(Random& random) {
     Case c = anywhere(random);
     for (const auto& [i, j] : sides) {
         c.model.elastics.push_back({"bushing", bushing(i, j, random)});
-        c.model.elastics.push_back(
-            {"spring",
-             AxialSpring{
-                 {i, random.vector()}, {j, random.vector() + Vector3d(9, 0, 0)}, LinearRate{3e4}, 0.3}});
+        c.model.elastics.push_back({"spring", AxialSpring{{i, random.vector()},
+                                                          {j, random.vector() + Vector3d(9, 0, 0)},
+                                                          LinearRate{3e4},
+                                                          0.3}});
         const Point at_i{i, random.vector()}, at_j{j, random.vector()};
         add(c, CoincidentPoints{at_i, at_j}, random);
         add(c, PointInPlane{at_i, at_j, {j, random.unit()}}, random);
@@ -287,7 +296,8 @@ TEST(Tangent, IsSymmetricUpToTheMomentLeftOver) {
     // commutator of two rotations, so that T - Tᵀ = blockdiag(0, G̃_π) with G_π = ∂V/∂π, which is
     // zero in equilibrium. No finite differences are involved.
     Random random;
-    for (int trial = 0; trial < 20; ++trial) EXPECT_LE(asymmetry(everything_at_once(random)), 1e-16);
+    for (int trial = 0; trial < 20; ++trial)
+        EXPECT_LE(asymmetry(everything_at_once(random)), 1e-16);
 }
 
 TEST(Tangent, IsSymmetricUpToTheMomentLeftOverWhereverThereIsAnEnergyAndNotWithoutOne) {
@@ -326,7 +336,8 @@ TEST(Tangent, WithNothingStoredIsTheStiffnessOfThePaper) {
         else
             c.poses[static_cast<std::size_t>(i)].r += D;
         c.model.elastics.push_back({"bushing", e});
-        const Matrix<double> K = stiffness<double>(c.model, inputs_of<double>(c), state_of<double>(c.poses));
+        const Matrix<double> K =
+            stiffness<double>(c.model, inputs_of<double>(c), state_of<double>(c.poses));
         EXPECT_LE(apart(tangent<double>(c).cast<Long>(), K.cast<Long>()), 1e-13) << i << " " << j;
     }
 }

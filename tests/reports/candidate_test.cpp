@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "reports/files/child.hpp"
+#include "reports/files/subprocess.hpp"
 #include "tests/reports/command.hpp"
 
 namespace elastocheck {
@@ -40,17 +40,20 @@ Said judge(const std::string& how) { return elastocheck_says("judge " + strut + 
 TEST(CandidateCommand, WhatAReferenceWritesPassesAsCurvesAndAsStates) {
     const Folder folder;
     const std::string curves = solved(folder, "curves.csv", "--steps 10 --method energy -o"),
-                      states = solved(folder, "states.jsonl", "--steps 10 --method energy --states");
+                      states =
+                          solved(folder, "states.jsonl", "--steps 10 --method energy --states");
     for (const auto& file : {curves, states}) {
         const Said said = judge("--steps 10 --candidate " + file);
         EXPECT_EQ(said.code, 0) << said.out << said.err;
         EXPECT_TRUE(contains(said.out, "Pass: the candidate ")) << said.out;
-        EXPECT_EQ(contains(said.out, "its states in the equilibrium leg's equations: force "), file == states)
+        EXPECT_EQ(contains(said.out, "its states in the equilibrium leg's equations: force "),
+                  file == states)
             << said.out;
     }
     // With forces, from the curves and from the states.
     for (const auto& file : {curves, states}) {
-        const Said said = judge("--steps 10 --tolerance 1e-6mm,1e-6deg,1e-4N,1e-4Nm --candidate " + file);
+        const Said said =
+            judge("--steps 10 --tolerance 1e-6mm,1e-6deg,1e-4N,1e-4Nm --candidate " + file);
         EXPECT_EQ(said.code, 0) << said.out << said.err;
     }
 }
@@ -71,14 +74,16 @@ TEST(CandidateCommand, ATableWithoutForcesSaysThatNoneWasCompared) {
 TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
     const Folder folder;
     const std::string states = (folder.path / "states.jsonl").string();
-    ASSERT_EQ(elastocheck_says("solve " + scenes + "/pendulum.yaml --method equilibrium --steps 8 --states " +
-                               states)
+    ASSERT_EQ(elastocheck_says("solve " + scenes +
+                               "/pendulum.yaml --method equilibrium --steps 8 --states " + states)
                   .code,
               0);
     const auto judged = [&] {
-        return elastocheck_says("judge " + scenes + "/pendulum.yaml --steps 8 --candidate " + states);
+        return elastocheck_says("judge " + scenes + "/pendulum.yaml --steps 8 --candidate " +
+                                states);
     };
-    EXPECT_TRUE(contains(judged().out, "is the full solution, within the arithmetic")) << judged().out;
+    EXPECT_TRUE(contains(judged().out, "is the full solution, within the arithmetic"))
+        << judged().out;
     std::istringstream lines(text_of(states));
     std::string turned;
     for (std::string line; std::getline(lines, line);) {
@@ -98,7 +103,8 @@ TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
     EXPECT_TRUE(contains(said.out, "Its states are out of balance by up to ")) << said.out;
 }
 
-TEST(CandidateCommand, ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBuiltInOneDigitForDigit) {
+TEST(CandidateCommand,
+     ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBuiltInOneDigitForDigit) {
     const Said said = judge("--steps 20 --json --candidate-command '" ELASTOCHECK_COMMAND
                             " solve {scene} --steps {steps} -o {output}'");
     EXPECT_EQ(said.code, 1) << said.err;
@@ -106,7 +112,8 @@ TEST(CandidateCommand, ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBui
     int same = 0;
     for (std::size_t b = 0; b < scene["branches"].size(); ++b) {
         const auto& ours = scene["branches"][b]["deviation"]["at_equal_parameter"]["channels"];
-        const auto& theirs = scene["candidates"][0]["branches"][b]["at_equal_parameter"]["channels"];
+        const auto& theirs =
+            scene["candidates"][0]["branches"][b]["at_equal_parameter"]["channels"];
         for (const auto& [name, d] : theirs.items()) {
             if (!ours.contains(name)) continue;
             EXPECT_EQ(d["signed_max"], ours[name]["signed_max"]) << name;
@@ -121,16 +128,16 @@ TEST(CandidateCommand, ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBui
 TEST(CandidateCommand, ACommandThatDoesNotDoWhatItShouldCouldNotBeJudged) {
     const struct {
         const char *command, *said;
-    } cases[] = {
-        {"sh -c \"echo no licence >&2; exit 7\" {output}", "ended with exit code 7"},
-        {"sh -c \"kill -SEGV $$\" {output}", "was killed by signal 11"},
-        {"sleep 30 {output}", "could"},
-        {"true {output}", "wrote no output file"},
-        {"touch {output}", "wrote nothing"},
-        {"cp /proc/self/environ {output}", ""},
-        {"sh -c \"echo 1,2,3 > $0\" {output}", "unknown column '1'"},
-        {"sh -c \"printf 'branch,load_N,toe_deg\\\\njounce,10,0\\\\n' > $0\" {output}", "it does not give"},
-        {"no-such-program-anywhere {output}", "could not be run"}};
+    } cases[] = {{"sh -c \"echo no licence >&2; exit 7\" {output}", "ended with exit code 7"},
+                 {"sh -c \"kill -SEGV $$\" {output}", "was killed by signal 11"},
+                 {"sleep 30 {output}", "could"},
+                 {"true {output}", "wrote no output file"},
+                 {"touch {output}", "wrote nothing"},
+                 {"cp /proc/self/environ {output}", ""},
+                 {"sh -c \"echo 1,2,3 > $0\" {output}", "unknown column '1'"},
+                 {"sh -c \"printf 'branch,load_N,toe_deg\\\\njounce,10,0\\\\n' > $0\" {output}",
+                  "it does not give"},
+                 {"no-such-program-anywhere {output}", "could not be run"}};
     for (const auto& [command, expected] : cases) {
         const std::string line = command;
         const Said said =
@@ -156,12 +163,13 @@ TEST(CandidateCommand, ACommandThatDoesNotDoWhatItShouldCouldNotBeJudged) {
 TEST(CandidateCommand, WhatCannotBeRightIsRefusedBeforeTheWork) {
     const struct {
         const char *how, *what;
-    } cases[] = {{"", "nobody to judge"},
-                 {"--candidate-command 'true {scene}'", "no {output} in it"},
-                 {"--candidate-command 'true \"{output}'", "a quote \" does not close"},
-                 {"--candidate-command 'true {output}' --set springs.K1_coil.rate=28e3", "not with --set"},
-                 {"--candidate-command 'true {output}' --tolerance 1kg", "is not a unit"},
-                 {"--candidate nowhere.csv", "nowhere.csv"}};
+    } cases[] = {
+        {"", "nobody to judge"},
+        {"--candidate-command 'true {scene}'", "no {output} in it"},
+        {"--candidate-command 'true \"{output}'", "a quote \" does not close"},
+        {"--candidate-command 'true {output}' --set springs.K1_coil.rate=28e3", "not with --set"},
+        {"--candidate-command 'true {output}' --tolerance 1kg", "is not a unit"},
+        {"--candidate nowhere.csv", "nowhere.csv"}};
     for (const auto& [how, what] : cases) {
         const Said said = judge(how);
         EXPECT_EQ(said.code, 2) << how << said.out;
@@ -227,14 +235,15 @@ TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndLeavesNoTemporaryFolde
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         const Folder folder;
         const std::string numbers = (folder.path / "numbers").string(),
-                          wrapper = folder.write("wrapper",
-                                                 "#!/bin/sh\nsleep 600 & a=$!\nsleep 600 & echo $$ $a $! > " +
-                                                     numbers + "\nwait\n");
+                          wrapper = folder.write(
+                              "wrapper",
+                              "#!/bin/sh\nsleep 600 & a=$!\nsleep 600 & echo $$ $a $! > " +
+                                  numbers + "\nwait\n");
         std::filesystem::permissions(wrapper, std::filesystem::perms(0755));
-        EXPECT_EQ(
-            ended_by(folder, numbers, signal,
-                     {"judge", scenes + "/pinned_bar.yaml", "--candidate-command", wrapper + " {output}"}),
-            signal);
+        EXPECT_EQ(ended_by(folder, numbers, signal,
+                           {"judge", scenes + "/pinned_bar.yaml", "--candidate-command",
+                            wrapper + " {output}"}),
+                  signal);
         std::istringstream list(text_of(numbers));
         int processes = 0;
         for (pid_t process; list >> process; ++processes) {
@@ -247,8 +256,9 @@ TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndLeavesNoTemporaryFolde
 }
 
 TEST(CandidateCommand, AnUnusableTemporaryFolderIsNamedWithItsVariable) {
-    const Said said = support::says("env -u CI TMPDIR=/nowhere " ELASTOCHECK_COMMAND " judge " + scenes +
-                                    "/pinned_bar.yaml --candidate-command 'true {output}'");
+    const Said said =
+        support::says("env -u CI TMPDIR=/nowhere " ELASTOCHECK_COMMAND " judge " + scenes +
+                      "/pinned_bar.yaml --candidate-command 'true {output}'");
     EXPECT_EQ(said.code, 2);
     EXPECT_TRUE(contains(said.err,
                          "TMPDIR: no temporary folder can be made in /nowhere (No such file or "
@@ -258,29 +268,32 @@ TEST(CandidateCommand, AnUnusableTemporaryFolderIsNamedWithItsVariable) {
 
 TEST(CandidateCommand, TradeOfRunsThatCouldNotBeJudgedIsNoSuccess) {
     const Folder folder;
-    const Said said =
-        elastocheck_says("trade " + scenes + "/pinned_bar.yaml --candidate-command 'false {output}' -o " +
-                         (folder.path / "out").string());
+    const Said said = elastocheck_says("trade " + scenes +
+                                       "/pinned_bar.yaml --candidate-command 'false {output}' -o " +
+                                       (folder.path / "out").string());
     EXPECT_EQ(said.code, 3) << said.out << said.err;
     const auto result = json::parse(text_of(folder.path / "out/result.json"));
-    EXPECT_TRUE(contains(result["scenes"][0]["verdict"].dump(),
-                         "the candidate with 10 steps could not be judged: 'false' ended with exit code 1"));
+    EXPECT_TRUE(contains(
+        result["scenes"][0]["verdict"].dump(),
+        "the candidate with 10 steps could not be judged: 'false' ended with exit code 1"));
 }
 
 // ---- Tables in other layouts.
 
-std::string rows(const std::string& csv, const std::vector<std::string>& columns, const std::string& head,
+std::string rows(const std::string& csv, const std::vector<std::string>& columns,
+                 const std::string& head,
                  const std::function<std::string(const std::string&, double)>& written) {
     const auto cells = cells_of(csv);
     std::vector<std::size_t> at;
     for (const auto& column : columns)
-        at.push_back(static_cast<std::size_t>(std::ranges::find(cells[0], column) - cells[0].begin()));
+        at.push_back(
+            static_cast<std::size_t>(std::ranges::find(cells[0], column) - cells[0].begin()));
     std::string text = head + "\n";
     for (std::size_t r = 1; r < cells.size(); ++r) {
         for (std::size_t c = 0; c < at.size(); ++c) {
             const std::string& cell = cells[r].at(at[c]);
-            text +=
-                (c == 0 ? "" : ",") + (columns[c] == "branch" ? cell : written(columns[c], std::stod(cell)));
+            text += (c == 0 ? "" : ",") +
+                    (columns[c] == "branch" ? cell : written(columns[c], std::stod(cell)));
         }
         text += "\n";
     }
@@ -289,18 +302,19 @@ std::string rows(const std::string& csv, const std::vector<std::string>& columns
 
 TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
     const Folder folder;
-    const std::string csv = text_of(solved(folder, "curves.csv", "--steps 10 --method equilibrium -o"));
+    const std::string csv =
+        text_of(solved(folder, "curves.csv", "--steps 10 --method equilibrium -o"));
     const std::string theirs =
-        folder.write("theirs.csv",
-                     rows(csv,
-                          {"branch", "parameter", "toe [deg]", "camber [deg]", "wheel_centre_z [mm]",
-                           "wheel_centre_y [mm]"},
-                          "case,Fz [kN],TOE,CAMBER,HEIGHT,WHATEVER", [](const std::string& column, double v) {
-                              if (column == "parameter") v *= 1e-3;
-                              if (column == "toe [deg]") v *= -std::acos(-1.) / 180;
-                              if (column == "wheel_centre_z [mm]") v = (v + 26) / 1e3;
-                              return fmt::format("{:.17g}", v);
-                          }));
+        folder.write("theirs.csv", rows(csv,
+                                        {"branch", "parameter", "toe [deg]", "camber [deg]",
+                                         "wheel_centre_z [mm]", "wheel_centre_y [mm]"},
+                                        "case,Fz [kN],TOE,CAMBER,HEIGHT,WHATEVER",
+                                        [](const std::string& column, double v) {
+                                            if (column == "parameter") v *= 1e-3;
+                                            if (column == "toe [deg]") v *= -std::acos(-1.) / 180;
+                                            if (column == "wheel_centre_z [mm]") v = (v + 26) / 1e3;
+                                            return fmt::format("{:.17g}", v);
+                                        }));
     const std::string map = folder.write("map.yaml", R"(columns:
   case: {output: branch}
   Fz [kN]: {output: parameter, unit: kN}
@@ -320,12 +334,13 @@ TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
     EXPECT_TRUE(contains(turned.out, "with its sign turned")) << turned.out;
     const struct {
         const char *text, *what;
-    } cases[] = {{"columns:\n  TOE: {output: toes}\n",
-                  "map.yaml:2: columns.TOE.output: no output is called 'toes', did you mean 'toe'?"},
-                 {"columns:\n  TOE: {output: toe, unit: mm}\n", "columns.TOE.unit: 'mm' is no unit of toe"},
-                 {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
-                 {"columns:\n  GONE: {output: toe}\n", "no column 'GONE', which"},
-                 {"rows: {}\n", "rows"}};
+    } cases[] = {
+        {"columns:\n  TOE: {output: toes}\n",
+         "map.yaml:2: columns.TOE.output: no output is called 'toes', did you mean 'toe'?"},
+        {"columns:\n  TOE: {output: toe, unit: mm}\n", "columns.TOE.unit: 'mm' is no unit of toe"},
+        {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
+        {"columns:\n  GONE: {output: toe}\n", "no column 'GONE', which"},
+        {"rows: {}\n", "rows"}};
     for (const auto& [text, what] : cases) {
         const Said refused =
             judge("--steps 10 --candidate " + theirs + " --map " + folder.write("map.yaml", text));
@@ -336,7 +351,8 @@ TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
 
 TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
     const Folder folder;
-    const std::string state = R"("bodies": {"arm": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}}})";
+    const std::string state =
+        R"("bodies": {"arm": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}}})";
     const struct {
         const char* name;
         std::string text, what;
@@ -363,7 +379,8 @@ TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
         {"a.csv", "branch,load,body,x,y,z,qw,qx,qy,qz\njounce,1,arm,0,0,0,1,0,0,0.01\n",
          "a.csv:2: orientation: its length"},
         {"a.csv",
-         "branch,load,body,x,y,z,qw,qx,qy,qz\njounce,1,arm,0,0,0,1,0,0,0\njounce,1,arm,0,0,0,1,0,0,0\n",
+         "branch,load,body,x,y,z,qw,qx,qy,qz\njounce,1,arm,0,0,0,1,0,0,0\njounce,1,arm,0,0,0,1,0,0,"
+         "0\n",
          "a.csv:3: body 'arm' is there already"}};
     for (const auto& [name, text, what] : cases) {
         const Said said = judge("--steps 5 --candidate " + folder.write(name, text));
@@ -374,8 +391,8 @@ TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
 
 TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
     const Folder folder;
-    std::string csv =
-        text_of(solved(folder, "curves.csv", "--steps 10 --method equilibrium --channels toe,camber -o"));
+    std::string csv = text_of(
+        solved(folder, "curves.csv", "--steps 10 --method equilibrium --channels toe,camber -o"));
     const Said whole = judge("--steps 10 --candidate " + folder.write("whole.csv", csv));
     EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
     const auto line = csv.find("\njounce", csv.size() / 3);
@@ -394,7 +411,8 @@ TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
 // States as a table, with another order of rows, give the same result as JSON lines.
 TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
     const Folder folder;
-    const std::string lines = solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
+    const std::string lines =
+        solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
     std::vector<std::string> rows;
     for (const auto& line : parts_of(text_of(lines), '\n')) {
         const json state = json::parse(line);
@@ -402,7 +420,8 @@ TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
             std::string row = fmt::format("{},{:.17g},{}", state["branch"].get<std::string>(),
                                           state["load"].get<double>(), body);
             for (const auto& x : pose["position"]) row += fmt::format(",{:.17g}", x.get<double>());
-            for (const auto& x : pose["orientation"]) row += fmt::format(",{:.17g}", x.get<double>());
+            for (const auto& x : pose["orientation"])
+                row += fmt::format(",{:.17g}", x.get<double>());
             rows.push_back(row);
         }
     }
@@ -427,10 +446,10 @@ TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
 TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
-    const Said said = elastocheck_says(
-        fmt::format("converge {} --steps 40,80,160,320,640 -o {} --candidate-command '" ELASTOCHECK_COMMAND
-                    " solve {{scene}} --steps {{steps}} -o {{output}}'",
-                    strut, out));
+    const Said said = elastocheck_says(fmt::format(
+        "converge {} --steps 40,80,160,320,640 -o {} --candidate-command '" ELASTOCHECK_COMMAND
+        " solve {{scene}} --steps {{steps}} -o {{output}}'",
+        strut, out));
     EXPECT_EQ(said.code, 0) << said.err;
     const auto ours = cells_of(text_of(out + "/convergence.csv")),
                theirs = cells_of(text_of(out + "/candidate_convergence.csv"));
@@ -451,8 +470,8 @@ TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
         ++converging;
     }
     EXPECT_GT(converging, 5);
-    const Said few =
-        elastocheck_says("converge " + strut + " --candidate 75=" + solved(folder, "a.csv", "--steps 75 -o"));
+    const Said few = elastocheck_says(
+        "converge " + strut + " --candidate 75=" + solved(folder, "a.csv", "--steps 75 -o"));
     EXPECT_EQ(few.code, 3);
     EXPECT_TRUE(contains(few.out, "at least three numbers of steps")) << few.out;
 }

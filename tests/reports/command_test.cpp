@@ -44,11 +44,13 @@ TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
             std::string means = row.substr(row.find_first_not_of(' ', row.find("] ") + 1));
             if (means.starts_with("such as: ")) means = means.substr(9);
             // Only names of the scene and axes differ.
-            means = std::regex_replace(means, std::regex("^position of '[^']+'"), "position of the probe");
+            means = std::regex_replace(means, std::regex("^position of '[^']+'"),
+                                       "position of the probe");
             means = std::regex_replace(means, std::regex("joint '[^']+' on ('[^']+'|ground)"),
                                        "the joint on its first body");
             means = std::regex_replace(means, std::regex("moves '[^']+'"), "moves the joint");
-            means = std::regex_replace(means, std::regex("(spring|damper) '[^']+'"), "the spring or damper");
+            means = std::regex_replace(means, std::regex("(spring|damper) '[^']+'"),
+                                       "the spring or damper");
             means = std::regex_replace(means, std::regex("ground axis [xyz](, positive [a-z ]+)?"),
                                        "ground axis");
             EXPECT_TRUE(contains(readme, means))
@@ -60,17 +62,19 @@ TEST(Command, TheReadmeSaysOfEveryOutputWhatInspectSays) {
 
 TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
     const Folder folder;
-    const auto scene = folder.write(
-        "s.yaml",
-        "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: a}, idler: {origin: c}}\n"
-        "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
-        "  second: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
-        "  hanger: {type: spherical, bodies: [idler, bar], at: c}\n"
-        "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
-        "static_loads: {weight: {on: bar, at: c, force: [0, 0, -50]}}\n"
-        "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 10, steps: 2}}\n"
-        "probes: {tip: {on: bar, at: c}}\n");
+    const auto scene =
+        folder.write("s.yaml",
+                     "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
+                     "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: "
+                     "a}, idler: {origin: c}}\n"
+                     "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n"
+                     "  second: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n"
+                     "  hanger: {type: spherical, bodies: [idler, bar], at: c}\n"
+                     "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
+                     "static_loads: {weight: {on: bar, at: c, force: [0, 0, -50]}}\n"
+                     "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\nbranches: {up: {load: up, "
+                     "to: 10, steps: 2}}\n"
+                     "probes: {tip: {on: bar, at: c}}\n");
     const Said said = elastocheck_says("inspect " + scene);
     EXPECT_EQ(said.code, 0) << said.err;
     for (const char* part :
@@ -81,12 +85,14 @@ TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
 
 TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     const Folder folder;
-    const std::string scene = scenes + "/chrono_mcpherson.yaml", rates = (folder.path / "rates.csv").string();
-    const Said solved = elastocheck_says("solve " + scene + " --method series --steps 10 --rates " + rates);
+    const std::string scene = scenes + "/chrono_mcpherson.yaml",
+                      rates = (folder.path / "rates.csv").string();
+    const Said solved =
+        elastocheck_says("solve " + scene + " --method series --steps 10 --rates " + rates);
     EXPECT_EQ(solved.code, 0) << solved.err;
     EXPECT_EQ(std::ranges::count(solved.out, '\n'), 1 + 2 * 11);
-    EXPECT_TRUE(
-        contains(text_of(rates), "branch,parameter,parameter unit,wheel_centre_x [mm per parameter unit]"));
+    EXPECT_TRUE(contains(text_of(rates),
+                         "branch,parameter,parameter unit,wheel_centre_x [mm per parameter unit]"));
 
     const Said compared = elastocheck_says("compare " + scene + " --method series --steps 10 -o " +
                                            (folder.path / "compared").string());
@@ -97,11 +103,12 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     const auto result = nlohmann::json::parse(text_of(folder.path / "compared/result.json"));
     const auto& leg = result["scenes"][0]["branches"][0]["legs"][0];
     EXPECT_EQ(leg["method"], "series");
-    const auto& deviation = result["scenes"][0]["branches"][0]["deviation"]["at_equal_parameter"]["channels"];
+    const auto& deviation =
+        result["scenes"][0]["branches"][0]["deviation"]["at_equal_parameter"]["channels"];
     EXPECT_LE(deviation["toe"]["max"], 1e-9);
 
-    const Said studied =
-        elastocheck_says("converge " + scene + " --method series -o " + (folder.path / "studied").string());
+    const Said studied = elastocheck_says("converge " + scene + " --method series -o " +
+                                          (folder.path / "studied").string());
     EXPECT_EQ(studied.code, 0) << studied.err;
     EXPECT_TRUE(contains(studied.out, "the series over its order")) << studied.out;
     EXPECT_TRUE(contains(text_of(folder.path / "studied/orders.csv"), "jounce,1e-12,16,converged"));
@@ -117,7 +124,8 @@ TEST(Command, SeriesSaysWhereThePathEndsAndGoesOnByArcLength) {
     const Said ended = elastocheck_says("solve " + scene + " --method series");
     EXPECT_EQ(ended.code, 3);
     EXPECT_TRUE(contains(ended.err, "limit point near -211.51659")) << ended.err;
-    const Said through = elastocheck_says("solve " + scene + " --method series --arc-length --steps 40");
+    const Said through =
+        elastocheck_says("solve " + scene + " --method series --arc-length --steps 40");
     EXPECT_EQ(through.code, 0) << through.err;
     EXPECT_TRUE(contains(through.out, "down,recursive,-400")) << through.out;
 }
@@ -131,28 +139,32 @@ TEST(Command, OptionsOfAnotherMethodAreRefused) {
     }
     const Said said = elastocheck_says("solve " + scene + " --tolerance 1mm");
     EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "--tolerance: only with --method adaptive or series")) << said.err;
+    EXPECT_TRUE(contains(said.err, "--tolerance: only with --method adaptive or series"))
+        << said.err;
     EXPECT_EQ(elastocheck_says("solve " + scene + " --method series --tolerance 1deg").code, 2);
     EXPECT_EQ(elastocheck_says("solve " + scene + " --method sries").code, 2);
     EXPECT_EQ(elastocheck_says("solve " + scene + " --method series --order 0").code, 2);
     EXPECT_EQ(elastocheck_says("compare " + scene + " --method energy").code, 2);
     for (const char* method : {"recursive", "published", "adaptive --tolerance 1e-3mm", "energy"})
-        EXPECT_EQ(elastocheck_says("solve " + scene + " --steps 4 --method " + method).code, 0) << method;
+        EXPECT_EQ(elastocheck_says("solve " + scene + " --steps 4 --method " + method).code, 0)
+            << method;
 }
 
 TEST(Command, CompareWritesTheTableAndTheResult) {
     const Folder folder;
-    const Said said = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 20 -o " +
-                                       (folder.path / "out").string());
+    const Said said =
+        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 20 -o " +
+                         (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(said.err.empty()) << said.err;  // no progress in a pipe
-    for (const char* part : {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]", "at equal travel",
-                             "recursive    converged", "conclusive: "})
+    for (const char* part : {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]",
+                             "at equal travel", "recursive    converged", "conclusive: "})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (generic vehicle of Project Chrono)");
     const std::string curves = text_of(folder.path / "out" / "curves.csv");
-    EXPECT_TRUE(curves.starts_with("scene,branch,leg,parameter,parameter unit,output,unit,value\n"));
+    EXPECT_TRUE(
+        curves.starts_with("scene,branch,leg,parameter,parameter unit,output,unit,value\n"));
     EXPECT_TRUE(contains(curves, ",rebound,energy,-3000,N,")) << curves.substr(0, 300);
 }
 
@@ -182,10 +194,11 @@ TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
                   "preload: [-76.9309197398, 813.830593499, -3796.67069248]");
     const Said said = elastocheck_says("compare " + folder.write("unstable.yaml", scene));
     EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(said.out,
-                         "energy leg: branch lost: branch 'jounce', settling from the design pose: the "
-                         "equilibrium stops being "
-                         "a minimum"))
+    EXPECT_TRUE(
+        contains(said.out,
+                 "energy leg: branch lost: branch 'jounce', settling from the design pose: the "
+                 "equilibrium stops being "
+                 "a minimum"))
         << said.out;
     EXPECT_TRUE(contains(said.out, "nothing compared: a curve is empty")) << said.out;
 }
@@ -198,8 +211,8 @@ TEST(Command, SolvePrintsOneLegAsCsv) {
         EXPECT_EQ(std::count(said.out.begin(), said.out.end(), '\n'), 1 + 2 * 5);
         EXPECT_TRUE(contains(said.out, std::string("up,") + method + ",5000,")) << said.out;
     }
-    EXPECT_TRUE(
-        contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out, "up,recursive,"));
+    EXPECT_TRUE(contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out,
+                         "up,recursive,"));
 }
 
 TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
@@ -216,31 +229,35 @@ TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
 TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
     const Folder folder;
     const Said said = elastocheck_says(
-        "converge " + scenes + "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
+        "converge " + scenes +
+        "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
         (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
-    for (const char* part :
-         {"branch 'lift' at equal load", "branch 'lift' at equal nose_z", "  published ", "  tangent ",
-          "|Φ| at its end, eq. (31)", "whole = lever + axis + load + rest", "conclusive"})
+    for (const char* part : {"branch 'lift' at equal load", "branch 'lift' at equal nose_z",
+                             "  published ", "  tangent ", "|Φ| at its end, eq. (31)",
+                             "whole = lever + axis + load + rest", "conclusive"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     const auto& study = result["scenes"][0]["convergence"];
-    EXPECT_EQ(study["outputs"]["rows"].size(), 2u * 2 * 2 * 6) << "branches, methods, readings, outputs";
+    EXPECT_EQ(study["outputs"]["rows"].size(), 2u * 2 * 2 * 6)
+        << "branches, methods, readings, outputs";
     EXPECT_EQ(study["step_errors"]["rows"].size(), 2u * 2 * 2 * 6 * 5);
     EXPECT_EQ(study["gap"]["rows"].size(), 2u * 2 * 6);
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
                          "lift,published,at equal load,nose_z,mm,converging,"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "step_errors.csv"),
                          "lift,published,at equal load,nose_z,mm,320,converged,"));
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"), "lift,at equal load,nose_z,mm,"));
+    EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"),
+                         "lift,at equal load,nose_z,mm,"));
     EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --steps 10,20").code, 2);
-    EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method tangnt").code, 2);
+    EXPECT_EQ(elastocheck_says("converge " + scenes + "/bushing_pair.yaml --method tangnt").code,
+              2);
 }
 
 TEST(Command, BadInputExitsWith2AndWritesNothing) {
     const Folder folder;
-    const auto bad =
-        folder.write("bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");
+    const auto bad = folder.write(
+        "bad.yaml", "elastocheck: 1\nname: x\nunits: {length: inch, angle: deg, force: N}\n");
     const auto out = (folder.path / "out").string();
     const Said said = elastocheck_says("compare " + bad + " -o " + out);
     EXPECT_EQ(said.code, 2);
@@ -253,9 +270,11 @@ TEST(Command, BadInputExitsWith2AndWritesNothing) {
 TEST(Command, OutputThatCannotBeWrittenExitsWith2) {
     const Folder folder;
     const auto file = folder.write("file", "old");
-    const Said said = elastocheck_says("compare " + scenes + "/single_bushing.yaml --steps 2 -o " + file);
+    const Said said =
+        elastocheck_says("compare " + scenes + "/single_bushing.yaml --steps 2 -o " + file);
     EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "file: is a file; what is written here is a folder")) << said.err;
+    EXPECT_TRUE(contains(said.err, "file: is a file; what is written here is a folder"))
+        << said.err;
     EXPECT_EQ(text_of(file), "old");
 }
 

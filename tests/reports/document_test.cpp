@@ -8,9 +8,9 @@
 
 #include <cmath>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/document/curves.hpp"
-#include "reports/document/json.hpp"
+#include "reports/json/json.hpp"
 #include "reports/tables/csv.hpp"
 #include "reports/tables/render.hpp"
 #include "tests/support/scenes.hpp"
@@ -78,8 +78,9 @@ TEST(Document, HoldsEveryPointOfEveryLegAndBothReadings) {
         const auto compared = std::ranges::count_if(s["channels"], [&](const json& channel) {
             return std::ranges::none_of(branch["legs"], [&](const json& leg) {
                 const auto& values = leg["curve"]["values"][channel["name"].get<std::string>()];
-                return std::ranges::any_of(
-                    values, [](const json& v) { return !v.is_number() || !std::isfinite(v.get<double>()); });
+                return std::ranges::any_of(values, [](const json& v) {
+                    return !v.is_number() || !std::isfinite(v.get<double>());
+                });
             });
         });
         for (const char* pair : {"deviation", "cross_check", "reference_uncertainty"})
@@ -109,10 +110,12 @@ TEST(Document, EveryChannelSaysWhatItIs) {
 TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
     const Made made;
     const json whole = json::parse(made.document().dump());
-    const compare::Table told = compare::force_table(compare::element_values(made.model, made.comparison));
+    const compare::Table told =
+        compare::force_table(compare::element_values(made.model, made.comparison));
     EXPECT_EQ(whole["scenes"][0]["forces"], json::parse(table_json(told).dump()));
     const std::string rows = forces_csv(whole, "result.json");
-    EXPECT_TRUE(rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))
+    EXPECT_TRUE(
+        rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))
         << rows;
     EXPECT_EQ(std::ranges::count(rows, '\n'), 1 + static_cast<long>(told.rows.size()));
     EXPECT_NE(rows.find(",rebound,-3000,N,K1_coil,K1_coil.force,N,"), std::string::npos) << rows;
@@ -120,20 +123,23 @@ TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
 
 TEST(Csv, WhatIsUndefinedIsAnEmptyCell) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(curves_row("b", compare::Leg::equilibrium, compare::Unit::newton, {2, 0, {1.5, nan, 3}}),
-              "b,equilibrium,2,N,1.5,,3\n");
+    EXPECT_EQ(
+        curves_row("b", compare::Leg::equilibrium, compare::Unit::newton, {2, 0, {1.5, nan, 3}}),
+        "b,equilibrium,2,N,1.5,,3\n");
 }
 
 TEST(Document, NumbersThatAreNotFiniteAreNull) {
     Made made;
-    made.comparison.branches[0].runs[0].curve.values[3][0] = std::numeric_limits<double>::quiet_NaN();
+    made.comparison.branches[0].runs[0].curve.values[3][0] =
+        std::numeric_limits<double>::quiet_NaN();
     made.comparison.branches[0].deviation.equal_parameter.channels[0].max =
         std::numeric_limits<double>::infinity();
     const json d = json::parse(made.document().dump());
     const json& s = d["scenes"][0];
     EXPECT_TRUE(s["branches"][0]["legs"][0]["curve"]["values"]["wheel_centre_x"][3].is_null());
     EXPECT_TRUE(
-        s["branches"][0]["deviation"]["at_equal_parameter"]["channels"]["wheel_centre_x"]["max"].is_null());
+        s["branches"][0]["deviation"]["at_equal_parameter"]["channels"]["wheel_centre_x"]["max"]
+            .is_null());
 }
 
 TEST(Document, InputHashIsFnv1a) {
@@ -156,7 +162,8 @@ TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
     const auto columns = std::ranges::count(header, ',');
     for (std::size_t at = 0; at < csv.size();) {
         const auto end = csv.find('\n', at);
-        EXPECT_EQ(std::count(csv.begin() + static_cast<long>(at), csv.begin() + static_cast<long>(end), ','),
+        EXPECT_EQ(std::count(csv.begin() + static_cast<long>(at),
+                             csv.begin() + static_cast<long>(end), ','),
                   columns);
         at = end + 1;
     }

@@ -6,10 +6,10 @@
 #include <map>
 #include <set>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/document/drawing.hpp"
-#include "reports/page/labels.hpp"
-#include "reports/page/sections/suspension.hpp"
+#include "reports/page/sections/inputs/suspension.hpp"
+#include "reports/text/labels.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -56,7 +56,8 @@ TEST(Drawing, NoWordLiesOnAnotherOrBeyondTheSheetInAnyViewOfAnyScene) {
         for (const auto& figure : all_views(drawn(name))) {
             const auto list = boxes(figure);
             for (std::size_t a = 0; a < list.size(); ++a) {
-                EXPECT_GE(list[a].left, -0.5) << name << ' ' << figure.id << ": " << figure.words[a].text;
+                EXPECT_GE(list[a].left, -0.5)
+                    << name << ' ' << figure.id << ": " << figure.words[a].text;
                 EXPECT_LE(list[a].right, figure.sheet->width + 0.5)
                     << name << ' ' << figure.id << ": " << figure.words[a].text;
                 EXPECT_GE(list[a].bottom, -0.5) << name << ' ' << figure.id;
@@ -76,7 +77,8 @@ TEST(Drawing, EveryHardpointIsNamedInAtLeastOneView) {
         for (const auto& figure : all_views(s))
             for (const auto& word : figure.words) seen.insert(word.text);
         for (const auto& point : s.points)
-            EXPECT_TRUE(!point.hardpoint || seen.contains(shown(point.name))) << name << ": " << point.name;
+            EXPECT_TRUE(!point.hardpoint || seen.contains(shown(point.name)))
+                << name << ": " << point.name;
     }
 }
 
@@ -107,8 +109,10 @@ TEST(Drawing, ADoubleWishboneIsTwoPlatesACarrierATieRodACoilAndFourBushings) {
     EXPECT_EQ(count(d["links"], "kind", "spring"), 1) << "its stops are no springs";
     EXPECT_EQ(count(d["links"], "kind", "rod"), 1);
     EXPECT_EQ(count(d["symbols"], "kind", "bushing"), 4);
-    EXPECT_EQ(count(d["symbols"], "kind", "spherical"), 4) << "two ball joints, both ends of the tie rod";
-    EXPECT_EQ(count(d["symbols"], "kind", "drive"), 1) << "the rack; a jack is no part of the suspension";
+    EXPECT_EQ(count(d["symbols"], "kind", "spherical"), 4)
+        << "two ball joints, both ends of the tie rod";
+    EXPECT_EQ(count(d["symbols"], "kind", "drive"), 1)
+        << "the rack; a jack is no part of the suspension";
     EXPECT_EQ(count(d["symbols"], "name", "jack"), 0);
 }
 
@@ -165,7 +169,8 @@ TEST(Labels, FindPlacesAsLongAsThereIsRoomAndNoneWhereThereIsNot) {
     for (std::size_t a = 0; a < placed.size(); ++a) {
         if (!placed[a]) continue;
         ++found;
-        for (std::size_t b = 0; b < a; ++b) EXPECT_FALSE(placed[b] && overlap(*placed[a], *placed[b]));
+        for (std::size_t b = 0; b < a; ++b)
+            EXPECT_FALSE(placed[b] && overlap(*placed[a], *placed[b]));
     }
     EXPECT_GE(found, 4) << "they are led away from the point";
     paper.taken.push_back({0, 0, 200, 200});

@@ -10,10 +10,11 @@ namespace {
 
 // Control characters, direction changes, bytes that are not UTF-8, and special characters of every
 // language.
-const std::vector<std::string> odd{"a\nb",      "\r",     "\x1b[31m", "\x7F",         "\u0085",
-                                   "\u009b31m", "\u2028", "\u202e",   "\u2066",       std::string("\0", 1),
-                                   "\x85",      "\xA0",   "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
-                                   "\xE2\x80"};
+const std::vector<std::string> odd{
+    "a\nb",      "\r",     "\x1b[31m", "\x7F",         "\u0085",
+    "\u009b31m", "\u2028", "\u202e",   "\u2066",       std::string("\0", 1),
+    "\x85",      "\xA0",   "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80",
+    "\xE2\x80"};
 
 TEST(Escape, WhatIsUnfitToBeANameIsSaid) {
     for (const auto& text : odd) EXPECT_NE(flaw(text), "") << for_terminal(text);
@@ -26,8 +27,9 @@ TEST(Escape, WhatIsUnfitToBeANameIsSaid) {
 
 TEST(Escape, NoLanguageLetsAControlThrough) {
     for (const auto& text : odd)
-        for (const auto& safe : {for_terminal(text), for_html(text), for_markdown(text), for_gnuplot(text),
-                                 for_csv(text), for_github(text), for_github_property(text)})
+        for (const auto& safe :
+             {for_terminal(text), for_html(text), for_markdown(text), for_gnuplot(text),
+              for_csv(text), for_github(text), for_github_property(text)})
             EXPECT_EQ(flaw(safe), "") << for_terminal(text) << " -> " << for_terminal(safe);
     for (const auto& text : odd) {
         if (text == "a\nb") continue;  // XML has lines
@@ -36,7 +38,8 @@ TEST(Escape, NoLanguageLetsAControlThrough) {
 }
 
 TEST(Escape, EachLanguagesOwnSignsAreText) {
-    EXPECT_EQ(for_terminal("a\x1b]0;x\x07\u009b\u202e\x85\n"), "a\\x1b]0;x\\x07\\x9b\\x{202e}\\x85\\n");
+    EXPECT_EQ(for_terminal("a\x1b]0;x\x07\u009b\u202e\x85\n"),
+              "a\\x1b]0;x\\x07\\x9b\\x{202e}\\x85\\n");
     EXPECT_EQ(for_html("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&apos;");
     EXPECT_EQ(for_markdown("a|b*_`[x](y)\n# <i>"), "a\\|b\\*\\_\\`\\[x\\](y) \\# \\<i\\>");
     EXPECT_EQ(for_gnuplot("it's\nsystem 'x'"), "it’s system ’x’");
@@ -75,7 +78,8 @@ TEST(Escape, MarkdownHasNeitherListsNorLinksNorFormulasOfANamesMaking) {
     EXPECT_EQ(for_markdown("1) x"), "1\\) x");
     EXPECT_EQ(for_markdown("https://x www.y"), "https\\://x www\\.y");
     EXPECT_EQ(for_markdown("$x$"), "\\$x\\$");
-    for (const char* fine : {"-0.3", "1.5", "-", "a: b", "12", "a - b"}) EXPECT_EQ(for_markdown(fine), fine);
+    for (const char* fine : {"-0.3", "1.5", "-", "a: b", "12", "a - b"})
+        EXPECT_EQ(for_markdown(fine), fine);
 }
 
 }  // namespace

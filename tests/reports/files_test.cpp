@@ -9,7 +9,7 @@
 
 #include <thread>
 
-#include "models/reader/limits.hpp"
+#include "models/reader/document/limits.hpp"
 #include "reports/files/limits.hpp"
 #include "tests/support/folder.hpp"
 
@@ -57,7 +57,8 @@ TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
     for (const auto& kind : {curves_file, rates_file, junit_file, summary_file}) {
         for (const auto& file : {scene, empty, baseline}) {
             const std::string before = text_of(file);
-            expect(file, kind, "is there, and is no " + std::string(kind.name) + " that elastocheck wrote");
+            expect(file, kind,
+                   "is there, and is no " + std::string(kind.name) + " that elastocheck wrote");
             EXPECT_EQ(text_of(file), before);
         }
         expect(folder.path, kind, "is a folder");
@@ -131,7 +132,8 @@ TEST(WriteWhole, LeavesNothingBehindWhereItCannotWrite) {
         write_whole(folder.path / "taken", "x", curves_file);
         ADD_FAILURE() << "a folder was overwritten";
     } catch (const FileError& error) {
-        EXPECT_NE(std::string(error.what()).find("taken: is a folder"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("taken: is a folder"), std::string::npos)
+            << error.what();
     }
     EXPECT_EQ(entries(folder.path), 2);
     EXPECT_THROW(write_whole("/dev/full/result.json", "x", curves_file), FileError);
@@ -152,15 +154,16 @@ TEST(Limits, StandInTheReadmeAsInTheCode) {
     for (const std::string& said :
          {grouped(reader::largest_text >> 20U) + " MiB; " + grouped(reader::deepest_nesting) +
               " levels of nesting",
-          "names of " + grouped(reader::longest_name) + " bytes", grouped(reader::most_bodies) + " bodies",
-          grouped(reader::most_segments) + " segments", grouped(reader::most_rows) + " rows",
+          "names of " + grouped(reader::longest_name) + " bytes",
+          grouped(reader::most_bodies) + " bodies", grouped(reader::most_segments) + " segments",
+          grouped(reader::most_rows) + " rows",
           "of a branch " + grouped(reader::most_steps) + " steps",
           grouped(reader::most_poses) + " steps times bodies",
           grouped(largest_file >> 20U) + " MiB; " + grouped(deepest_json) + " levels of nesting; " +
               grouped(1e-9 * largest_json) + " GB in memory",
           "| a baseline | " + grouped(largest_baseline >> 20U) + " MiB",
-          "| measured curves | " + grouped(largest_measurement >> 20U) + " MiB, " + grouped(most_measured) +
-              " points"})
+          "| measured curves | " + grouped(largest_measurement >> 20U) + " MiB, " +
+              grouped(most_measured) + " points"})
         EXPECT_TRUE(limits.find(said) != limits.npos) << said;
 }
 

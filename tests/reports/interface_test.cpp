@@ -33,9 +33,10 @@ json document(const std::string& arguments, int code = 0) {
 }
 
 TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
-    for (const char* command :
-         {"inspect", "solve --steps=4", "compare --steps=4", "converge --steps=4,8,16,32,64", "trade"}) {
-        const json said = document(std::regex_replace(command, std::regex("^[a-z]+"), "$& " + scene));
+    for (const char* command : {"inspect", "solve --steps=4", "compare --steps=4",
+                                "converge --steps=4,8,16,32,64", "trade"}) {
+        const json said =
+            document(std::regex_replace(command, std::regex("^[a-z]+"), "$& " + scene));
         EXPECT_EQ(said["schema"], "elastocheck/result/3") << command;
         EXPECT_EQ(said["scenes"].size(), 1u) << command;
         EXPECT_EQ(said["scenes"][0]["name"], "Body on one bushing") << command;
@@ -59,15 +60,17 @@ TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
     EXPECT_EQ(said.out, text_of(out + "/result.json"));
     EXPECT_TRUE(contains(said.err, "Written: ")) << said.err;
     const std::string csv = (folder.path / "c.csv").string();
-    EXPECT_EQ(document("solve " + scene + " --steps 4 -o " + csv)["scenes"][0]["branches"].size(), 2u);
+    EXPECT_EQ(document("solve " + scene + " --steps 4 -o " + csv)["scenes"][0]["branches"].size(),
+              2u);
     EXPECT_EQ(text_of(csv), elastocheck_says("solve " + scene + " --steps 4").out);
 }
 
 TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
-    const json part =
-        document("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
+    const json part = document(
+        "solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
     const auto cells = elastocheck::cells_of(
-        elastocheck_says("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'").out);
+        elastocheck_says("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")
+            .out);
     std::size_t row = 1;
     for (const auto& branch : part["branches"]) {
         const auto& leg = branch["legs"][0];
@@ -75,7 +78,8 @@ TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
         EXPECT_EQ(leg["outcome"], "converged");
         for (std::size_t k = 0; k < leg["curve"]["a"].size(); ++k, ++row) {
             EXPECT_EQ(leg["curve"]["a"][k].get<double>(), std::stod(cells[row][2]));
-            EXPECT_EQ(leg["curve"]["values"]["centre_z"][k].get<double>(), std::stod(cells[row].back()));
+            EXPECT_EQ(leg["curve"]["values"]["centre_z"][k].get<double>(),
+                      std::stod(cells[row].back()));
         }
     }
     EXPECT_EQ(row, cells.size());
@@ -84,8 +88,8 @@ TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
 }
 
 TEST(Json, OfInspectSaysWhatTheTextSays) {
-    const json part =
-        document("inspect " + scenes + "/mcpherson.yaml --set points.strut_top.z=0.58")["scenes"][0];
+    const json part = document("inspect " + scenes +
+                               "/mcpherson.yaml --set points.strut_top.z=0.58")["scenes"][0];
     EXPECT_EQ(part["model"]["unknowns"], 27);
     EXPECT_EQ(part["model"]["idle_modes"].size(), 1u);
     const json& inspection = part["inspection"];
@@ -93,15 +97,16 @@ TEST(Json, OfInspectSaysWhatTheTextSays) {
     EXPECT_EQ(inspection["branches"][0]["settles"]["outcome"], "converged");
     bool found = false;
     for (const auto& number : inspection["numbers"])
-        found = found ||
-                (number["path"] == "points.strut_top.z" && number["value"] == 0.58 && number["unit"] == "m");
+        found = found || (number["path"] == "points.strut_top.z" && number["value"] == 0.58 &&
+                          number["unit"] == "m");
     EXPECT_TRUE(found);
     for (const auto& channel : part["channels"]) EXPECT_NE(channel["definition"], "");
 }
 
 TEST(Json, KeepsTheExitCodeAndSaysErrorsAsEver) {
     const Folder folder;
-    const Said bad = elastocheck_says("inspect " + folder.write("bad.yaml", "elastocheck: 1\n") + " --json");
+    const Said bad =
+        elastocheck_says("inspect " + folder.write("bad.yaml", "elastocheck: 1\n") + " --json");
     EXPECT_EQ(bad.code, 2);
     EXPECT_EQ(bad.out, "");
     EXPECT_TRUE(contains(bad.err, "bad.yaml")) << bad.err;
@@ -128,8 +133,9 @@ TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
     const json& judged = said["scenes"][0];
     EXPECT_TRUE(contains(text.out, std::to_string(judged["offences"].size()) + " of " +
                                        std::to_string(judged["compared"].get<int>()) + " numbers"));
-    EXPECT_EQ(judged["changed"],
-              json::parse(R"([{"path": "bushings.mount.rates.x", "was": {"value": 2e5, "unit": "N/m"},
+    EXPECT_EQ(
+        judged["changed"],
+        json::parse(R"([{"path": "bushings.mount.rates.x", "was": {"value": 2e5, "unit": "N/m"},
                                                   "is": {"value": 3e5, "unit": "N/m"}}])"));
     const json& first = judged["offences"][0];
     EXPECT_EQ(first["channel"], "centre_x");
@@ -138,8 +144,8 @@ TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
               first["noticeable"]);
     EXPECT_EQ(elastocheck_says("gate " + own + " --accept --reason x --json").code, 2);
     // Its annotations are not part of the document.
-    const Said hub = support::says("env -u CI GITHUB_ACTIONS=true " ELASTOCHECK_COMMAND " gate " + own +
-                                   " --set bushings.mount.rates.x=3e5 --json");
+    const Said hub = support::says("env -u CI GITHUB_ACTIONS=true " ELASTOCHECK_COMMAND " gate " +
+                                   own + " --set bushings.mount.rates.x=3e5 --json");
     EXPECT_FALSE(json::parse(hub.out, nullptr, false).is_discarded());
     EXPECT_TRUE(contains(hub.err, "::error file=")) << hub.err;
 }
@@ -153,8 +159,8 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
           "converge S --output=-", "trade S -o -", "report S -o -", "report --from - -o out",
           "gate S --junit -", "gate S --summary=-", "gate S --baseline -", "inspect -"}) {
         const std::string given = std::regex_replace(arguments, std::regex("\\bS\\b"), scene);
-        const Said said =
-            support::says("cd " + folder.path.string() + " && env -u CI " ELASTOCHECK_COMMAND " " + given);
+        const Said said = support::says("cd " + folder.path.string() +
+                                        " && env -u CI " ELASTOCHECK_COMMAND " " + given);
         EXPECT_EQ(said.code, 2) << given;
         EXPECT_EQ(said.out, "") << given;
         EXPECT_TRUE(contains(said.err, "'-' is no name")) << given << ": " << said.err;
@@ -195,12 +201,13 @@ TEST(Version, NamesTheCommitAndEveryLibrary) {
 
 // Commit recorded by the build for the sources in a folder.
 std::string commit_of(const std::string& folder) {
-    const Said said = support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder + "/out -P " +
-                                    folder + "/reports/document/build_info.cmake");
+    const Said said = support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder +
+                                    "/out -P " + folder + "/reports/files/build_info.cmake");
     EXPECT_EQ(said.code, 0) << said.err;
     std::smatch found;
     const std::string text = text_of(folder + "/out");
-    return std::regex_search(text, found, std::regex("commit = \"([^\"]*)\"")) ? found[1].str() : "";
+    return std::regex_search(text, found, std::regex("commit = \"([^\"]*)\"")) ? found[1].str()
+                                                                               : "";
 }
 
 TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
@@ -209,13 +216,15 @@ TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
     if (!head.out.starts_with("\n")) GTEST_SKIP() << "not a checkout of its own";
     const std::string commit = head.out.substr(1, 40);
     const Folder around;
-    const std::string archive = (around.path / "archive").string(), copy = (around.path / "copy").string();
+    const std::string archive = (around.path / "archive").string(),
+                      copy = (around.path / "copy").string();
     ASSERT_EQ(
         support::says(
-            "cd " + around.path.string() + " && mkdir -p archive copy/reports/document && git init -q && " +
-            git + "archive HEAD .gitattributes reports/document/build_info.cmake | tar x -C archive && cp " +
+            "cd " + around.path.string() +
+            " && mkdir -p archive copy/reports/document && git init -q && " + git +
+            "archive HEAD .gitattributes reports/files/build_info.cmake | tar x -C archive && cp " +
             root +
-            "/reports/document/build_info.cmake copy/reports/document/ && git add copy && git -c "
+            "/reports/files/build_info.cmake copy/reports/files/ && git add copy && git -c "
             "user.name=t -c user.email=t@example.org commit -q -m x")
             .code,
         0);
@@ -241,10 +250,13 @@ TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
     namespace fs = std::filesystem;
     const fs::path prefix = fs::canonical(folder.path) / "prefix",
                    documents = prefix / "share/doc/elastocheck";
-    for (const fs::path& made : {prefix / "bin", documents / "models/scenes", documents / "reports"})
+    for (const fs::path& made :
+         {prefix / "bin", documents / "models/scenes", documents / "reports"})
         fs::create_directories(made);
     fs::copy_file(ELASTOCHECK_COMMAND, prefix / "bin/elastocheck");
-    const auto help = [&] { return support::says((prefix / "bin/elastocheck").string() + " --help").out; };
+    const auto help = [&] {
+        return support::says((prefix / "bin/elastocheck").string() + " --help").out;
+    };
     EXPECT_TRUE(contains(help(), "The scene files: models/scenes/README.md\n"))
         << "copied away from all of them";
     for (const char* name : {"models/scenes/README.md", "reports/README.md"}) {
@@ -283,14 +295,16 @@ TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
     EXPECT_EQ(offered("elastocheck compare --fo"), (Words{"--formulations"}));
     EXPECT_EQ(offered("elastocheck solve x.yaml --me"), (Words{"--method"}));
     EXPECT_EQ(offered("elastocheck solve --method p"), (Words{"published"}));
-    EXPECT_EQ(offered("elastocheck solve --method = en"), (Words{"energy"})) << "as bash splits --method=en";
+    EXPECT_EQ(offered("elastocheck solve --method = en"), (Words{"energy"}))
+        << "as bash splits --method=en";
     EXPECT_EQ(offered("elastocheck gate --class = ''").size(), 3u);
     EXPECT_EQ(offered("elastocheck new mcpherson_"), (Words{"mcpherson_rigid", "mcpherson_strut"}));
     EXPECT_EQ(offered("elastocheck solve --steps ''"), Words{});
 
     const Folder folder;
     std::filesystem::create_directory(folder.path / "cars");
-    for (const char* name : {"car.yaml", "car.csv", "result.json", "cars/a.yaml"}) folder.write(name, "");
+    for (const char* name : {"car.yaml", "car.csv", "result.json", "cars/a.yaml"})
+        folder.write(name, "");
     const std::string here = folder.path.string();
     EXPECT_EQ(offered("elastocheck inspect ca", here), (Words{"cars", "car.yaml"}));
     EXPECT_EQ(offered("elastocheck gate car.yaml ca", here), (Words{"cars", "car.yaml"}))
@@ -312,7 +326,8 @@ TEST(Completion, OfEveryShellHasEveryCommandAndOption) {
             EXPECT_TRUE(contains(text, command)) << shell << " " << command;
             const std::string of_command = elastocheck_says(command + " --help").out;
             static const std::regex option("\n  (-.,)?--([a-z-]+)");
-            for (std::sregex_iterator at(of_command.begin(), of_command.end(), option), end; at != end; ++at)
+            for (std::sregex_iterator at(of_command.begin(), of_command.end(), option), end;
+                 at != end; ++at)
                 EXPECT_TRUE(std::regex_search(
                     text, std::regex((shell == "fish" ? " -l " : "--") + (*at)[2].str() + "\\b")))
                     << shell << " " << command << " " << (*at)[2];
@@ -343,8 +358,8 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
         }
     if (support::says("man --version").code != 0) GTEST_SKIP() << "man is not installed";
     const Folder folder;
-    const Said said =
-        support::says("env LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l " + folder.write("e.1", page));
+    const Said said = support::says("env LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l " +
+                                    folder.write("e.1", page));
     EXPECT_EQ(said.err, "");
     EXPECT_TRUE(contains(said.out, "can I trust my suspension solver?")) << said.out.substr(0, 500);
 }
@@ -357,7 +372,9 @@ struct Report {
     std::string document = (folder.path / "in/result.json").string();
     Report() {
         EXPECT_EQ(
-            elastocheck_says("compare " + scene + " --steps 4 -o " + (folder.path / "in").string()).code, 0);
+            elastocheck_says("compare " + scene + " --steps 4 -o " + (folder.path / "in").string())
+                .code,
+            0);
     }
     Said draws(const std::string& options, const std::string& environment = "") const {
         return support::says("env -u CI -u BROWSER " + environment +
@@ -372,10 +389,11 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     EXPECT_EQ(said.code, 0) << said.err;
     const auto lines = parts_of(said.out, '\n');
     ASSERT_GE(lines.size(), 2u);
-    EXPECT_TRUE(
-        std::regex_search(lines[lines.size() - 2], std::regex("single_bushing\\.yaml: (pass|fail|judged)$")))
+    EXPECT_TRUE(std::regex_search(lines[lines.size() - 2],
+                                  std::regex("single_bushing\\.yaml: (pass|fail|judged)$")))
         << said.out;
-    EXPECT_TRUE(lines.back().starts_with("The page: " + (report.folder.path / "out/report.html").string()))
+    EXPECT_TRUE(
+        lines.back().starts_with("The page: " + (report.folder.path / "out/report.html").string()))
         << said.out;
 
     const json answer = json::parse(report.draws("--json").out);
@@ -393,7 +411,8 @@ TEST(ReportCommand, MarksASceneByItsJudgement) {
         report.folder.write("in/result.json", document.dump());
         const Said said = report.draws("");
         EXPECT_EQ(said.code, 0) << said.err;
-        EXPECT_TRUE(contains(said.out, std::string("single_bushing.yaml: ") + verdict + "\nThe page: "))
+        EXPECT_TRUE(
+            contains(said.out, std::string("single_bushing.yaml: ") + verdict + "\nThe page: "))
             << said.out;
     }
 }

@@ -1,12 +1,12 @@
 // Verdict: one rule and one sentence in all outputs.
-#include "compare/judgement.hpp"
+#include "compare/candidate/judgement.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "models/compile.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/tables/judgement.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/support/folder.hpp"
@@ -31,7 +31,9 @@ const compare::Comparison& compared() {
     }();
     return comparison;
 }
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
 
 TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
@@ -40,18 +42,25 @@ TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
     // of every position and angle, main or not
     double mm = compare::as_position(*j.wheel_rate), deg = 0;
     for (const auto& branch : compared().branches)
-        for (const auto* reading : {&branch.deviation.equal_parameter, &branch.deviation.equal_abscissa})
+        for (const auto* reading :
+             {&branch.deviation.equal_parameter, &branch.deviation.equal_abscissa})
             for (std::size_t c = 0; c < reading->channels.size(); ++c)
                 if (const auto& channel = compared().channels[c]; compare::is_motion(channel)) {
                     double& most = channel.unit == compare::Unit::mm ? mm : deg;
                     most = std::max(most, reading->channels[c].max);
                 }
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 1.01 * deg}).verdict, Grade::pass);
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * mm, 1.01 * deg}).verdict, Grade::fail);
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 0.99 * deg}).verdict, Grade::fail);
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict, Grade::fail);
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict, Grade::fail);
-    EXPECT_EQ(compare::assess(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict, Grade::pass)
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 1.01 * deg}).verdict,
+              Grade::pass);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * mm, 1.01 * deg}).verdict,
+              Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {1.01 * mm, 0.99 * deg}).verdict,
+              Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {0.99 * j.position->max, 1}).verdict,
+              Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), {10, 0.99 * j.angle->max}).verdict,
+              Grade::fail);
+    EXPECT_EQ(compare::assess(mcpherson(), compared(), compare::parse_tolerance("10mm")).verdict,
+              Grade::pass)
         << "an angle that nobody asked about";
 }
 
@@ -97,7 +106,8 @@ TEST(Assessment, AnyOutputThatIsOffFailsThoughEveryPositionIsRight) {
 TEST(Assessment, ForcesAreHeldToWhatIsAskedOfThem) {
     using compare::Asks, compare::parse_tolerance;
     const auto verdict = [&](const char* text) {
-        return compare::assess(mcpherson(), compared(), parse_tolerance(text, Asks::forces_too)).verdict;
+        return compare::assess(mcpherson(), compared(), parse_tolerance(text, Asks::forces_too))
+            .verdict;
     };
     EXPECT_EQ(verdict("100mm,10deg"), Grade::fail);  // by 1 %
     EXPECT_EQ(verdict("100mm,10deg,1000%"), Grade::pass);
@@ -116,7 +126,8 @@ TEST(Extents, AreOfTheWrenchOfTheValueOrOfWhatActs) {
     while (!all[x].name.ends_with(".force_x")) ++x;
     curve.values[1][x] = 500;                              // one component
     curve.values[0][x + 6] = curve.values[1][x + 6] = 50;  // of the next joint, still
-    const auto extents = compare::extents_of(all, curve, {.force = 1000, .length = 2, .round_off = 0});
+    const auto extents =
+        compare::extents_of(all, curve, {.force = 1000, .length = 2, .round_off = 0});
     for (const std::size_t c : {x, x + 1, x + 2}) EXPECT_EQ(extents[c], 500) << all[c].name;
     for (const std::size_t c : {x + 3, x + 4, x + 5}) EXPECT_EQ(extents[c], 2) << all[c].name;
     for (const std::size_t c : {x + 6, x + 7, x + 8}) EXPECT_EQ(extents[c], 5) << all[c].name;
@@ -136,8 +147,10 @@ TEST(Assessment, AWheelRateThatIsOffFailsThoughEveryPositionIsDictated) {
     for (const auto& rate : compare::rate_errors(model, comparison))
         EXPECT_NEAR(compare::as_position(rate), std::abs(rate.off) * std::abs(rate.over), 1e-12);
     ASSERT_GT(off, 0.1) << "[mm] under equal load";
-    EXPECT_EQ(compare::assess(model, comparison, {1.01 * std::max({off, j.position->max, 10.0}), 10}).verdict,
-              Grade::pass);
+    EXPECT_EQ(
+        compare::assess(model, comparison, {1.01 * std::max({off, j.position->max, 10.0}), 10})
+            .verdict,
+        Grade::pass);
     compare::Comparison positions_right = comparison;
     for (auto& branch : positions_right.branches)
         for (auto* reading : {&branch.deviation.equal_parameter, &branch.deviation.equal_abscissa})
@@ -153,10 +166,12 @@ TEST(Assessment, NaNNeverPassesAndWhatIsNotConclusiveIsNotJudged) {
     broken.branches[1].inconclusive.add("the references disagree");
     const auto j = compare::assess(mcpherson(), broken, {1e9, 1e9});
     EXPECT_EQ(j.verdict, Grade::not_judged);
-    EXPECT_TRUE(sentence(j).starts_with("Not judged: rebound: the references disagree.")) << sentence(j);
+    EXPECT_TRUE(sentence(j).starts_with("Not judged: rebound: the references disagree."))
+        << sentence(j);
     const auto nothing = compare::assess(mcpherson(), {}, {1, 1});
     EXPECT_EQ(nothing.verdict, Grade::not_judged);
-    EXPECT_TRUE(sentence(nothing).starts_with("Not judged: nothing was compared.")) << sentence(nothing);
+    EXPECT_TRUE(sentence(nothing).starts_with("Not judged: nothing was compared."))
+        << sentence(nothing);
 }
 
 TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
@@ -164,12 +179,14 @@ TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
     j.verdict = Grade::fail;
     j.tolerance = {2, 1};
     j.position = compare::Worst{"roll", "left.wheel_centre_z", compare::Unit::mm, 1.3, 1.3, 50};
-    j.position_across = compare::Worst{"roll", "right.wheel_centre_z", compare::Unit::mm, 4.8, 4.8, 50};
-    EXPECT_TRUE(
-        contains(sentence(j), "by up to 4.8\u00a0mm (right.wheel centre z, branch roll, at equal position)"))
+    j.position_across =
+        compare::Worst{"roll", "right.wheel_centre_z", compare::Unit::mm, 4.8, 4.8, 50};
+    EXPECT_TRUE(contains(
+        sentence(j), "by up to 4.8\u00a0mm (right.wheel centre z, branch roll, at equal position)"))
         << sentence(j);
     j.position_across->max = 1.2;
-    EXPECT_TRUE(contains(sentence(j), "1.3\u00a0mm (left.wheel centre z, branch roll)")) << sentence(j);
+    EXPECT_TRUE(contains(sentence(j), "1.3\u00a0mm (left.wheel centre z, branch roll)"))
+        << sentence(j);
     // A small excess, or a value near zero, is shown with enough digits.
     j.tolerance.mm = 1.2999;
     EXPECT_TRUE(contains(sentence(j), "by up to 1.3 mm")) << sentence(j);
@@ -182,31 +199,36 @@ TEST(Assessment, TheSentenceNamesTheReadingThatBreaksTheTolerance) {
 TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     const std::string text = sentence(j);
-    for (const char* part : {"Fail: the linear recursion as published is off", "wheel centre", ", branch ",
-                             "\u00a0deg (", "its wheel rate is up to ",
-                             "The tolerance is 0.01\u00a0mm, 0.001\u00a0deg and 1\u00a0% of the extent of "
-                             "forces, moments and rates (the default)."})
+    for (const char* part :
+         {"Fail: the linear recursion as published is off", "wheel centre", ", branch ",
+          "\u00a0deg (", "its wheel rate is up to ",
+          "The tolerance is 0.01\u00a0mm, 0.001\u00a0deg and 1\u00a0% of the extent of "
+          "forces, moments and rates (the default)."})
         EXPECT_TRUE(contains(text, part)) << part << ": " << text;
     const std::string given = sentence(compare::assess(mcpherson(), compared(), {100, 100}));
     EXPECT_TRUE(given.starts_with("Pass: ")) << given;
-    EXPECT_TRUE(contains(given, "within 100\u00a0mm and 100\u00a0deg of the full solution")) << given;
+    EXPECT_TRUE(contains(given, "within 100\u00a0mm and 100\u00a0deg of the full solution"))
+        << given;
     EXPECT_FALSE(contains(given, "default")) << given;
 }
 
 TEST(Assessment, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
     const support::Folder folder;
     const std::string out = (folder.path / "r").string();
-    const auto said = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 -o " + out);
+    const auto said =
+        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 -o " + out);
     const json judgement =
         json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
     EXPECT_EQ(judgement["verdict"], "fail");
     EXPECT_TRUE(said.out.ends_with(judgement["sentence"].get<std::string>() + "\n")) << said.out;
-    const auto wide = elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m");
+    const auto wide =
+        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m");
     EXPECT_EQ(wide.code, 2);
-    EXPECT_TRUE(contains(elastocheck_says("compare " + scenes +
-                                          "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg,100000%")
-                             .out,
-                         "\nPass: "));
+    EXPECT_TRUE(
+        contains(elastocheck_says("compare " + scenes +
+                                  "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg,100000%")
+                     .out,
+                 "\nPass: "));
 }
 
 }  // namespace

@@ -25,7 +25,9 @@ using support::text_of;
 struct German {
     Folder folder;
 
-    std::string environment() const { return "LOCPATH=" + folder.path.string() + " LC_ALL=de_DE.UTF-8"; }
+    std::string environment() const {
+        return "LOCPATH=" + folder.path.string() + " LC_ALL=de_DE.UTF-8";
+    }
     testing::AssertionResult make() const {
         const auto made = support::says("localedef --no-archive -i de_DE -f UTF-8 " +
                                         (folder.path / "de_DE.UTF-8").string());
@@ -54,14 +56,17 @@ const Line lines[] = {
     {"inspect", "$E inspect $SCENES/mcpherson.yaml --verbose"},
     {"inspect", "$E inspect $SCENES/pendulum.yaml --json"},
     {"solve", "$E solve $SCENES/mcpherson.yaml --steps 20 --method balanced --states states.jsonl"},
-    {"solve", "$E solve $SCENES/two_spring_arch.yaml --method series --rates rates.csv -o curves.csv"},
+    {"solve",
+     "$E solve $SCENES/two_spring_arch.yaml --method series --rates rates.csv -o curves.csv"},
     {"solve", "$E solve $SCENES/pendulum.yaml --method energy --account --set points.tip.x=0.3125"},
-    {"compare", "$E compare $SCENES/pendulum.yaml -o compared --formulations --within 0.02mm,0.002deg"},
+    {"compare",
+     "$E compare $SCENES/pendulum.yaml -o compared --formulations --within 0.02mm,0.002deg"},
     {"converge", "$E converge $SCENES/parallel_springs.yaml -o converged"},
     {"trade", "$E trade $SCENES/single_bushing.yaml -o traded --tolerance 0.015mm,0.0015deg"},
     {"new", "$E new double_wishbone"},
     {"import",
-     "$E import $SAMPLES/generic__DoubleWishbone.json -o wishbone.yaml && $E inspect wishbone.yaml"},
+     "$E import $SAMPLES/generic__DoubleWishbone.json -o wishbone.yaml && $E inspect "
+     "wishbone.yaml"},
     {"import", "$E import $SAMPLES/chrono_RotSpring_Case01.adm -o adm.yaml"},
     {"import", "$E import $FIXTURES/front.sub -o front.yaml"},
     {"export", "$E export $SCENES/mcpherson.yaml -o m.adm && $E import m.adm -o back.yaml"},
@@ -76,10 +81,12 @@ const Line lines[] = {
     {"judge",
      "$E judge $SCENES/pendulum.yaml --candidate-timeout 30.5 --candidate-command "
      "\"$E solve {scene} --steps {steps} -o {output}\""},
-    {"report", "$E report $SCENES/single_bushing.yaml -o page && $E report --from page/result.json -o again"},
+    {"report",
+     "$E report $SCENES/single_bushing.yaml -o page && $E report --from page/result.json -o again"},
     // Its joints are inconsistent, so no solver takes the requested million steps.
     {"stress",
-     "$E stress $SCENES/../extremes/redundant_link.yaml --set joints.link.length=500.25 -o extremes"},
+     "$E stress $SCENES/../extremes/redundant_link.yaml --set joints.link.length=500.25 -o "
+     "extremes"},
     {"equilibria", "$E equilibria $SCENES/two_spring_arch.yaml --at -120.5 --turned 80.5"},
     {"completion", "$E completion bash; $E man"},
     // Errors are reported with line and number.
@@ -87,7 +94,8 @@ const Line lines[] = {
      "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; sed 's/^units:.*/units: {length: 1.5}/' "
      "$SCENES/pendulum.yaml; } "
      "> bad.yaml; $E inspect bad.yaml"},
-    {"inspect", "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; echo '[: }'; } > bad.yaml; $E inspect bad.yaml"},
+    {"inspect",
+     "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; echo '[: }'; } > bad.yaml; $E inspect bad.yaml"},
     {"solve", "$E solve $SCENES/pendulum.yaml --steps 12.5"},
     {"solve", "$E solve $SCENES/pendulum.yaml --set points.tip.x=1,5"},
 };
@@ -97,15 +105,18 @@ struct Found {
     std::map<std::string, std::string> files;
 };
 Found run(const std::string& line, const std::string& environment) {
-    static const std::regex seconds("[0-9.e+-]+ s, [0-9.e+-]+ s of processor time.*|in [0-9]+ s of .*");
+    static const std::regex seconds(
+        "[0-9.e+-]+ s, [0-9.e+-]+ s of processor time.*|in [0-9]+ s of .*");
     const Folder folder;
     Found found;
-    found.said = support::says(fmt::format(
-        "cd {} && unset CI GITHUB_STEP_SUMMARY; export {} E={} SCENES={} SAMPLES={} FIXTURES={}; {}",
-        folder.path.string(), environment, ELASTOCHECK_ELSEWHERE, ELASTOCHECK_SCENES, ELASTOCHECK_SAMPLES,
-        ELASTOCHECK_FIXTURES, line));
+    found.said = support::says(
+        fmt::format("cd {} && unset CI GITHUB_STEP_SUMMARY; export {} E={} SCENES={} SAMPLES={} "
+                    "FIXTURES={}; {}",
+                    folder.path.string(), environment, ELASTOCHECK_ELSEWHERE, ELASTOCHECK_SCENES,
+                    ELASTOCHECK_SAMPLES, ELASTOCHECK_FIXTURES, line));
     // Several threads advance one clock.
-    if (contains(line, " stress ")) found.said.out = std::regex_replace(found.said.out, seconds, "");
+    if (contains(line, " stress "))
+        found.said.out = std::regex_replace(found.said.out, seconds, "");
     for (const auto& entry : fs::recursive_directory_iterator(folder.path))
         if (entry.is_regular_file())
             found.files[fs::relative(entry.path(), folder.path).string()] = text_of(entry.path());
@@ -129,7 +140,8 @@ TEST(DecimalComma, ChangesNothingThatACommandSaysOrWrites) {
         const Found here = run(line, "LC_ALL=C.UTF-8"), there = run(line, german.environment());
         EXPECT_EQ(here.said.code, there.said.code) << line << "\n" << there.said.err;
         EXPECT_TRUE(here.said.code >= 0 && here.said.code <= 3) << line << "\n" << here.said.err;
-        EXPECT_EQ(here.said.out, there.said.out) << line << "\n" << parting(here.said.out, there.said.out);
+        EXPECT_EQ(here.said.out, there.said.out) << line << "\n"
+                                                 << parting(here.said.out, there.said.out);
         EXPECT_EQ(here.said.err, there.said.err) << line;
         ASSERT_EQ(here.files.size(), there.files.size()) << line;
         for (const auto& [name, text] : here.files) {

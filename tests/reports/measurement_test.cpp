@@ -6,12 +6,12 @@
 
 #include <cmath>
 
-#include "models/compile.hpp"
-#include "reports/document/provenance.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/files/limits.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/measured.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/files/provenance.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/page/sections/inputs/measured.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -53,11 +53,13 @@ TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
     std::string csv = "load_N,toe_deg\n";
     for (std::size_t k = 0; k < most_measured; ++k) csv += "5e9,0\n";  // none within range
     EXPECT_EQ(measured(csv)["points"], most_measured);
-    EXPECT_EQ(refusal(csv + "5e9,0\n"), "kc.csv:100002: more points than 100000, the most that are read");
+    EXPECT_EQ(refusal(csv + "5e9,0\n"),
+              "kc.csv:100002: more points than 100000, the most that are read");
 }
 
 TEST(Measurement, OfTheEquilibriumItselfIsMetByBothReferencesAndMissedByTheRecursion) {
-    const auto travel = static_cast<std::size_t>(find_channel(solved().comparison.channels, "travel"));
+    const auto travel =
+        static_cast<std::size_t>(find_channel(solved().comparison.channels, "travel"));
     std::string csv = "load_N, travel_mm, toe_deg, wheel_centre_y_change_mm\n";
     for (const auto& branch : solved().comparison.branches) {
         const auto& curve = branch.runs[1].curve;
@@ -93,11 +95,13 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
             for (const auto& figure : group.figures) {
                 const auto& table = group.table;
                 if (figure.title.starts_with("Toe angle"))
-                    fourth = table.columns.back().name == "measured" && table.rows.front().back() == "–" &&
+                    fourth = table.columns.back().name == "measured" &&
+                             table.rows.front().back() == "–" &&
                              table.rows[table.rows.size() / 2].back() == "−0.20000";
                 for (const auto& series : figure.series)
-                    drawn = drawn || (series.title == "measured" && figure.title.starts_with("Toe angle") &&
-                                      series.rows.size() == 2);
+                    drawn =
+                        drawn || (series.title == "measured" &&
+                                  figure.title.starts_with("Toe angle") && series.rows.size() == 2);
             }
     }
     EXPECT_TRUE(section);
@@ -112,11 +116,12 @@ TEST(Measurement, MayBeOfAnyOutputThatIsAFunctionOfTheState) {
     const auto value = [&](const char* name, std::size_t k) {
         return curve.values[k][static_cast<std::size_t>(find_channel(all, name))];
     };
-    std::string csv = "load_N,caster_deg,scrub_radius_change_mm,track_change_mm,strut.compression_mm\n";
+    std::string csv =
+        "load_N,caster_deg,scrub_radius_change_mm,track_change_mm,strut.compression_mm\n";
     for (const std::size_t k : {10u, 20u, 40u})
         csv += fmt::format("{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", curve.a[k], value("caster", k),
-                           value("scrub_radius", k) - value("scrub_radius", 0), value("track_change", k),
-                           value("strut.compression", k));
+                           value("scrub_radius", k) - value("scrub_radius", 0),
+                           value("track_change", k), value("strut.compression", k));
     const json m = measured(csv);
     ASSERT_EQ(m["readings"][0]["channels"].size(), 4u);
     for (const auto& row : m["readings"][0]["channels"]) {
@@ -132,12 +137,17 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
     for (const auto& [csv, why] :
          {Case{"", "kc.csv: empty; the first line names the columns"},
           Case{"travel_mm,toe_deg\n", "kc.csv: no point in it"},
-          Case{"travel_mm,tow_deg\n1,2\n", "kc.csv:1: unknown column 'tow_deg', did you mean 'toe_deg'?"},
-          Case{"travel_mm,toe_rad\n1,2\n", "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
-          Case{"toe_deg\n1\n", "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
+          Case{"travel_mm,tow_deg\n1,2\n",
+               "kc.csv:1: unknown column 'tow_deg', did you mean 'toe_deg'?"},
+          Case{"travel_mm,toe_rad\n1,2\n",
+               "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
+          Case{"toe_deg\n1\n",
+               "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
           Case{"travel_mm,load_N\n1,2\n", "kc.csv:1: no output among the columns"},
-          Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n", "kc.csv:1: column 'toe_deg' stands there twice"},
-          Case{"travel_mm,toe_deg\n1,2\n3\n", "kc.csv:3: 1 cells, but 2 columns are named in the first line"},
+          Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n",
+               "kc.csv:1: column 'toe_deg' stands there twice"},
+          Case{"travel_mm,toe_deg\n1,2\n3\n",
+               "kc.csv:3: 1 cells, but 2 columns are named in the first line"},
           Case{"travel_mm,toe_deg\n1,nan\n", "kc.csv:2: toe_deg: 'nan' is not a number"},
           Case{"travel_mm,toe_deg\n1,\"2,5\"\n", "kc.csv:2: toe_deg: '2,5' is not a number"},
           Case{"branch,travel_mm,toe_deg\njonce,1,2\n",
@@ -182,8 +192,8 @@ TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
 // Without travel the figures use the load as abscissa, with the points.
 TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
     json result = sample_result();
-    result["scenes"][0]["measured"] =
-        json::parse(measured("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n").dump());
+    result["scenes"][0]["measured"] = json::parse(
+        measured("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n").dump());
     const std::string file = "result.json";
     int figures = 0, drawn = 0;
     for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
@@ -245,13 +255,14 @@ TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
               "kc.csv:1: load_N: not every branch goes by it; a column 'branch' has to say where a "
               "point belongs");
     try {
-        add_measurement(scene, "branch,load_N,toe_deg\ntravel,100,1\n", "kc.csv", model, comparison);
+        add_measurement(scene, "branch,load_N,toe_deg\ntravel,100,1\n", "kc.csv", model,
+                        comparison);
     } catch (const MeasurementError& error) {
         said = error.what();
     }
     EXPECT_EQ(said, "kc.csv:2: load_N: branch 'travel' goes by parameter_mm");
-    add_measurement(scene, "branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n", "kc.csv", model,
-                    comparison);
+    add_measurement(scene, "branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n", "kc.csv",
+                    model, comparison);
 }
 
 // As from a test rig: one file, several load cases with their own parameters and names.
@@ -295,8 +306,10 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
     EXPECT_EQ(m["readings"][0]["channels"][0]["compared"], 4);
     EXPECT_EQ(m["readings"][0]["reading"], "at equal load or parameter");
     for (const auto& [csv, why] :
-         {std::pair{"case,parameter_mm,toe_deg\nBunce,-20,1\n", "kc.csv:2: case: the scene has no 'Bunce'"},
-          std::pair{"branch,parameter_mm,toe_deg\ntravel,-20,1\n", "kc.csv:1: unknown column 'branch'"},
+         {std::pair{"case,parameter_mm,toe_deg\nBunce,-20,1\n",
+                    "kc.csv:2: case: the scene has no 'Bunce'"},
+          std::pair{"branch,parameter_mm,toe_deg\ntravel,-20,1\n",
+                    "kc.csv:1: unknown column 'branch'"},
           std::pair{"parameter_mm,toe_deg\n-20,1\n",
                     "kc.csv:1: no column 'case', which --branch-column names"},
           std::pair{"case,parameter_mm,load_N,toe_deg\nBounce,,500,1\n",
@@ -304,9 +317,10 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
         EXPECT_TRUE(rig().refusal(csv, cases).starts_with(why)) << rig().refusal(csv, cases);
     EXPECT_EQ(rig().refusal("case,parameter_mm,toe_deg\nB,-20,1\n", {"case", {{"B", "travle"}}}),
               "kc.csv: --case B=travle: the scene has no branch 'travle'");
-    EXPECT_TRUE(rig()
-                    .refusal("parameter_mm,load_N,toe_deg\n-20,1,1\n", {})
-                    .starts_with("kc.csv:1: parameter_mm and load_N: a column 'branch' has to say"));
+    EXPECT_TRUE(
+        rig()
+            .refusal("parameter_mm,load_N,toe_deg\n-20,1,1\n", {})
+            .starts_with("kc.csv:1: parameter_mm and load_N: a column 'branch' has to say"));
     EXPECT_EQ(parse_load_case("Lat Force=x=lateral"),
               (std::pair<std::string, std::string>{"Lat Force=x", "lateral"}));
     for (const char* wrong : {"lateral", "=lateral", "Lat="})
@@ -317,12 +331,12 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
 // over the abscissa of its figure, and omitted without it.
 TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
     json result = sample_result("chrono_mcpherson_travel");
-    result["scenes"][0]["measured"] =
-        json::parse(rig()
-                        .add("branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
-                             "3\nload,,700,0.4\n",
-                             {})
-                        .dump());
+    result["scenes"][0]["measured"] = json::parse(
+        rig()
+            .add("branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
+                 "3\nload,,700,0.4\n",
+                 {})
+            .dump());
     const std::string file = "result.json";
     const Field scene{&result["scenes"][0], "scenes[0]", &file};
     int seen = 0;
@@ -358,7 +372,8 @@ TEST(Measurement, PointsOutsideTheRangeAreNotCompared) {
     EXPECT_EQ(m["readings"][0]["channels"][0]["compared"], 0);
     json scene = {{"measured", m}};
     EXPECT_EQ(compared_with_measurement(scene), 0);
-    EXPECT_TRUE(json::parse(m.dump())["readings"][0]["channels"][0]["energy"]["signed_max"].is_null());
+    EXPECT_TRUE(
+        json::parse(m.dump())["readings"][0]["channels"][0]["energy"]["signed_max"].is_null());
 }
 
 }  // namespace

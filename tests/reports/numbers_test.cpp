@@ -1,5 +1,5 @@
 // Formatting of numbers for readers.
-#include "reports/page/numbers.hpp"
+#include "reports/text/numbers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <regex>
 #include <set>
 
-#include "reports/page/report.hpp"
+#include "reports/page/report/report.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
@@ -37,7 +37,8 @@ std::vector<std::string> all(const std::string& text, const std::string& pattern
 }
 
 // From each `open` to the next `close`.
-std::vector<std::string> parts(const std::string& text, const std::string& open, const std::string& close) {
+std::vector<std::string> parts(const std::string& text, const std::string& open,
+                               const std::string& close) {
     std::vector<std::string> found;
     for (auto at = text.find(open); at != text.npos; at = text.find(open, at + 1))
         found.push_back(text.substr(at, text.find(close, at) - at + close.size()));
@@ -47,7 +48,8 @@ std::vector<std::string> parts(const std::string& text, const std::string& open,
 TEST(Page, AsksForNothingFromOutside) {
     const std::string html = page();
     EXPECT_NE(
-        html.find("Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\""),
+        html.find(
+            "Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\""),
         html.npos);
     for (const auto& target : all(html, "(?:href|src)=\"([^\"]*)\""))
         EXPECT_TRUE(target.starts_with("#")) << target;
@@ -55,7 +57,8 @@ TEST(Page, AsksForNothingFromOutside) {
          {"<script", "<img", "<link", "<iframe", "<object", "url(", "@import", "@font-face"})
         EXPECT_EQ(html.find(fetching), html.npos) << fetching;
     for (const auto& address : all(html, "(https?://[^\" <]*)"))
-        EXPECT_TRUE(address == "http://www.w3.org/2000/svg" || address == "http://www.w3.org/1999/xlink")
+        EXPECT_TRUE(address == "http://www.w3.org/2000/svg" ||
+                    address == "http://www.w3.org/1999/xlink")
             << address;
 }
 
@@ -75,7 +78,8 @@ TEST(Page, HeadingsAreInOrderAndIdsAreUnique) {
     for (const auto& reference : all(html, "(?:href|xlink:href)=\"#([^\"]*)\""))
         EXPECT_TRUE(ids.contains(reference)) << reference;
     for (const auto& list : all(html, "aria-labelledby=\"([^\"]*)\""))
-        for (const auto& reference : all(list, "([^ ]+)")) EXPECT_TRUE(ids.contains(reference)) << reference;
+        for (const auto& reference : all(list, "([^ ]+)"))
+            EXPECT_TRUE(ids.contains(reference)) << reference;
 }
 
 TEST(Page, EveryFigureHasASizeWordsAndATable) {
@@ -89,7 +93,8 @@ TEST(Page, EveryFigureHasASizeWordsAndATable) {
         const auto drawings = parts(figure, "<svg", "</svg>");
         EXPECT_GE(drawings.size(), 1u);
         for (const auto& svg : drawings) {
-            EXPECT_TRUE(std::regex_search(svg, std::regex("^<svg width=\"\\d+\" height=\"\\d+\" viewBox=")));
+            EXPECT_TRUE(std::regex_search(
+                svg, std::regex("^<svg width=\"\\d+\" height=\"\\d+\" viewBox=")));
             EXPECT_NE(svg.find("role=\"img\" aria-labelledby="), svg.npos);
             const auto title = all(svg, "<title[^>]*>([^<]*)</title>"),
                        words = all(svg, "<desc[^>]*>([^<]*)</desc>");
@@ -131,8 +136,9 @@ json measured_in_a_browser(const std::string& width, const std::string& scheme) 
     std::string html = page();
     const std::string policy = all(html, "(<meta http-equiv[^>]*>)").at(0);
     html.replace(html.find(policy), policy.size(), "");
-    html.insert(html.find("</head>"),
-                "<script>window.wrong=[];addEventListener('error',e=>wrong.push(e.message));</script>");
+    html.insert(
+        html.find("</head>"),
+        "<script>window.wrong=[];addEventListener('error',e=>wrong.push(e.message));</script>");
     html.insert(html.find("</body>"), R"(<script>
 const boxes=[...document.querySelectorAll('svg')].map(s=>{const b=s.getBoundingClientRect();return [b.width,b.height]});
 const luminance=c=>{const v=c.match(/[\d.]+/g).slice(0,3).map(x=>x/255).map(x=>x<=.04045?x/12.92:((x+.055)/1.055)**2.4);
@@ -179,7 +185,8 @@ TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
             EXPECT_GT(box[0], 100) << box;
             EXPECT_GT(box[1], 100) << box;
         }
-        EXPECT_TRUE(seen["clashes"].empty()) << "words on words at " << width << ": " << seen["clashes"];
+        EXPECT_TRUE(seen["clashes"].empty())
+            << "words on words at " << width << ": " << seen["clashes"];
         EXPECT_TRUE(seen["outside"].empty()) << seen["outside"];
         EXPECT_LE(seen["page"], seen["window"]) << "it has to be scrolled sideways at " << width;
         EXPECT_EQ(seen["dark"], scheme == std::string("0"));

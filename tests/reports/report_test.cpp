@@ -1,5 +1,5 @@
 // Report folders: atomic replacement, and protection of foreign files.
-#include "reports/page/report.hpp"
+#include "reports/page/report/report.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@
 #include <random>
 #include <thread>
 
-#include "reports/document/field.hpp"
-#include "reports/document/provenance.hpp"
 #include "reports/files/folder.hpp"
+#include "reports/files/provenance.hpp"
+#include "reports/files/templates.hpp"
+#include "reports/json/json_cursor.hpp"
 #include "reports/page/plot.hpp"
-#include "reports/page/templates.hpp"
 #include "tests/reports/result.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
@@ -37,7 +37,8 @@ Contents contents_of(const fs::path& folder) {
     Contents contents;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
         if (entry.is_regular_file())
-            contents[entry.path().lexically_relative(folder).generic_string()] = text_of(entry.path());
+            contents[entry.path().lexically_relative(folder).generic_string()] =
+                text_of(entry.path());
     return contents;
 }
 
@@ -99,7 +100,8 @@ TEST(Report, AFigureCanBePlottedAgainFromItsScript) {
 TEST(Report, EveryFigureIsWellFormed) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "r");
-    const auto said = support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg");
+    const auto said =
+        support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg");
     EXPECT_EQ(said.code, 0) << said.err;
 }
 
@@ -127,8 +129,8 @@ TEST(Report, NothingInAFigureRunsWhateverItsWordsAre) {
     const Folder folder;
     for (const std::string evil :
          {"x\nsystem 'touch hacked'\n", "`touch hacked`", "'.system('touch hacked').'", "x\\",
-          "\"; system \"touch hacked\"", "x\r\nsystem('touch hacked')", "x\u2028system('touch hacked')",
-          "@x\n!touch hacked", "100 %s %d %n %"}) {
+          "\"; system \"touch hacked\"", "x\r\nsystem('touch hacked')",
+          "x\u2028system('touch hacked')", "@x\n!touch hacked", "100 %s %d %n %"}) {
         Figure figure{.id = "f", .title = evil, .description = evil, .x = evil, .y = evil};
         figure.series.push_back({evil, Series::Style::line, ink, 0, {{0, 0}, {1, 1}}});
         figure.bands.push_back({0, 1, evil});
@@ -146,10 +148,10 @@ TEST(Report, NothingInAFigureRunsWhateverItsWordsAre) {
         write_report(result, "result.json", folder.path / "r");
         ADD_FAILURE() << "a line end in a name";
     } catch (const ResultError& error) {
-        EXPECT_TRUE(
-            contains(error.what(),
-                     "result.json: scenes[0].branches[0].name: expected one line of text: it has the control "
-                     "character U+000A"))
+        EXPECT_TRUE(contains(error.what(),
+                             "result.json: scenes[0].branches[0].name: expected one line of text: "
+                             "it has the control "
+                             "character U+000A"))
             << error.what();
     }
 }
@@ -189,7 +191,8 @@ TEST(Report, ShowsWhichAlarmsRangAndSaysWhenAFaultSurvived) {
     const Folder folder;
     auto result = small_result("x");
     write_report(result, "result.json", folder.path / "without");
-    EXPECT_FALSE(contains(text_of(folder.path / "without" / "report.html"), "Alarms that are shown to ring"));
+    EXPECT_FALSE(contains(text_of(folder.path / "without" / "report.html"),
+                          "Alarms that are shown to ring"));
     result["alarms"] = nlohmann::ordered_json::parse(
         R"([{"fault": "sign", "in": "a.cpp", "simulates": "a <sign>", "first": "Some.Test", "margin": "3.2", "alarms": 2},
             {"fault": "row", "in": "b.cpp", "simulates": "a row", "first": "", "margin": "", "alarms": 0}])");
@@ -199,7 +202,8 @@ TEST(Report, ShowsWhichAlarmsRangAndSaysWhenAFaultSurvived) {
     for (const char* part :
          {"Alarms that are shown to ring", "2 faults", "1 survived", "a &lt;sign&gt;", "Some.Test"})
         EXPECT_TRUE(contains(html, part)) << part;
-    for (const char* part : {"## Alarms that are shown to ring", "2 faults", "Some.Test", "survived"})
+    for (const char* part :
+         {"## Alarms that are shown to ring", "2 faults", "Some.Test", "survived"})
         EXPECT_TRUE(contains(markdown, part)) << part;
     result["alarms"][0].erase("first");
     EXPECT_THROW(write_report(result, "result.json", folder.path / "broken"), ResultError);
@@ -243,7 +247,8 @@ TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     EXPECT_TRUE(contains(refusal(theirs), "files.txt: is no part of a report")) << refusal(theirs);
     EXPECT_EQ(contents_of(theirs), before);
     // Nor is a manifest with the right first line and name, but another content.
-    std::ofstream(theirs / "files.txt") << "elastocheck files 1\n" << input_hash("draft") << "  thesis.tex\n";
+    std::ofstream(theirs / "files.txt") << "elastocheck files 1\n"
+                                        << input_hash("draft") << "  thesis.tex\n";
     EXPECT_TRUE(contains(refusal(theirs), "thesis.tex: was changed since elastocheck wrote it"))
         << refusal(theirs);
     EXPECT_TRUE(fs::exists(theirs / "thesis.tex"));
@@ -308,7 +313,9 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
     const Folder folder;
     const auto good = folder.write("result.json", small_result("good").dump());
     const std::string out = (folder.path / "out").string();
-    EXPECT_EQ(support::says(command + " report --from " + good + " -o " + out + " --figures pdf").code, 0);
+    EXPECT_EQ(
+        support::says(command + " report --from " + good + " -o " + out + " --figures pdf").code,
+        0);
     EXPECT_TRUE(fs::exists(folder.path / "out" / "report.html"));
     bool pdf = false;
     for (const auto& [name, text] : contents_of(out))
@@ -316,17 +323,19 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
     EXPECT_TRUE(pdf);
     json bad = small_result("bad");
     bad["scenes"][0]["branches"][0].erase("legs");
-    const auto missing =
-        support::says(command + " report --from " + folder.write("bad.json", bad.dump()) + " -o " + out);
+    const auto missing = support::says(command + " report --from " +
+                                       folder.write("bad.json", bad.dump()) + " -o " + out);
     EXPECT_EQ(missing.code, 2);
-    EXPECT_TRUE(contains(missing.err, "bad.json: scenes[0].branches[0].legs: missing")) << missing.err;
+    EXPECT_TRUE(contains(missing.err, "bad.json: scenes[0].branches[0].legs: missing"))
+        << missing.err;
     json doubtful = small_result("doubtful");
     doubtful["scenes"][0]["verdict"] = {
         {"conclusive", false}, {"numbers_compared", 0}, {"reasons", {"nothing was compared"}}};
-    const auto inconclusive =
-        support::says(command + " report --from " + folder.write("d.json", doubtful.dump()) + " -o " + out);
+    const auto inconclusive = support::says(command + " report --from " +
+                                            folder.write("d.json", doubtful.dump()) + " -o " + out);
     EXPECT_EQ(inconclusive.code, 3);
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
+    EXPECT_TRUE(
+        contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
 }
 
 TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
@@ -334,8 +343,9 @@ TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
     for (const std::string open : {"[", "{\"a\":"}) {
         std::string deep = "{\"schema\":\"elastocheck/result/3\",\"scenes\":";
         for (int k = 0; k < 100'000; ++k) deep += open;
-        const auto said = support::says(command + " report --from " + folder.write("deep.json", deep) +
-                                        " -o " + (folder.path / "out").string());
+        const auto said =
+            support::says(command + " report --from " + folder.write("deep.json", deep) + " -o " +
+                          (folder.path / "out").string());
         EXPECT_EQ(said.code, 2);
         EXPECT_TRUE(contains(said.err, "deep.json: nested more than 64 deep")) << said.err;
     }
@@ -351,7 +361,8 @@ TEST(ReportCommand, SaysWhatItNeeds) {
     for (const auto& [arguments, why] :
          {Case{"-o out", "needs scene files or --from"},
           Case{scene + " --from " + document + " -o out", "one of the two"},
-          Case{scene, "--output is required"}, Case{"--from " + document + ".none -o out", "cannot be read"},
+          Case{scene, "--output is required"},
+          Case{"--from " + document + ".none -o out", "cannot be read"},
           Case{scene + " " + scene + " --measured x.csv -o out", "--measured belongs to one scene"},
           Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
           Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
@@ -369,27 +380,32 @@ TEST(ReportCommand, SaysWhatItNeeds) {
 TEST(ReportCommand, WithoutGnuplotItSaysSoAndWritesNothing) {
     const Folder folder;
     const auto document = folder.write("result.json", small_result("x").dump());
-    const auto said = support::says("PATH=" + folder.path.string() + " " + command + " report --from " +
-                                    document + " -o " + (folder.path / "out").string());
+    const auto said =
+        support::says("PATH=" + folder.path.string() + " " + command + " report --from " +
+                      document + " -o " + (folder.path / "out").string());
     EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "gnuplot cannot be run (No such file or directory)")) << said.err;
+    EXPECT_TRUE(contains(said.err, "gnuplot cannot be run (No such file or directory)"))
+        << said.err;
     EXPECT_FALSE(fs::exists(folder.path / "out"));
 }
 
 TEST(ReportCommand, SolvesAndDrawsAScene) {
     const Folder folder;
     const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
-    const auto said = support::says(command + " report " + scene + " -o " + (folder.path / "out").string());
+    const auto said =
+        support::says(command + " report " + scene + " -o " + (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(contains(said.out, "The page: " + (folder.path / "out" / "report.html").string()))
         << said.out;
     const json result = json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_TRUE(contains(said.out, ": " + result["scenes"][0]["judgement"]["sentence"].get<std::string>()))
+    EXPECT_TRUE(
+        contains(said.out, ": " + result["scenes"][0]["judgement"]["sentence"].get<std::string>()))
         << said.out;
     for (const char* part : {"model", "branches", "drawing", "convergence", "trade", "recommended",
                              "precision", "verdict", "judgement"})
         EXPECT_TRUE(result["scenes"][0].contains(part)) << part;
-    EXPECT_EQ(result["reproduce"], "elastocheck report " + scene + " -o " + (folder.path / "out").string());
+    EXPECT_EQ(result["reproduce"],
+              "elastocheck report " + scene + " -o " + (folder.path / "out").string());
 }
 
 // Killed at any moment, the folder holds the old report or the new one.
@@ -405,7 +421,8 @@ TEST(ReportCommand, KilledAtAnyMomentItLeavesTheOldReportOrTheNewOne) {
         ::posix_spawn_file_actions_init(&quiet);
         ::posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
         pid_t child = 0;
-        EXPECT_EQ(::posix_spawn(&child, argv[0], &quiet, nullptr, const_cast<char**>(argv), environ), 0);
+        EXPECT_EQ(
+            ::posix_spawn(&child, argv[0], &quiet, nullptr, const_cast<char**>(argv), environ), 0);
         ::posix_spawn_file_actions_destroy(&quiet);
         return child;
     };

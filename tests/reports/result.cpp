@@ -2,17 +2,17 @@
 
 #include <map>
 
-#include "compare/order_study.hpp"
-#include "compare/precision.hpp"
-#include "compare/study.hpp"
-#include "compare/trade.hpp"
-#include "models/compile.hpp"
+#include "compare/studies/order_study.hpp"
+#include "compare/studies/precision.hpp"
+#include "compare/studies/study.hpp"
+#include "compare/studies/work_precision.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/judgement.hpp"
-#include "reports/tables/precision_tables.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/study_tables.hpp"
-#include "reports/tables/trade_tables.hpp"
+#include "reports/tables/studies/precision_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
+#include "reports/tables/studies/work_precision_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -36,11 +36,12 @@ const json& sample_result(const std::string& name) {
     part["convergence"] = study_json(study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
     part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
-    part["orders"] = table_json(order_table(
-        compare::order_study(model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
+    part["orders"] = table_json(order_table(compare::order_study(
+        model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
     add_gap(part, comparison, study);
     add_verdict(part, comparison.compared, reasons_of(comparison));
-    part["judgement"] = judgement_json(compare::assess(model, comparison, compare::default_tolerance, false));
+    part["judgement"] =
+        judgement_json(compare::assess(model, comparison, compare::default_tolerance, false));
     json result = document("elastocheck report " + name + ".yaml -o out", provenance());
     result["scenes"].push_back(part);
     return made[name] = json::parse(result.dump());

@@ -36,15 +36,16 @@ TEST(Import, SaysWhetherTheDrawnPositionSettles) {
     const auto head_of = [&](const std::string& sample) {
         const std::string file = (here.path / "scene.yaml").string();
         std::filesystem::remove(file);
-        const Said said = elastocheck_says("import " + scenes + "/../../tests/models/import/samples/" +
-                                           sample + " -o " + file);
+        const Said said = elastocheck_says(
+            "import " + scenes + "/../../tests/models/import/samples/" + sample + " -o " + file);
         EXPECT_EQ(said.code, 0) << said.err;
         EXPECT_TRUE(contains(said.out, "settle")) << said.out;
         const std::string text = text_of(file);
         return text.substr(0, text.find("\nelastocheck: 1"));
     };
-    EXPECT_TRUE(contains(head_of("chrono_Cylindrical_Case01.adm"),
-                         "# The drawn position does NOT settle, so no branch begins: loaded idle mode: "));
+    EXPECT_TRUE(
+        contains(head_of("chrono_Cylindrical_Case01.adm"),
+                 "# The drawn position does NOT settle, so no branch begins: loaded idle mode: "));
     EXPECT_TRUE(contains(head_of("chrono_RotSpring_Case01.adm"),
                          "# The drawn position settles: bodies go by up to 646 mm"));
 }
@@ -54,7 +55,8 @@ TEST(Import, SaysWhetherTheDrawnPositionSettles) {
 TEST(New, ListsEverySceneWithALine) {
     const Said said = elastocheck_says("new");
     EXPECT_EQ(said.code, 0) << said.err;
-    for (const auto& name : shipped()) EXPECT_TRUE(contains("\n" + said.out, "\n" + name + " ")) << name;
+    for (const auto& name : shipped())
+        EXPECT_TRUE(contains("\n" + said.out, "\n" + name + " ")) << name;
     EXPECT_TRUE(contains(said.out, "McPherson strut (Kang 2004, section 3)")) << said.out;
 }
 
@@ -75,8 +77,8 @@ TEST(New, UnknownNameIsAnsweredWithTheNearest) {
     const Said said = elastocheck_says("new mcphersn");
     EXPECT_EQ(said.code, 2);
     EXPECT_TRUE(said.out.empty());
-    EXPECT_TRUE(
-        contains(said.err, "new: no template is called 'mcphersn', did you mean 'mcpherson'? there are:"))
+    EXPECT_TRUE(contains(
+        said.err, "new: no template is called 'mcphersn', did you mean 'mcpherson'? there are:"))
         << said.err;
 }
 
@@ -84,7 +86,8 @@ TEST(New, UnknownNameIsAnsweredWithTheNearest) {
 
 std::string block(const std::string& trim, const std::string& more = "") {
     return "elastocheck: 1\nname: block\nunits: {length: m, angle: rad, force: N}\n"
-           "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: {origin: "
+           "points: {low: [0, 0, 0], high: [0, 0, 0.4], aside: [1, 0, 0.4]}\nbodies: {block: "
+           "{origin: "
            "high}}\n"
            "joints: {guide: {type: translational, bodies: [block, ground], at: high, axis: z}}\n"
            "springs:\n  coil: {bodies: [block, ground], from: high, to: low, rate: 20e3}\n"
@@ -96,12 +99,14 @@ std::string block(const std::string& trim, const std::string& more = "") {
 TEST(TrimCommand, EveryCommandStartsFromTheTrimmedScene) {
     const Folder folder;
     const auto scene = folder.write(
-        "block.yaml", block("trim: {adjust: [springs.coil.preload], until: [top.z], under: {up: -500}}\n"));
+        "block.yaml",
+        block("trim: {adjust: [springs.coil.preload], until: [top.z], under: {up: -500}}\n"));
     const Said inspected = elastocheck_says("inspect " + scene);
     EXPECT_EQ(inspected.code, 0) << inspected.err;
     for (const char* part :
-         {"trim, found by the equilibrium leg", "confirmed by the energy leg", "springs.coil.preload",
-          "+500 N: force 500 N in compression, free length 425 mm", "until top.z"})
+         {"trim, found by the equilibrium leg", "confirmed by the energy leg",
+          "springs.coil.preload", "+500 N: force 500 N in compression, free length 425 mm",
+          "until top.z"})
         EXPECT_TRUE(contains(inspected.out, part)) << part << "\n" << inspected.out;
     // Without the trim the block would start 25 mm lower.
     const Said solved = elastocheck_says("solve " + scene + " --method equilibrium");
@@ -120,10 +125,12 @@ TEST(TrimCommand, EveryCommandStartsFromTheTrimmedScene) {
 TEST(TrimCommand, QuestionThatIsIllPosedIsBadInputWithItsLine) {
     const Folder folder;
     const auto scene = folder.write(
-        "block.yaml", block("trim: {adjust: [springs.across.preload], until: [top.z], under: {up: -500}}\n"));
+        "block.yaml",
+        block("trim: {adjust: [springs.across.preload], until: [top.z], under: {up: -500}}\n"));
     const Said said = elastocheck_says("inspect " + scene);
     EXPECT_EQ(said.code, 2) << said.out;
-    EXPECT_TRUE(contains(said.err, "block.yaml:11: trim: 'springs.across.preload' has no influence on top.z"))
+    EXPECT_TRUE(contains(said.err,
+                         "block.yaml:11: trim: 'springs.across.preload' has no influence on top.z"))
         << said.err;
 }
 
@@ -133,7 +140,8 @@ TEST(TrimCommand, WhatIsNotReachedLeavesNothingToJudge) {
     const auto scene = folder.write(
         "block.yaml",
         "elastocheck: 1\nname: rod\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {pivot: [0, 0, 0], tip: [1, 0, 0], low: [1, 0, -1]}\nbodies: {rod: {origin: pivot}}\n"
+        "points: {pivot: [0, 0, 0], tip: [1, 0, 0], low: [1, 0, -1]}\nbodies: {rod: {origin: "
+        "pivot}}\n"
         "joints: {pivot: {type: revolute, bodies: [rod, ground], at: pivot, axis: y}}\n"
         "springs: {coil: {bodies: [rod, ground], from: tip, to: low, rate: 20e3}}\n"
         "loads: {up: {on: rod, at: tip, force: [0, 0, 1]}}\n"
@@ -142,9 +150,9 @@ TEST(TrimCommand, WhatIsNotReachedLeavesNothingToJudge) {
     for (const char* command : {"inspect", "solve", "compare", "converge", "trade"}) {
         const Said said = elastocheck_says(std::string(command) + " " + scene);
         EXPECT_EQ(said.code, 3) << command << said.err;
-        EXPECT_TRUE(contains(
-            said.err,
-            "block.yaml:9: trim: the conditions cannot be met: the nearest that was reached misses 'tip.z'"))
+        EXPECT_TRUE(contains(said.err,
+                             "block.yaml:9: trim: the conditions cannot be met: the nearest that "
+                             "was reached misses 'tip.z'"))
             << said.err;
     }
     const Said gated = elastocheck_says("gate " + scene + " --accept --reason first");
@@ -184,23 +192,28 @@ TEST(Inspect, SaysWhatElementsAre) {
         "bodies: {arm: {origin: a}, other: {origin: d}}\n"
         "joints: {hinge: {type: revolute, bodies: [arm, ground], at: a, axis: y}}\n"
         "springs:\n"
-        "  coil: {bodies: [arm, ground], from: b, to: low, rate: 20e3, bump_stop: {clearance: 0.03, rate: "
+        "  coil: {bodies: [arm, ground], from: b, to: low, rate: 20e3, bump_stop: {clearance: "
+        "0.03, rate: "
         "300e3}}\n"
-        "  curved: {bodies: [arm, ground], from: b, to: low, curve: {table: [[-0.05, -900], [0, 0], [0.05, "
+        "  curved: {bodies: [arm, ground], from: b, to: low, curve: {table: [[-0.05, -900], [0, "
+        "0], [0.05, "
         "1400]]}}\n"
         "torsion_springs: {bar: {bodies: [arm, ground], at: a, axis: y, rate: 40}}\n"
         "bushings:\n"
-        "  mount: {bodies: [other, ground], at: d, rates: [1e6, 1e6, 1e6], rotational_rates: [10, 10, 10],\n"
+        "  mount: {bodies: [other, ground], at: d, rates: [1e6, 1e6, 1e6], rotational_rates: [10, "
+        "10, 10],\n"
         "          formulation: {frame: j, angles: cardan}}\n"
-        "beams: {leaf: {bodies: [arm, other], through: [b, d], E: 206e9, G: 79e9, diameter: 0.02, segments: "
+        "beams: {leaf: {bodies: [arm, other], through: [b, d], E: 206e9, G: 79e9, diameter: 0.02, "
+        "segments: "
         "4}}\n"
         "loads: {up: {on: arm, at: b, force: [0, 0, 1]}}\n"
         "branches: {up: {load: up, to: 100, steps: 4}}\nprobes: {tip: {on: other, at: d}}\n");
     const Said said = elastocheck_says("inspect " + scene);
     EXPECT_EQ(said.code, 0) << said.err;
     for (const char* part :
-         {"axial spring, 20 N/mm", "stop, touches when 30 mm shorter, 300 N/mm", "curve from -50 to 50 mm, ",
-          "torsion spring, ", "bushing, frame on j, Cardan angles", "leaf.1 ... 4", "beam in 4 segments"})
+         {"axial spring, 20 N/mm", "stop, touches when 30 mm shorter, 300 N/mm",
+          "curve from -50 to 50 mm, ", "torsion spring, ", "bushing, frame on j, Cardan angles",
+          "leaf.1 ... 4", "beam in 4 segments"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
@@ -210,14 +223,15 @@ TEST(Inspect, ShowsTheBeginningOfLongListsAndAllWhenVerbose) {
         points += "  p" + std::to_string(k) + ": [" + std::to_string(k) + ", 0, 0]\n";
         bodies += "  b" + std::to_string(k) + ": {origin: p" + std::to_string(k) + "}\n";
         bushings += "  k" + std::to_string(k) + ": {bodies: [b" + std::to_string(k) + ", " +
-                    (k == 1 ? "ground" : "b" + std::to_string(k - 1)) + "], at: p" + std::to_string(k - 1) +
+                    (k == 1 ? "ground" : "b" + std::to_string(k - 1)) + "], at: p" +
+                    std::to_string(k - 1) +
                     ", rates: [1e6, 1e6, 1e6], rotational_rates: [1e4, 1e4, 1e4]}\n";
     }
     const Folder folder;
     const auto scene = folder.write(
         "chain.yaml",
-        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints:\n" + points +
-            "bodies:\n" + bodies + "bushings:\n" + bushings +
+        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints:\n" +
+            points + "bodies:\n" + bodies + "bushings:\n" + bushings +
             "loads: {up: {on: b100, at: p100, force: [0, 0, 1]}}\n"
             "branches: {up: {load: up, to: 1, steps: 4}}\nprobes: {tip: {on: b100, at: p100}}\n");
     const Said some = elastocheck_says("inspect " + scene),
@@ -239,10 +253,11 @@ TEST(Inspect, TellsTheSizeBeforeAndAfter) {
 
 TEST(Inspect, NamesWhatIsCondensedWithItsReason) {
     const Said said = elastocheck_says("inspect " + scenes + "/front_axle.yaml");
-    for (const char* part : {"left out or condensed, because no output depends on it",
-                             "body 'drop_link_left': a link with a ball at each end and no load: it is the "
-                             "distance joint 'drop_link_left'",
-                             "the scene  11 bodies", "as solved  9 bodies"})
+    for (const char* part :
+         {"left out or condensed, because no output depends on it",
+          "body 'drop_link_left': a link with a ball at each end and no load: it is the "
+          "distance joint 'drop_link_left'",
+          "the scene  11 bodies", "as solved  9 bodies"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }
 
@@ -251,10 +266,12 @@ TEST(Inspect, NamesWhatIsCondensedWithItsReason) {
 TEST(Rates, AreSaidWhereAWheelIsLiftedAndRideRatesWhereItHasATyre) {
     const Said tyre = elastocheck_says("compare " + scenes + "/tyre_on_road.yaml");
     EXPECT_EQ(tyre.code, 0) << tyre.err;
-    for (const char* part : {"wheel rate from 0 to 60 mm: 30 N/mm (0 %); ride rate: 26.09 N/mm (0 %)\n",
-                             "wheel rate from 0 to 1500 N: 30 N/mm (0 %); ride rate: 26.09 N/mm (0 %)\n"})
+    for (const char* part :
+         {"wheel rate from 0 to 60 mm: 30 N/mm (0 %); ride rate: 26.09 N/mm (0 %)\n",
+          "wheel rate from 0 to 1500 N: 30 N/mm (0 %); ride rate: 26.09 N/mm (0 %)\n"})
         EXPECT_TRUE(contains(tyre.out, part)) << part << "\n" << tyre.out;
-    EXPECT_FALSE(contains(tyre.out, "from 0 to 2000 N")) << "the tyre bears a part of that\n" << tyre.out;
+    EXPECT_FALSE(contains(tyre.out, "from 0 to 2000 N")) << "the tyre bears a part of that\n"
+                                                         << tyre.out;
     const Said strut = elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 10");
     EXPECT_TRUE(contains(strut.out, "wheel rate from 0 to ")) << strut.out;
     EXPECT_FALSE(contains(strut.out, "ride rate")) << strut.out;
@@ -265,8 +282,8 @@ TEST(Rates, AreSaidWhereAWheelIsLiftedAndRideRatesWhereItHasATyre) {
 TEST(FormulationsCommand, ShowsTheSpreadBesideUncertaintyAndDeviation) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
-    const Said said =
-        elastocheck_says("compare " + scenes + "/mcpherson.yaml --steps 10 --formulations -o " + out);
+    const Said said = elastocheck_says("compare " + scenes +
+                                       "/mcpherson.yaml --steps 10 --formulations -o " + out);
     EXPECT_EQ(said.code, 0) << said.err;
     for (const char* part :
          {"formulations of the bushings (8): K2_strut_mount, K3_arm_front, K4_arm_rear",
@@ -316,18 +333,21 @@ TEST(NoEnergy, IsSaidAndTheSeriesJudges) {
 // A cantilever of n bushings.
 std::string chain(int n) {
     std::string points, bodies, bushings;
-    for (int k = 0; k <= n; ++k) points += fmt::format("  p{}: [{:.6f}, 0.0, 0.0]\n", k, 1.0 * k / n);
+    for (int k = 0; k <= n; ++k)
+        points += fmt::format("  p{}: [{:.6f}, 0.0, 0.0]\n", k, 1.0 * k / n);
     for (int k = 0; k < n; ++k) {
         bodies += fmt::format("  b{}: {{origin: p{}}}\n", k, k);
         bushings += fmt::format(
-            "  k{}: {{bodies: [{}, b{}], at: p{}, rates: [1e8, 1e8, 1e8], rotational_rates: [1e4, 1e4, "
+            "  k{}: {{bodies: [{}, b{}], at: p{}, rates: [1e8, 1e8, 1e8], rotational_rates: [1e4, "
+            "1e4, "
             "1e4]}}\n",
             k, k == 0 ? "ground" : fmt::format("b{}", k - 1), k, k);
     }
     return fmt::format(
         "elastocheck: 1\nname: chain\nunits: {{length: m, angle: rad, force: "
         "N}}\npoints:\n{}bodies:\n{}bushings:\n{}"
-        "loads: {{up: {{on: b{}, at: p{}, force: [0, 0, 1]}}}}\nbranches: {{up: {{load: up, to: 50, steps: "
+        "loads: {{up: {{on: b{}, at: p{}, force: [0, 0, 1]}}}}\nbranches: {{up: {{load: up, to: "
+        "50, steps: "
         "4}}}}\n"
         "probes: {{tip: {{on: b{}, at: p{}}}}}\n",
         points, bodies, bushings, n - 1, n, n - 1, n);
@@ -335,18 +355,21 @@ std::string chain(int n) {
 
 TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
     const Folder folder;
-    const std::string scene = folder.write("chain.yaml", chain(150)), out = (folder.path / "out").string();
+    const std::string scene = folder.write("chain.yaml", chain(150)),
+                      out = (folder.path / "out").string();
     const Said solved = elastocheck_says("solve " + scene + " --method energy");
     EXPECT_EQ(solved.code, 3) << solved.out;
-    EXPECT_TRUE(contains(
-        solved.err,
-        "too large: branch 'up': the energy leg is not asked: some 2e+11 operations for 900 coordinates"))
+    EXPECT_TRUE(contains(solved.err,
+                         "too large: branch 'up': the energy leg is not asked: some 2e+11 "
+                         "operations for 900 coordinates"))
         << solved.err;
     const Said said = elastocheck_says("compare " + scene + " -o " + out);
     EXPECT_EQ(said.code, 0) << said.out << said.err;
     for (const char* part :
-         {"energy       too large", "series       converged", "or series where the scene is too large for it",
-          "the equilibrium leg and series judge each other; branch 'up': the energy leg is not asked: some",
+         {"energy       too large", "series       converged",
+          "or series where the scene is too large for it",
+          "the equilibrium leg and series judge each other; branch 'up': the energy leg is not "
+          "asked: some",
           "the energy leg is a witness: the equilibrium leg's states leave ", "conclusive: "})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(out + "/result.json"));
@@ -363,15 +386,17 @@ TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
 
 TEST(KeepAll, SolvesTheWholeSceneToTheSameNumbers) {
     const Folder folder;
-    const auto scene = folder.write(
-        "s.yaml",
-        "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: a}, idler: {origin: c}}\n"
-        "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: y}\n"
-        "  hanger: {type: revolute, bodies: [idler, bar], at: c, axis: y}\n"
-        "bushings: {k: {bodies: [bar, ground], at: b, rates: [1e4, 1e4, 1e4]}}\n"
-        "loads: {up: {on: bar, at: b, force: [0, 0, 1]}}\nbranches: {up: {load: up, to: 100, steps: 2}}\n"
-        "probes: {tip: {on: bar, at: b}}\n");
+    const auto scene =
+        folder.write("s.yaml",
+                     "elastocheck: 1\nname: s\nunits: {length: m, angle: rad, force: N}\n"
+                     "points: {a: [0, 0, 0], b: [1, 0, 0], c: [1, 1, 0]}\nbodies: {bar: {origin: "
+                     "a}, idler: {origin: c}}\n"
+                     "joints:\n  first: {type: revolute, bodies: [bar, ground], at: a, axis: y}\n"
+                     "  hanger: {type: revolute, bodies: [idler, bar], at: c, axis: y}\n"
+                     "bushings: {k: {bodies: [bar, ground], at: b, rates: [1e4, 1e4, 1e4]}}\n"
+                     "loads: {up: {on: bar, at: b, force: [0, 0, 1]}}\nbranches: {up: {load: up, "
+                     "to: 100, steps: 2}}\n"
+                     "probes: {tip: {on: bar, at: b}}\n");
     const Said less = elastocheck_says("inspect " + scene),
                all = elastocheck_says("inspect " + scene + " --keep-all");
     EXPECT_EQ(all.code, 0) << all.err;

@@ -1,10 +1,10 @@
 // Sections of a report are functions of result.json, and errors name the broken field.
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/sections.hpp"
 
 #include <gtest/gtest.h>
 
-#include "reports/page/report.hpp"
-#include "reports/page/templates.hpp"
+#include "reports/files/templates.hpp"
+#include "reports/page/report/report.hpp"
 #include "tests/reports/result.hpp"
 
 namespace elastocheck::reports {
@@ -24,7 +24,9 @@ std::string said(const json& result) {
     return {};
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
 
 // Calls f on every value of the document; in a list only on the first.
 template <class F>
@@ -40,14 +42,17 @@ void for_each_place(const json& value, const json::json_pointer& place, F&& f) {
 TEST(Sections, EveryPartOfADocumentBecomesASection) {
     std::vector<std::string> ids;
     for (const auto& section : sections(sample_result())) ids.push_back(section.id);
-    EXPECT_EQ(ids, (std::vector<std::string>{"first", "drawing", "characteristics", "curves", "forces",
-                                             "verdict", "deviation", "price", "convergence", "attribution",
-                                             "orders", "arithmetic", "references", "model"}));
+    EXPECT_EQ(ids, (std::vector<std::string>{"first", "drawing", "characteristics", "curves",
+                                             "forces", "verdict", "deviation", "price",
+                                             "convergence", "attribution", "orders", "arithmetic",
+                                             "references", "model"}));
     for (const auto& section : sections(sample_result()))
         for (const auto& group : section.figures) {
             EXPECT_FALSE(group.caption.empty());
-            EXPECT_FALSE(group.table.rows.empty()) << section.id << ": no table under " << group.caption;
-            for (const auto& row : group.table.rows) EXPECT_EQ(row.size(), group.table.columns.size());
+            EXPECT_FALSE(group.table.rows.empty())
+                << section.id << ": no table under " << group.caption;
+            for (const auto& row : group.table.rows)
+                EXPECT_EQ(row.size(), group.table.columns.size());
             for (const auto& figure : group.figures) {
                 EXPECT_GT(figure.description.size(), 40u) << figure.id;
                 EXPECT_FALSE(figure.series.empty()) << figure.id;
@@ -57,11 +62,12 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
 
 TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
     json result = sample_result();
-    for (const char* part : {"convergence", "trade", "precision", "drawing"}) result["scenes"][0].erase(part);
+    for (const char* part : {"convergence", "trade", "precision", "drawing"})
+        result["scenes"][0].erase(part);
     result["scenes"][0]["findings"].erase("gap");
     for (const auto& section : sections(result))
-        EXPECT_TRUE(section.id != "price" && section.id != "convergence" && section.id != "arithmetic" &&
-                    section.id != "drawing");
+        EXPECT_TRUE(section.id != "price" && section.id != "convergence" &&
+                    section.id != "arithmetic" && section.id != "drawing");
     const std::string text = said(result);
     EXPECT_TRUE(contains(text, " at the end of rebound.")) << text;  // no statement about the gap
     EXPECT_FALSE(contains(text, "The method ‘")) << text;
@@ -70,28 +76,30 @@ TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
 TEST(Sections, ADamagedDocumentIsReadOrRefusedWithItsPlace) {
     const json whole = sample_result("pinned_bar");
     int refused = 0, read = 0;
-    for_each_place(whole["scenes"][0], json::json_pointer("/scenes/0"), [&](const json::json_pointer& place) {
-        if (place.back() == "0" && place.parent_pointer().to_string() == "/scenes") return;
-        for (const json& instead :
-             {json(), json("text"), json(7.5), json::array(), json::object(), json("gone")}) {
-            json damaged = whole;
-            if (instead == "gone" && damaged[place.parent_pointer()].is_object())
-                damaged[place.parent_pointer()].erase(place.back());
-            else if (instead == "gone")
-                damaged[place.parent_pointer()].erase(std::stoul(place.back()));
-            else
-                damaged[place] = instead;
-            try {
-                (void)sections(damaged);
-                ++read;
-            } catch (const ResultError& error) {
-                ++refused;
-                EXPECT_TRUE(std::string(error.what()).starts_with("result.json: scenes[0]")) << error.what();
-            } catch (const std::exception& error) {
-                ADD_FAILURE() << place.to_string() << " = " << instead << ": " << error.what();
+    for_each_place(
+        whole["scenes"][0], json::json_pointer("/scenes/0"), [&](const json::json_pointer& place) {
+            if (place.back() == "0" && place.parent_pointer().to_string() == "/scenes") return;
+            for (const json& instead :
+                 {json(), json("text"), json(7.5), json::array(), json::object(), json("gone")}) {
+                json damaged = whole;
+                if (instead == "gone" && damaged[place.parent_pointer()].is_object())
+                    damaged[place.parent_pointer()].erase(place.back());
+                else if (instead == "gone")
+                    damaged[place.parent_pointer()].erase(std::stoul(place.back()));
+                else
+                    damaged[place] = instead;
+                try {
+                    (void)sections(damaged);
+                    ++read;
+                } catch (const ResultError& error) {
+                    ++refused;
+                    EXPECT_TRUE(std::string(error.what()).starts_with("result.json: scenes[0]"))
+                        << error.what();
+                } catch (const std::exception& error) {
+                    ADD_FAILURE() << place.to_string() << " = " << instead << ": " << error.what();
+                }
             }
-        }
-    });
+        });
     EXPECT_GT(refused, 500);
     EXPECT_GT(read, 100);
 }
@@ -115,9 +123,11 @@ TEST(Verdict, IsMadeOfTheNumbers) {
     EXPECT_TRUE(contains(before, "too soft at the end of jounce")) << before;
     scene["findings"]["worst_at_equal_abscissa"]["deg"]["max"] = 0.25;
     scene["findings"]["worst_at_equal_abscissa"]["deg"]["channel"] = "toe";
-    EXPECT_TRUE(contains(said(result), "within 0.25\u00a0deg (toe) at equal travel")) << said(result);
+    EXPECT_TRUE(contains(said(result), "within 0.25\u00a0deg (toe) at equal travel"))
+        << said(result);
     scene["rate_errors"][0]["off"] = 0.25;
-    EXPECT_TRUE(contains(said(result), "its wheel rate is 25\u00a0% too stiff at the end of jounce"))
+    EXPECT_TRUE(
+        contains(said(result), "its wheel rate is 25\u00a0% too stiff at the end of jounce"))
         << said(result);
 }
 
@@ -131,7 +141,8 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
           Case{"part", "50\u00a0% of it formulation gap that more steps cannot remove"},
           Case{"hardly_any", "nearly all of it step error that more steps remove"},
           Case{"hidden",
-               "the formulation gap alone, which more steps cannot remove, is larger (0.50\u00a0mm)"},
+               "the formulation gap alone, which more steps cannot remove, is larger "
+               "(0.50\u00a0mm)"},
           Case{"opposite", "step error and formulation gap (0.50\u00a0mm) have opposite signs"},
           Case{"none", "none of it formulation gap: more steps remove it"}}) {
         json result = sample_result();
@@ -144,9 +155,11 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
 // Where a motion prescribes every position, the error is in the force.
 TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
     const std::string text = said(sample_result("arch_driven"));
-    EXPECT_TRUE(contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
+    EXPECT_TRUE(
+        contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
         << text;
-    EXPECT_TRUE(contains(said(sample_result("slider_crank")), "Its crank.drive moment is off by up to"))
+    EXPECT_TRUE(
+        contains(said(sample_result("slider_crank")), "Its crank.drive moment is off by up to"))
         << said(sample_result("slider_crank"));
 }
 
@@ -159,7 +172,8 @@ TEST(Verdict, NamesTheReadingsByWhatTheBranchMoves) {
         for (const auto& group : section.figures) {
             EXPECT_FALSE(contains(group.caption, "equal load")) << group.caption;
             for (const auto& figure : group.figures) {
-                EXPECT_FALSE(contains(figure.title + figure.x + figure.description, "load")) << figure.id;
+                EXPECT_FALSE(contains(figure.title + figure.x + figure.description, "load"))
+                    << figure.id;
                 // No figure has a non-monotonic abscissa.
                 EXPECT_TRUE(section.id != "curves" || figure.x == "parameter [deg]") << figure.id;
             }
@@ -170,8 +184,9 @@ TEST(Verdict, NamesTheReadingsByWhatTheBranchMoves) {
 TEST(Verdict, TellsTheWheelRateOfEveryEnd) {
     const json result = sample_result("chrono_mcpherson_travel");
     const std::string text = said(result);
-    for (const char* end : {"at the end of travel at −80\u00a0mm", "at the end of travel at 80\u00a0mm",
-                            "at the end of braking", "at the end of load"})
+    for (const char* end :
+         {"at the end of travel at −80\u00a0mm", "at the end of travel at 80\u00a0mm",
+          "at the end of braking", "at the end of load"})
         EXPECT_TRUE(contains(text, end)) << end << ": " << text;
     bool force = false;
     for (const auto& section : sections(result))
@@ -186,7 +201,8 @@ TEST(Verdict, InconclusiveIsSaidFirst) {
     result["scenes"][0]["verdict"] = {{"conclusive", false},
                                       {"numbers_compared", 3},
                                       {"reasons", {"jounce: energy leg: branch lost: at load 3"}}};
-    EXPECT_TRUE(said(result).starts_with("Inconclusive: jounce: energy leg: branch lost: at load 3; "))
+    EXPECT_TRUE(
+        said(result).starts_with("Inconclusive: jounce: energy leg: branch lost: at load 3; "))
         << said(result);
 }
 
@@ -200,7 +216,8 @@ TEST(Verdict, WhatCouldNotBeJudgedIsNotSaidToHaveFailed) {
     for (const auto& section : sections(result))
         if (section.id == "price") {
             const std::string text = render("text/price", section.words, Escape::nothing);
-            EXPECT_TRUE(contains(text, "Nothing is recommended. Inconclusive: jounce: energy leg")) << text;
+            EXPECT_TRUE(contains(text, "Nothing is recommended. Inconclusive: jounce: energy leg"))
+                << text;
         }
 }
 
@@ -220,7 +237,8 @@ TEST(Verdict, AReferenceThatStoppedIsNotSaidToAgree) {
             for (const auto& group : section.figures) {
                 EXPECT_TRUE(contains(group.caption, "The references did not both go all the way"))
                     << group.caption;
-                EXPECT_FALSE(contains(group.figures[0].description, "apart")) << group.figures[0].description;
+                EXPECT_FALSE(contains(group.figures[0].description, "apart"))
+                    << group.figures[0].description;
             }
 }
 
@@ -228,7 +246,8 @@ TEST(Verdict, ARecursionThatStoppedIsSaidToHaveStopped) {
     json result = sample_result();
     result["scenes"][0]["branches"][1]["legs"][0]["outcome"] = "diverged";
     EXPECT_TRUE(contains(
-        said(result), "The published recursion with 20 steps does not get through branch rebound: diverged."))
+        said(result),
+        "The published recursion with 20 steps does not get through branch rebound: diverged."))
         << said(result);
     EXPECT_FALSE(contains(said(result), "within")) << said(result);
 }
@@ -236,15 +255,16 @@ TEST(Verdict, ARecursionThatStoppedIsSaidToHaveStopped) {
 TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
     json result = sample_result();
     result["scenes"][0]["trade"]["recommendation"] = nullptr;
-    EXPECT_TRUE(
-        contains(said(result), "Nothing tried holds 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
+    EXPECT_TRUE(contains(
+        said(result), "Nothing tried holds 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
         << said(result);
 }
 
 TEST(Verdict, NaNIsNeverASmallDeviation) {
     json result = sample_result();
     result["scenes"][0]["findings"]["worst_at_equal_abscissa"]["deg"]["max"] = nullptr;
-    EXPECT_TRUE(contains(said(result), "within – deg") || contains(said(result), "within –\u00a0deg"))
+    EXPECT_TRUE(contains(said(result), "within – deg") ||
+                contains(said(result), "within –\u00a0deg"))
         << said(result);
 }
 
@@ -262,7 +282,8 @@ TEST(ParseResult, RefusesWhatItCannotRead) {
     const std::string whole = sample_result().dump();
     EXPECT_EQ(refusal(whole), "read");
     for (const std::string& text : {whole.substr(0, whole.size() / 2), std::string()})
-        EXPECT_TRUE(refusal(text).starts_with("result.json: is no JSON, or was cut off (")) << refusal(text);
+        EXPECT_TRUE(refusal(text).starts_with("result.json: is no JSON, or was cut off ("))
+            << refusal(text);
     EXPECT_EQ(refusal("[]"), "result.json: expected an object, found array");
     EXPECT_EQ(refusal("{}"), "result.json: schema: missing");
     EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\"}"), "result.json: scenes: missing");

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <set>
 
-#include "compare/legs.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/legs.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/tables/csv.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/support/scenes.hpp"
@@ -25,14 +25,16 @@ using support::Said;
 using support::text_of;
 
 // All rows at once, from stored paths.
-std::string csv_of_kept_points(const Model& model, const compare::Gait& gait, int steps) {
+std::string csv_of_kept_points(const Model& model, const compare::SolverSettings& solver,
+                               int steps) {
     const auto channels = compare::channels(model);
     std::string csv = reports::curves_header(channels);
     for (const auto& branch : model.branches) {
-        const auto ways = compare::ways_of(model, branch, steps);
-        for (const auto& point : walk(ways, gait).points)
-            csv += reports::curves_row(branch.name, gait.leg, compare::unit_of(branch.unit),
-                                       compare::row_of(model, channels, ways.front(), gait, point));
+        const auto ways = compare::sides_of(model, branch, steps);
+        for (const auto& point : walk(ways, solver).points)
+            csv +=
+                reports::curves_row(branch.name, solver.leg, compare::unit_of(branch.unit),
+                                    compare::row_of(model, channels, ways.front(), solver, point));
     }
     return csv;
 }
@@ -42,15 +44,16 @@ TEST(SolveCommand, WritesTheRowsOfThePointsBitByBitOnEveryScene) {
     for (const auto& name : support::small_scene_names()) {
         const Model model = compile(support::scene(name));
         for (const char* method : {"published", "series", "equilibrium"}) {
-            compare::Gait gait;
+            compare::SolverSettings solver;
             if (method == std::string("equilibrium"))
-                gait.leg = compare::Leg::equilibrium;
+                solver.leg = compare::Leg::equilibrium;
             else
-                gait.recursion.method = recursive::find_method(method).value();
+                solver.recursion.method = recursive::find_method(method).value();
             const auto file = (folder.path / (name + method + ".csv")).string();
-            const auto command = fmt::format("solve {}/{}.yaml --steps 10 --method {}", scenes, name, method);
+            const auto command =
+                fmt::format("solve {}/{}.yaml --steps 10 --method {}", scenes, name, method);
             const Said said = elastocheck_says(command);
-            EXPECT_EQ(said.out, csv_of_kept_points(model, gait, 10)) << command;
+            EXPECT_EQ(said.out, csv_of_kept_points(model, solver, 10)) << command;
             EXPECT_EQ(elastocheck_says(command + " -o " + file).code, said.code) << command;
             EXPECT_EQ(text_of(file), said.out) << command;
         }
@@ -81,29 +84,34 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
             if (c >= 4) {
                 EXPECT_EQ(some[0][c], heads[c - 4]);
             }
-            const auto at = static_cast<std::size_t>(std::ranges::find(all[0], some[0][c]) - all[0].begin());
-            for (std::size_t row = 0; row < all.size(); ++row) EXPECT_EQ(some[row][c], all[row][at]);
+            const auto at =
+                static_cast<std::size_t>(std::ranges::find(all[0], some[0][c]) - all[0].begin());
+            for (std::size_t row = 0; row < all.size(); ++row)
+                EXPECT_EQ(some[row][c], all[row][at]);
         }
     };
     expect("toe", {"toe [deg]"});
     expect("camber,wheel_centre_x", {"camber [deg]", "wheel_centre_x [mm]"});
     expect("camber --channels toe,camber", {"camber [deg]", "toe [deg]"});
-    expect("'wheel_centre_*'", {"wheel_centre_x [mm]", "wheel_centre_y [mm]", "wheel_centre_z [mm]"});
+    expect("'wheel_centre_*'",
+           {"wheel_centre_x [mm]", "wheel_centre_y [mm]", "wheel_centre_z [mm]"});
     expect("travel,'ball_joint.force_?','*_joint.force_z'",
-           {"travel [mm]", "ball_joint.force_x [N]", "ball_joint.force_y [N]", "ball_joint.force_z [N]"});
+           {"travel [mm]", "ball_joint.force_x [N]", "ball_joint.force_y [N]",
+            "ball_joint.force_z [N]"});
 }
 
 // Element forces are columns only if requested; checked against the closed form of the scene.
 TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
-    const std::string command = "solve " + scenes + "/tyre_on_road.yaml --steps 10 --method equilibrium";
+    const std::string command =
+        "solve " + scenes + "/tyre_on_road.yaml --steps 10 --method equilibrium";
     EXPECT_FALSE(contains(elastocheck_says(command).out, "suspension.force"));
-    const auto rows =
-        cells_of(elastocheck_says(command + " --channels 'suspension.*','tyre.force',wheel_centre_z").out);
+    const auto rows = cells_of(
+        elastocheck_says(command + " --channels 'suspension.*','tyre.force',wheel_centre_z").out);
     ASSERT_GT(rows.size(), 20u);
-    EXPECT_EQ(rows[0],
-              (std::vector<std::string>{"branch", "leg", "parameter", "unit", "suspension.compression [mm]",
-                                        "suspension.motion_ratio [-]", "suspension.deflection [mm]",
-                                        "suspension.force [N]", "tyre.force [N]", "wheel_centre_z [mm]"}));
+    EXPECT_EQ(rows[0], (std::vector<std::string>{
+                           "branch", "leg", "parameter", "unit", "suspension.compression [mm]",
+                           "suspension.motion_ratio [-]", "suspension.deflection [mm]",
+                           "suspension.force [N]", "tyre.force [N]", "wheel_centre_z [mm]"}));
     for (std::size_t r = 1; r < rows.size(); ++r) {
         const double z = std::stod(rows[r][9]), h = std::stod(rows[r][2]);
         EXPECT_NEAR(std::stod(rows[r][4]), z, 1e-6);
@@ -121,21 +129,24 @@ TEST(SolveCommand, WhatElementsBearIsWrittenWhereItIsAskedFor) {
 TEST(SolveCommand, ChannelThatIsNoneIsAnsweredWithTheNearest) {
     const Folder folder;
     const std::string file = (folder.path / "c.csv").string();
-    for (const auto& [asked, near] : {std::pair{"tow", "toe"}, {"toe,cambr", "camber"}, {"Toe", "toe"}}) {
-        const Said said = elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked +
-                                           " -o " + file);
+    for (const auto& [asked, near] :
+         {std::pair{"tow", "toe"}, {"toe,cambr", "camber"}, {"Toe", "toe"}}) {
+        const Said said = elastocheck_says(
+            "solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked + " -o " + file);
         EXPECT_EQ(said.code, 2) << said.out;
         EXPECT_TRUE(contains(said.err, "--channels: no output is called")) << said.err;
         EXPECT_TRUE(contains(said.err, fmt::format("did you mean '{}'?", near))) << said.err;
     }
-    EXPECT_EQ(elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'").code, 2);
+    EXPECT_EQ(elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'").code,
+              2);
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(SolveCommand, EveryNthStepIsOneOfTheSameRows) {
     // Two branches of 20 steps, from a = 0 each.
     for (const char* method : {"published", "adaptive", "series"}) {
-        const auto command = fmt::format("solve {}/bushing_pair.yaml --steps 20 --method {}", scenes, method);
+        const auto command =
+            fmt::format("solve {}/bushing_pair.yaml --steps 20 --method {}", scenes, method);
         const auto all = parts_of(elastocheck_says(command).out, '\n');
         ASSERT_EQ(all.size(), 1u + 2 * 21);
         for (const int every : {1, 6, 10, 19, 20}) {
@@ -170,7 +181,8 @@ TEST(SolveCommand, EveryThatIsNoneOrMoreThanThereAreStepsIsRefused) {
         }
         const Said said = elastocheck_says(command + scene + " --steps 20 --every 21");
         EXPECT_EQ(said.code, 2);
-        EXPECT_TRUE(contains(said.err, "--every 21: branch 'lift' has 20 steps; allowed: 1 to as many"))
+        EXPECT_TRUE(
+            contains(said.err, "--every 21: branch 'lift' has 20 steps; allowed: 1 to as many"))
             << said.err;
         EXPECT_TRUE(said.out.empty());
     }
@@ -191,8 +203,8 @@ TEST(CompareCommand, EveryNthStepIsCompared) {
         if (row[2] == "recursive") written.push_back({row[1], row[3], row[7]});
         if (row[2] == "energy") visited.insert(row[1] + row[3]);
     }
-    const auto solved =
-        cells_of(elastocheck_says("solve " + scene + " --steps 40 --every 15 --channels nose_z").out);
+    const auto solved = cells_of(
+        elastocheck_says("solve " + scene + " --steps 40 --every 15 --channels nose_z").out);
     for (const auto& row : solved)
         if (row[1] == "recursive") expected.push_back({row[0], row[2], row[4]});
     EXPECT_EQ(written, expected);
@@ -239,13 +251,16 @@ TEST(ExportCommand, ConvertsBushingsAndSaysByHowMuchTheOutputsMove) {
     const Said said = elastocheck_says(command + "--formulation adams -o " + deck);
     EXPECT_EQ(said.code, 0) << said.err;
     const std::string effect =
-        "converted to the bushing formulation of adams: the outputs move by up to 6.9e-05 mm (wheel_centre_z "
+        "converted to the bushing formulation of adams: the outputs move by up to 6.9e-05 mm "
+        "(wheel_centre_z "
         "on "
-        "branch 'vertical' at 3000 N) and 1e-05 deg (toe on branch 'travel' at 80 mm), by the equilibrium "
+        "branch 'vertical' at 3000 N) and 1e-05 deg (toe on branch 'travel' at 80 mm), by the "
+        "equilibrium "
         "leg";
     EXPECT_TRUE(contains(said.err, effect)) << said.err;
     EXPECT_TRUE(contains(text_of(deck), effect));
-    EXPECT_EQ(elastocheck_says("import " + deck + " -o " + (folder.path / "s.yaml").string()).code, 0);
+    EXPECT_EQ(elastocheck_says("import " + deck + " -o " + (folder.path / "s.yaml").string()).code,
+              0);
     EXPECT_EQ(elastocheck_says(command + "--formulation chrono").code, 2);
 }
 
@@ -265,9 +280,11 @@ probes: {tip: {on: bar, at: b}}
 )"),
                       states = (folder.path / "states.jsonl").string();
     for (int again = 0; again < 2; ++again) {
-        const Said said = elastocheck_says("solve " + loose + " --method equilibrium --states " + states);
+        const Said said =
+            elastocheck_says("solve " + loose + " --method equilibrium --states " + states);
         EXPECT_EQ(said.code, 3) << said.err;
-        EXPECT_TRUE(contains(said.err, "states.jsonl: not written: no state was reached")) << said.err;
+        EXPECT_TRUE(contains(said.err, "states.jsonl: not written: no state was reached"))
+            << said.err;
         EXPECT_FALSE(std::filesystem::exists(states));
     }
 }
@@ -276,7 +293,8 @@ TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
     const Folder folder;
     const auto file = (folder.path / "rates.csv").string();
     const std::string command =
-        "solve " + scenes + "/chrono_mcpherson.yaml --method series --steps 20 --every 8 --rates " + file;
+        "solve " + scenes + "/chrono_mcpherson.yaml --method series --steps 20 --every 8 --rates " +
+        file;
     const Said said = elastocheck_says(command + " --channels toe,ball_joint.force_x");
     EXPECT_EQ(said.code, 0) << said.err;
     const auto rows = cells_of(said.out), rates = cells_of(text_of(file));
@@ -319,8 +337,8 @@ long memory_of(const std::vector<std::string>& words) {
 
 TEST(SolveCommand, MemoryDoesNotGrowWithTheStepsItTakes) {
     const auto memory = [](const std::string& method, const std::string& steps) {
-        return memory_of({ELASTOCHECK_COMMAND, "solve", scenes + "/pinned_bar.yaml", "--method", method,
-                          "--channels", "tip_z", "--steps", steps});
+        return memory_of({ELASTOCHECK_COMMAND, "solve", scenes + "/pinned_bar.yaml", "--method",
+                          method, "--channels", "tip_z", "--steps", steps});
     };
     for (const char* method : {"published", "series"}) {
         const long few = memory(method, "10000"), many = memory(method, "300000");

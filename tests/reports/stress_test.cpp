@@ -7,10 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reports/document/field.hpp"
 #include "reports/extremes/extremes.hpp"
-#include "reports/page/report.hpp"
-#include "reports/tables/stress_tables.hpp"
+#include "reports/json/json_cursor.hpp"
+#include "reports/page/report/report.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
 
@@ -25,7 +25,8 @@ using json = nlohmann::ordered_json;
 // Small: only two figures.
 json small_result() {
     json result = sample_result("pinned_bar");
-    for (const char* part : {"convergence", "trade", "precision", "drawing"}) result["scenes"][0].erase(part);
+    for (const char* part : {"convergence", "trade", "precision", "drawing"})
+        result["scenes"][0].erase(part);
     return result;
 }
 
@@ -52,10 +53,11 @@ TEST(Survival, TheMapIsOnThePageAndInItsTwin) {
     for (const char* part :
          {"<b class=\"some\">3</b><b class=\"many\">9</b>",
           "<b class=\"wrong\">X</b><b class=\"honest\">!</b>",
-          "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>", "Of 8 answers 3 are right", "1 are wrong",
-          "far &lt;away&gt;", "off by 2 mm",
+          "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>", "Of 8 answers 3 are right",
+          "1 are wrong", "far &lt;away&gt;", "off by 2 mm",
           "by steps, series; the most, 1.2: arch, series; of digits that were right, none",
-          "rounded &lt;up&gt;", "<td class=\"words\">0.0 1.2</td>", "arch, rounded up: chord: too | far."})
+          "rounded &lt;up&gt;", "<td class=\"words\">0.0 1.2</td>",
+          "arch, rounded up: chord: too | far."})
         EXPECT_TRUE(contains(html, part)) << part;
     for (const char* part :
          {"| arch | `39` | `X!` |", "`?~`", "straight \\| so", "off by 2 mm", "| arch | 0.0 1.2 |"})
@@ -96,18 +98,22 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     EXPECT_EQ(columns.size(), 16u);
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
     EXPECT_EQ(document["counts"]["wrong"], document["wrong"].size());
-    const auto report = elastocheck_says("report " + scenes + "/single_bushing.yaml --stress " + out +
-                                         "/stress.json -o " + (folder.path / "page").string());
-    EXPECT_TRUE(contains(text_of(folder.path / "page" / "report.html"), "Survival map")) << report.err;
+    const auto report =
+        elastocheck_says("report " + scenes + "/single_bushing.yaml --stress " + out +
+                         "/stress.json -o " + (folder.path / "page").string());
+    EXPECT_TRUE(contains(text_of(folder.path / "page" / "report.html"), "Survival map"))
+        << report.err;
 }
 
 TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
     for (const auto& [arguments, says] :
          {std::pair<std::string, const char*>{"stress --set points.tip.x=1", "give one"},
           {"stress there_is_none.yaml", "there_is_none.yaml"},
-          {"report " + scenes + "/single_bushing.yaml -o never --stress " + scenes + "/single_bushing.yaml",
+          {"report " + scenes + "/single_bushing.yaml -o never --stress " + scenes +
+               "/single_bushing.yaml",
            "single_bushing.yaml"},
-          {"report --from a.json -o never --stress b.json", "--stress belongs to what is solved"}}) {
+          {"report --from a.json -o never --stress b.json",
+           "--stress belongs to what is solved"}}) {
         const auto said = elastocheck_says(arguments);
         EXPECT_EQ(said.code, 2) << arguments;
         EXPECT_TRUE(contains(said.err, says)) << arguments << ": " << said.err;
@@ -118,8 +124,9 @@ TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {
     const auto survival = compare::stress(extremes());
     EXPECT_GT(survival.judged(), 300);
     for (const auto& cell : survival.cells)
-        EXPECT_TRUE(cell.verdict != compare::Verdict::wrong) << fmt::format(
-            "{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.way, cell.solver, cell.why, cell.detail);
+        EXPECT_TRUE(cell.verdict != compare::Verdict::wrong)
+            << fmt::format("{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.way, cell.solver,
+                           cell.why, cell.detail);
     if (HasFailure()) std::cout << stress_text(survival);
 }
 

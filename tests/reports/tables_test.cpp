@@ -5,19 +5,19 @@
 #include <limits>
 #include <stdexcept>
 
-#include "compare/order_study.hpp"
-#include "compare/precision.hpp"
-#include "compare/study.hpp"
-#include "compare/trade.hpp"
-#include "models/compile.hpp"
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/tables/order_tables.hpp"
-#include "reports/tables/precision_tables.hpp"
+#include "compare/studies/order_study.hpp"
+#include "compare/studies/precision.hpp"
+#include "compare/studies/study.hpp"
+#include "compare/studies/work_precision.hpp"
+#include "elastocheck/compile.hpp"
+#include "reports/page/common.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/select.hpp"
-#include "reports/tables/study_tables.hpp"
-#include "reports/tables/trade_tables.hpp"
+#include "reports/tables/studies/order_tables.hpp"
+#include "reports/tables/studies/precision_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
+#include "reports/tables/studies/work_precision_tables.hpp"
+#include "reports/text/numbers.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -28,11 +28,14 @@ using json = nlohmann::ordered_json;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const std::string file = "result.json";
 
-const compare::Table small{"small",
-                           {{"who", "", "", true}, {"how", "", "", true}, {"error", "mm"}, {"count"}},
-                           {{"a, b", "x", 0.1, 3.0}, {"c", "x", nan, 4.0}, {"a, b", "y", 1e-7, 3.0}}};
+const compare::Table small{
+    "small",
+    {{"who", "", "", true}, {"how", "", "", true}, {"error", "mm"}, {"count"}},
+    {{"a, b", "x", 0.1, 3.0}, {"c", "x", nan, 4.0}, {"a, b", "y", 1e-7, 3.0}}};
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
 
 void expect_same(const compare::Table& a, const compare::Table& b) {
     ASSERT_EQ(a.columns.size(), b.columns.size());
@@ -44,7 +47,8 @@ void expect_same(const compare::Table& a, const compare::Table& b) {
                 continue;
             }
             const double x = std::get<double>(a.rows[r][c]), y = std::get<double>(b.rows[r][c]);
-            EXPECT_TRUE(x == y || (!std::isfinite(x) && std::isnan(y))) << a.columns[c].name << ": " << x;
+            EXPECT_TRUE(x == y || (!std::isfinite(x) && std::isnan(y)))
+                << a.columns[c].name << ": " << x;
         }
 }
 
@@ -56,7 +60,8 @@ compare::Table through_json(const compare::Table& table) {
 }
 
 TEST(Tables, CsvHasAUnitInTheHeaderAndExactNumbers) {
-    EXPECT_EQ(csv(small), "who,how,error [mm],count\n\"a, b\",x,0.1,3\nc,x,,4\n\"a, b\",y,1e-07,3\n");
+    EXPECT_EQ(csv(small),
+              "who,how,error [mm],count\n\"a, b\",x,0.1,3\nc,x,,4\n\"a, b\",y,1e-07,3\n");
 }
 
 TEST(Tables, JsonReadsBackAsTheSameTable) {
@@ -93,7 +98,8 @@ TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
     damaged["columns"][3]["name"] = "number";
     EXPECT_EQ(refused(damaged), "result.json: t.columns: no column 'count'");
     damaged = table;  // an additional column in front
-    damaged["columns"].insert(damaged["columns"].begin(), json::object({{"name", "new"}, {"unit", ""}}));
+    damaged["columns"].insert(damaged["columns"].begin(),
+                              json::object({{"name", "new"}, {"unit", ""}}));
     for (auto& row : damaged["rows"]) row.insert(row.begin(), 7);
     EXPECT_EQ(refused(damaged), "read");
 }
@@ -116,9 +122,10 @@ TEST(Tables, SpreadPutsRowsThatAgreeBesideEachOther) {
 }
 
 TEST(Tables, ThePageShowsTheSameColumns) {
-    const compare::Table told{"told",
-                              {{"who", "", "", true}, {"told", "m"}, {"count"}, {"share"}, {"empty"}},
-                              {{"a", 1e-6, 12345.0, 0.137, nan}, {"b", 2.5e-6, nan, 1e-3, nan}}};
+    const compare::Table told{
+        "told",
+        {{"who", "", "", true}, {"told", "m"}, {"count"}, {"share"}, {"empty"}},
+        {{"a", 1e-6, 12345.0, 0.137, nan}, {"b", 2.5e-6, nan, 1e-3, nan}}};
     const Table page = page_table("Caption", told,
                                   {{"who"},
                                    {"told", Digits::given},
@@ -129,8 +136,8 @@ TEST(Tables, ThePageShowsTheSameColumns) {
     EXPECT_TRUE(page.columns[0].words && !page.columns[1].words);
     EXPECT_EQ(page.columns[1].name, "told [m]");
     EXPECT_EQ(page.columns[2].name, "how many");
-    EXPECT_EQ(page.rows[0],
-              (std::vector<std::string>{"a", number(1e-6, 1), whole_number(12345), percent(0.137)}));
+    EXPECT_EQ(page.rows[0], (std::vector<std::string>{"a", number(1e-6, 1), whole_number(12345),
+                                                      percent(0.137)}));
     EXPECT_EQ(page.rows[1], (std::vector<std::string>{"b", number(2.5e-6, 2), "–", percent(1e-3)}));
 }
 
@@ -142,13 +149,15 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
     ASSERT_EQ(table.rows.size(), 2 * 4u);
     EXPECT_EQ(std::ranges::count(csv(table), '\n'), 1 + 2 * 4);
     const std::string said = order_text(table);
-    for (const auto& branch : orders) EXPECT_TRUE(contains(said, "branch '" + branch.branch + "'")) << said;
+    for (const auto& branch : orders)
+        EXPECT_TRUE(contains(said, "branch '" + branch.branch + "'")) << said;
     EXPECT_TRUE(contains(said, "told [m]  order  outcome")) << said;
     EXPECT_TRUE(contains(said, "   1e-09      8  converged")) << said;
 
     auto failed = orders;
     failed.front().failure = "the energy leg diverged";
-    EXPECT_TRUE(contains(order_text(compare::order_table(failed)), "which is none: the energy leg diverged"));
+    EXPECT_TRUE(contains(order_text(compare::order_table(failed)),
+                         "which is none: the energy leg diverged"));
     EXPECT_EQ(order_text(compare::order_table({})), "");
 }
 
@@ -169,7 +178,8 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     const Model model = compile(support::scene("bushing_pair"));
     auto study = compare::study(model, {.steps = {20, 40, 80, 160, 320}});
     const auto attribution = compare::attribute_gap(model);
-    for (const auto& table : {study_table(study), step_table(study), gap_table(study.channels, attribution)})
+    for (const auto& table :
+         {study_table(study), step_table(study), gap_table(study.channels, attribution)})
         expect_same(table, through_json(table));
     const auto outputs = study_table(study), gaps = gap_table(study.channels, attribution);
     const std::string said = study_text(model, study, attribution);
@@ -203,9 +213,10 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
 }
 
 TEST(Tables, NumbersStandSideBySideToo) {
-    const compare::Table levels{"levels",
-                                {{"who", "", "", true}, {"steps"}, {"error", "mm"}, {"other"}},
-                                {{"a", 10.0, 0.5, 1.0}, {"a", 20.0, 0.25, 2.0}, {"b", 10.0, 1.0, 3.0}}};
+    const compare::Table levels{
+        "levels",
+        {{"who", "", "", true}, {"steps"}, {"error", "mm"}, {"other"}},
+        {{"a", 10.0, 0.5, 1.0}, {"a", 20.0, 0.25, 2.0}, {"b", 10.0, 1.0, 3.0}}};
     EXPECT_EQ(csv(spread(only(levels, {"who", "steps", "error"}), "steps", {"error"})),
               "who,10: error [mm],20: error [mm]\na,0.5,0.25\nb,1,\n");
 }
@@ -214,17 +225,20 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     Scene scene = support::scene("pendulum");
     for (auto& branch : scene.branches) branch.to *= 2;  // large enough for a diverging row
     const Model model = compile(scene);
-    const auto trade = compare::trade(model, {.tolerance = {0.01, 0.001}, .most_steps = 640, .rounds = 2});
+    const auto trade =
+        compare::trade(model, {.tolerance = {0.01, 0.001}, .most_steps = 640, .rounds = 2});
     ASSERT_TRUE(trade.recommendation);
     const std::string said = trade_text(model, trade);
     EXPECT_TRUE(contains(said, "the same 10 output points")) << said;
-    EXPECT_TRUE(contains(said, "For 0.01 mm: " + describe(trade.points[trade.recommendation->point])))
+    EXPECT_TRUE(
+        contains(said, "For 0.01 mm: " + describe(trade.points[trade.recommendation->point])))
         << said;
     EXPECT_TRUE(contains(said, "diverged")) << said;
     EXPECT_FALSE(contains(said, "error [deg]")) << said;  // a pendulum's outputs are positions
 
     const auto table = compare::trade_table(trade);
-    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(table), '\n')), trade.points.size() + 1);
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(table), '\n')),
+              trade.points.size() + 1);
     EXPECT_EQ(words(table, trade.recommendation->point, "recommended"), "yes");
     expect_same(table, through_json(table));
     const auto document = json::parse(trade_json(trade).dump());

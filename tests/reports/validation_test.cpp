@@ -6,10 +6,10 @@
 #include <map>
 #include <sstream>
 
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
 #include "reports/document/document.hpp"
-#include "reports/page/report.hpp"
+#include "reports/page/report/report.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -67,10 +67,12 @@ TEST(Validation, TheCommittedNumbersAreTheCodes) {
         result["scenes"].push_back(part);
     }
     const Numbers committed = numbers_in(support::text_of(ELASTOCHECK_VALIDATION "/numbers.csv"));
-    const Numbers now = numbers_in(numbers_csv(nlohmann::ordered_json::parse(result.dump()), "now"));
+    const Numbers now =
+        numbers_in(numbers_csv(nlohmann::ordered_json::parse(result.dump()), "now"));
     EXPECT_GT(committed.size(), 100u);
     for (const auto& line : drift(committed, now))
-        ADD_FAILURE() << line << "\nIf that is meant, run ./dev validation and commit what it writes.";
+        ADD_FAILURE() << line
+                      << "\nIf that is meant, run ./dev validation and commit what it writes.";
 }
 
 TEST(Validation, DriftIsSeen) {

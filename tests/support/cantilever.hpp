@@ -16,7 +16,8 @@ inline constexpr double EI = E * width * thick * thick * thick / 12;  // 1780 N�
 inline std::string leaf(int segments) {
     return fmt::format(
         "points: {{root: [0, 0, 0], tip: [{}, 0, 0]}}\nbodies: {{tip: {{origin: tip}}}}\n"
-        "beams: {{leaf: {{bodies: [ground, tip], through: [root, tip], segments: {}, E: {}, G: {}, up: z,\n"
+        "beams: {{leaf: {{bodies: [ground, tip], through: [root, tip], segments: {}, E: {}, G: {}, "
+        "up: z,\n"
         "  A: {}, I_y: {}, I_z: {}, J: {}}}}}\nprobes: {{tip: {{on: tip, at: tip}}}}\n",
         L, segments, E, G, width * thick, width * width * width * thick / 12,
         width * thick * thick * thick / 12, width * thick * thick * thick / 3);
@@ -31,7 +32,9 @@ struct Tip {
 };
 inline Tip elastica(double alpha) {  // P L²/EI
     const double root = std::sqrt(alpha), quarter = std::numbers::pi / 2;
-    const auto psi = [](double k) { return std::asin(std::min(1.0, 1 / (k * std::numbers::sqrt2))); };
+    const auto psi = [](double k) {
+        return std::asin(std::min(1.0, 1 / (k * std::numbers::sqrt2)));
+    };
     double low = 1 / std::numbers::sqrt2, high = 1 - 1e-12;
     for (int i = 0; i < 100; ++i) {
         const double k = (low + high) / 2;
@@ -52,7 +55,8 @@ inline Tip elastica(double alpha) {  // P L²/EI
 // With φ_k ~ sin kμ, u_k ~ cos kμ both hold where T = tan²(μ/2) = 3β(1 + β - ε)/(1 - 3β), and the free tip asks for
 // μ n = π/2:  3(1 - ρ)β² + 3(1 + T)β = T. P/P_E is then 1 + O(μ²), P_E = π² EI/(4 L²).
 inline double critical_load(int n) {
-    const double T = std::pow(std::tan(std::numbers::pi / (4 * n)), 2), h = L / n, EA = E * width * thick;
+    const double T = std::pow(std::tan(std::numbers::pi / (4 * n)), 2), h = L / n,
+                 EA = E * width * thick;
     const double rho = 12 * EI / (EA * h * h), b = 3 * (1 + T);
     const double beta = 2 * T / (std::sqrt(b * b + 12 * T * (1 - rho)) + b);
     return 12 * EI * beta / (h * h);

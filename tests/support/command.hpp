@@ -22,7 +22,8 @@ inline Said says(const std::string& line) {
     FILE* pipe = ::popen((line + " 2>" + error).c_str(), "r");
     Said said;
     char buffer[4096];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) said.out.append(buffer, n);
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+        said.out.append(buffer, n);
     const int status = ::pclose(pipe);
     said.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     said.err = text_of(error);

@@ -14,7 +14,8 @@ struct Folder {
     std::filesystem::path path;
 
     Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "elastocheck-test-XXXXXX").string();
+        std::string name =
+            (std::filesystem::temp_directory_path() / "elastocheck-test-XXXXXX").string();
         path = ::mkdtemp(name.data());
     }
     ~Folder() {

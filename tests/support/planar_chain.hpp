@@ -31,7 +31,8 @@ struct PlanarChain {
     Real ground = 0;            // from the origin to the first joint
     Real length = 1, last = 1;  // ℓ of all bodies, of the last
     Real origin = 0;            // of a body, from its joint
-    Real c = 1, a = 0, b = 0;   // a joint: stiffness in bending, what it gives along and across per force
+    Real c = 1, a = 0,
+         b = 0;  // a joint: stiffness in bending, what it gives along and across per force
 
     struct Shape {
         std::vector<Real> phi, x, z;  // of the bodies' origins, 1 ... n
@@ -42,7 +43,7 @@ struct PlanarChain {
     static PlanarChain links(int n, Real length, Real k_R, Real compliance) {
         return {n, 0, length, length, 0, k_R, compliance, compliance};
     }
-    // A beam of EI and EA cut into n segments, which bend in their middles (models/reader/beams.hpp); bodies at the nodes.
+    // A beam of EI and EA cut into n segments, which bend in their middles (models/reader/definitions/beams.hpp); bodies at the nodes.
     static PlanarChain beam(int n, Real length, Real bending, Real stretching) {
         const Real h = length / n;
         return {n, h / 2, h, h / 2, h / 2, bending / h, h / stretching, h * h * h / (12 * bending)};
@@ -62,8 +63,12 @@ struct PlanarChain {
     }
 
   private:
-    static Real along(Real F_x, Real F_z, Real phi) { return F_x * std::cos(phi) + F_z * std::sin(phi); }
-    static Real across(Real F_x, Real F_z, Real phi) { return F_z * std::cos(phi) - F_x * std::sin(phi); }
+    static Real along(Real F_x, Real F_z, Real phi) {
+        return F_x * std::cos(phi) + F_z * std::sin(phi);
+    }
+    static Real across(Real F_x, Real F_z, Real phi) {
+        return F_z * std::cos(phi) - F_x * std::sin(phi);
+    }
     Real g(Real F_x, Real F_z, Real phi) const {
         return 2 * (a - b) * along(F_x, F_z, phi) * across(F_x, F_z, phi);
     }

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "models/reader/scene_file.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "tests/support/folder.hpp"
 
 namespace elastocheck::support {
@@ -21,14 +21,18 @@ double in_mm_and_kN(const std::string& unit) {
             std::string_view one = part.substr(0, dot);
             part = dot == part.npos ? "" : part.substr(dot + std::string_view("·").size());
             const double base = one.starts_with('m') ? 1e3 : one.starts_with('N') ? 1e-3 : 1;
-            const int n = one.ends_with("²") ? 2 : one.ends_with("³") ? 3 : one.ends_with("⁴") ? 4 : 1;
+            const int n = one.ends_with("²")   ? 2
+                          : one.ends_with("³") ? 3
+                          : one.ends_with("⁴") ? 4
+                                               : 1;
             factor *= std::pow(base, n);
         }
         return factor;
     };
     const auto slash = unit.find('/');
     const std::string_view whole = unit;
-    return power(whole.substr(0, slash)) / (slash == unit.npos ? 1 : power(whole.substr(slash + 1)));
+    return power(whole.substr(0, slash)) /
+           (slash == unit.npos ? 1 : power(whole.substr(slash + 1)));
 }
 
 }  // namespace
@@ -60,7 +64,8 @@ std::vector<std::string> family_names() {
 bool has_potential(const Scene& scene) {
     bool has = true;
     const auto look_at = [&](const Load& load) {
-        has &= std::holds_alternative<DeadForce>(load.kind) || std::holds_alternative<DeadMoment>(load.kind);
+        has &= std::holds_alternative<DeadForce>(load.kind) ||
+               std::holds_alternative<DeadMoment>(load.kind);
     };
     for (const auto& load : scene.static_loads) look_at(load);
     for (const auto& branch : scene.branches)
@@ -81,7 +86,8 @@ Scene in_millimetres_and_kilonewtons(const std::string& name) {
     text.replace(at, units.size(), "units: {length: mm, angle: deg, force: kN}");
     std::vector<Setting> settings;
     for (const auto& number : read_scene(file).numbers) {
-        const bool is_ratio = number.path.find(".drive.") != std::string::npos;  // of one length to another
+        const bool is_ratio =
+            number.path.find(".drive.") != std::string::npos;  // of one length to another
         const double factor = is_ratio ? 1 : in_mm_and_kN(number.unit);
         if (factor != 1) settings.push_back(setting(number.path, factor * number.value));
     }

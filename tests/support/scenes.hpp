@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/retold.hpp"
-#include "models/scene.hpp"
+#include "compare/stress/transforms.hpp"
+#include "elastocheck/scene.hpp"
 
 namespace elastocheck::support {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
 #include "models/response.hpp"
 
 namespace elastocheck::support {
@@ -42,7 +42,8 @@ inline Eigen::VectorXd stacked(const std::vector<Increment>& increments) {
 
 // Of the largest entry of b; infinite where they are not alike.
 inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff() : INFINITY;
+    return a.size() == b.size() ? (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff()
+                                : INFINITY;
 }
 
 inline UnitWrench at_wheel(const Model& model, const Eigen::Vector3d& force,
@@ -80,8 +81,9 @@ inline Eigen::VectorXd slope(const OneWay& way, const Disturbance& disturbance, 
     return dq;
 }
 
-inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way, const Disturbance& disturbance,
-                         double h, const Solve& solve, const std::string& where) {
+inline void expect_slope(const Eigen::VectorXd& answer, const OneWay& way,
+                         const Disturbance& disturbance, double h, const Solve& solve,
+                         const std::string& where) {
     const Eigen::VectorXd coarse = slope(way, disturbance, h, solve),
                           fine = slope(way, disturbance, h / 2, solve);
     // What is of second order falls to a quarter, where it is more than rounding, and without it what is left is of

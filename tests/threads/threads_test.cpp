@@ -11,16 +11,16 @@
 #include <thread>
 #include <vector>
 
-#include "compare/compare.hpp"
+#include "compare/comparison/compare.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "recursive/respond.hpp"
-#include "recursive/solve.hpp"
-#include "reference/energy/respond.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/respond.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "recursive/linear_response.hpp"
+#include "reference/energy/linear_response.hpp"
+#include "reference/equilibrium/linear_response.hpp"
 
 namespace elastocheck {
 namespace {
@@ -44,7 +44,8 @@ Bits bits(const EquilibriumPath& path) {
 }
 
 Bits bits(const Response& response) {
-    Bits all{static_cast<std::uint64_t>(response.outcome), std::hash<std::string>{}(response.detail)};
+    Bits all{static_cast<std::uint64_t>(response.outcome),
+             std::hash<std::string>{}(response.detail)};
     for (const auto& answer : response.increments)
         for (const Increment& increment : answer)
             for (const auto& v : {increment.dr, increment.dpi})
@@ -54,11 +55,11 @@ Bits bits(const Response& response) {
 
 // How the states of a path answer a force on the first body, by `respond` of a leg.
 template <class Respond>
-Bits answers(const EquilibriumPath& path, Respond respond) {
+Bits answers(const EquilibriumPath& path, Respond linear_response) {
     const std::vector<Disturbance> push{UnitWrench{{0, {0.1, 0.2, 0.3}}, {1, 2, 3}, {0, 0, 1}}};
     Bits all = bits(path);
     for (const Equilibrium& point : path.points) {
-        const Bits one = bits(respond(point, push));
+        const Bits one = bits(linear_response(point, push));
         all.insert(all.end(), one.begin(), one.end());
     }
     return all;
@@ -110,9 +111,10 @@ TEST(Threads, EveryMethodOfTheRecursionIsUndisturbed) {
             SCOPED_TRACE(std::string(method.name));
             expect_undisturbed(scene, [&](const Model& model, const Branch& branch) {
                 const auto path = recursive::solve(model, branch, {.method = method, .steps = 20});
-                return answers(path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
-                    return recursive::respond(model, branch, state, push, method);
-                });
+                return answers(
+                    path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
+                        return recursive::linear_response(model, branch, state, push, method);
+                    });
             });
         }
 }
@@ -122,7 +124,7 @@ TEST(Threads, TheEquilibriumLegIsUndisturbed) {
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
             const auto path = reference::equilibrium::solve(model, branch, loads(branch));
             return answers(path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
-                return reference::equilibrium::respond(model, branch, state, push);
+                return reference::equilibrium::linear_response(model, branch, state, push);
             });
         });
 }
@@ -132,7 +134,7 @@ TEST(Threads, TheEnergyLegIsUndisturbed) {
         expect_undisturbed(scene, [](const Model& model, const Branch& branch) {
             const auto path = reference::energy::solve(model, branch, loads(branch));
             return answers(path, [&](const Equilibrium& state, std::span<const Disturbance> push) {
-                return reference::energy::respond(model, branch, state, push);
+                return reference::energy::linear_response(model, branch, state, push);
             });
         });
 }
@@ -144,7 +146,9 @@ TEST(Threads, AComparisonWithItsCharacteristicsIsUndisturbed) {
         few.recursion.steps = 4;
         const auto all = compare::compare(model, few);
         Bits said;
-        const auto add = [&](double number) { said.push_back(std::bit_cast<std::uint64_t>(number)); };
+        const auto add = [&](double number) {
+            said.push_back(std::bit_cast<std::uint64_t>(number));
+        };
         for (const auto& branch : all.branches)
             for (const auto& run : branch.runs) {
                 for (const auto& row : run.curve.values) std::ranges::for_each(row, add);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "models/import/adm/conversion.hpp"
-#include "models/reader/words.hpp"
-#include "models/reader/yaml.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 
@@ -26,7 +26,8 @@ const Marker& Conversion::marker(const Arguments& at, std::string_view name) con
 bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
                     const Arguments& at) {
     for (const Marker* m : {&I, &J})
-        if (m->floats) at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
+        if (m->floats)
+            at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
     for (const Marker* m : {&I, &J})
         if (c.is_flexible(*m)) {
             c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
@@ -127,7 +128,8 @@ Programme Conversion::programme(const std::string& text) {
     const auto [least, most] = std::ranges::minmax_element(result.path);
     result.least = extremum(-1, least);
     result.most = extremum(+1, most);
-    if (result.most - result.least <= 1e-12 * std::max(std::abs(result.most), std::abs(result.least))) {
+    if (result.most - result.least <=
+        1e-12 * std::max(std::abs(result.most), std::abs(result.least))) {
         result.least = result.most = start;
         result.path = {start};
     }
@@ -138,19 +140,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::string_view converted[] = {"JOINT",   "JPRIM",   "GCON",    "COUPLER",      "MOTION",
-                                          "BUSHING", "FIELD",   "BEAM",    "SPRINGDAMPER", "SFORCE",
-                                          "VFORCE",  "VTORQUE", "GFORCE",  "PART",         "POINT_MASS",
-                                          "MARKER",  "UNITS",   "ACCGRAV", "SPLINE"};
+constexpr std::string_view converted[] = {
+    "JOINT",      "JPRIM",        "GCON",   "COUPLER", "MOTION",  "BUSHING", "FIELD",
+    "BEAM",       "SPRINGDAMPER", "SFORCE", "VFORCE",  "VTORQUE", "GFORCE",  "PART",
+    "POINT_MASS", "MARKER",       "UNITS",  "ACCGRAV", "SPLINE"};
 // Keywords without effect in statics (graphics, results, solver settings), then keywords with an
 // effect only through a force or motion that uses them.
 constexpr std::string_view told_nothing[] = {
     "GRAPHICS",   "REQUEST", "OUTPUT", "RESULTS",  "PREFERENCES", "INTEGRATOR", "EQUILIBRIUM",
     "KINEMATICS", "DEBUG",   "STRING", "MATERIAL", "ADAMS",       "IC",         "LSSOLVER",
     "LIST",       "INFO",    "SOLVER", "LINEAR",   "EXECUTION"};
-constexpr std::string_view used_or_not[] = {"VARIABLE", "ARRAY", "DIFF",    "LSE",    "GSE",    "TFSISO",
-                                            "MATRIX",   "CURVE", "SURFACE", "SENSOR", "PINPUT", "POUTPUT",
-                                            "CONTROL",  "COSIM", "SECTION", "FE_NODE"};
+constexpr std::string_view used_or_not[] = {
+    "VARIABLE", "ARRAY",  "DIFF",   "LSE",     "GSE",     "TFSISO", "MATRIX",  "CURVE",
+    "SURFACE",  "SENSOR", "PINPUT", "POUTPUT", "CONTROL", "COSIM",  "SECTION", "FE_NODE"};
 constexpr std::array<std::pair<std::string_view, std::string_view>, 16> no_place{{
     {"CONTACT", "a contact between parts"},
     {"PTCV", "a point on a curve"},
@@ -182,10 +184,10 @@ void sort_out(Conversion& c) {
         const std::string& word = s.keyword;
         if (is_in(converted, word)) continue;
         if (is_in(told_nothing, word)) {
-            notes.left_out.try_emplace("saying nothing of the mechanism");
-            auto& list = notes.left_out["saying nothing of the mechanism"];
-            const auto same =
-                std::ranges::find_if(list, [&](const Place& p) { return p.what.starts_with(word + " "); });
+            notes.omitted.try_emplace("saying nothing of the mechanism");
+            auto& list = notes.omitted["saying nothing of the mechanism"];
+            const auto same = std::ranges::find_if(
+                list, [&](const Place& p) { return p.what.starts_with(word + " "); });
             if (same == list.end())
                 list.push_back({0, word + " (lines " + std::to_string(s.line) + ")"});
             else if (same->what.size() < 60)
@@ -202,15 +204,17 @@ void sort_out(Conversion& c) {
             if (c.options.drop_dynamics)
                 notes.leave_out("by --drop dynamics", s.place());
             else
-                notes.miss(s.place(),
-                           "friction holds, too, and a scene has none (--drop dynamics leaves it out)");
+                notes.miss(
+                    s.place(),
+                    "friction holds, too, and a scene has none (--drop dynamics leaves it out)");
             continue;
         }
-        const auto found =
-            std::ranges::find(no_place, word, &std::pair<std::string_view, std::string_view>::first);
-        notes.miss(s.place(), found == no_place.end()
-                                  ? "it has no place in a scene"
-                                  : fmt::format("{}, which has no place in a scene", found->second));
+        const auto found = std::ranges::find(no_place, word,
+                                             &std::pair<std::string_view, std::string_view>::first);
+        notes.miss(s.place(),
+                   found == no_place.end()
+                       ? "it has no place in a scene"
+                       : fmt::format("{}, which has no place in a scene", found->second));
     }
 }
 
@@ -221,7 +225,8 @@ constexpr std::size_t fine_steps = 1000, most_events = 1000;
 void read_times(Conversion& c) {
     std::vector<double> events;
     for (const Statement& s : c.data.statements) {
-        const bool is_vector = s.keyword == "VFORCE" || s.keyword == "VTORQUE" || s.keyword == "GFORCE";
+        const bool is_vector =
+            s.keyword == "VFORCE" || s.keyword == "VTORQUE" || s.keyword == "GFORCE";
         const Shape* shape = s.keyword == "MOTION"   ? &motion_shape()
                              : s.keyword == "SFORCE" ? &sforce_shape()
                              : is_vector             ? &vector_shape()
@@ -241,7 +246,8 @@ void read_times(Conversion& c) {
         c.times.push_back(events[k]);
         c.times.push_back(0.5 * (events[k] + (k == 0 ? 0 : events[k - 1])));
     }
-    for (std::size_t k = 1; k < fine_steps; ++k) c.times.push_back(end * static_cast<double>(k) / fine_steps);
+    for (std::size_t k = 1; k < fine_steps; ++k)
+        c.times.push_back(end * static_cast<double>(k) / fine_steps);
     std::ranges::sort(c.times);
     c.times.erase(std::unique(c.times.begin(), c.times.end()), c.times.end());
 }
@@ -251,42 +257,43 @@ struct WithoutInfluence {
     std::string_view argument, called, why;
 };
 constexpr std::string_view of_motion = "being of motion alone";
-constexpr WithoutInfluence without_influence[] = {{"C", "damping", of_motion},
-                                                  {"CT", "damping", of_motion},
-                                                  {"CMATRIX", "damping", of_motion},
-                                                  {"CRATIO", "damping", of_motion},
-                                                  {"IM", "inertia", "being inertia alone"},
-                                                  {"IP", "inertia", "being inertia alone"},
-                                                  {"VX", "initial velocity", of_motion},
-                                                  {"VY", "initial velocity", of_motion},
-                                                  {"VZ", "initial velocity", of_motion},
-                                                  {"WX", "initial velocity", of_motion},
-                                                  {"WY", "initial velocity", of_motion},
-                                                  {"WZ", "initial velocity", of_motion},
-                                                  {"VM", "initial velocity", of_motion},
-                                                  {"WM", "initial velocity", of_motion},
-                                                  {"VELOCITY", "initial velocity", of_motion},
-                                                  {"EXACT", "EXACT", "being a hint of the assembly"},
-                                                  {"IC", "IC", of_motion},
-                                                  {"ICTRAN", "ICTRAN", of_motion},
-                                                  {"ICROT", "ICROT", of_motion},
-                                                  {"ICDISP", "ICDISP", of_motion},
-                                                  {"ICVEL", "ICVEL", of_motion},
-                                                  {"TYPE", "TYPE", "as the joints themselves say it"},
-                                                  {"NODE_ID", "NODE_ID", "being of flexible bodies"},
-                                                  {"NODE_LABEL", "NODE_LABEL", "being of flexible bodies"}};
+constexpr WithoutInfluence without_influence[] = {
+    {"C", "damping", of_motion},
+    {"CT", "damping", of_motion},
+    {"CMATRIX", "damping", of_motion},
+    {"CRATIO", "damping", of_motion},
+    {"IM", "inertia", "being inertia alone"},
+    {"IP", "inertia", "being inertia alone"},
+    {"VX", "initial velocity", of_motion},
+    {"VY", "initial velocity", of_motion},
+    {"VZ", "initial velocity", of_motion},
+    {"WX", "initial velocity", of_motion},
+    {"WY", "initial velocity", of_motion},
+    {"WZ", "initial velocity", of_motion},
+    {"VM", "initial velocity", of_motion},
+    {"WM", "initial velocity", of_motion},
+    {"VELOCITY", "initial velocity", of_motion},
+    {"EXACT", "EXACT", "being a hint of the assembly"},
+    {"IC", "IC", of_motion},
+    {"ICTRAN", "ICTRAN", of_motion},
+    {"ICROT", "ICROT", of_motion},
+    {"ICDISP", "ICDISP", of_motion},
+    {"ICVEL", "ICVEL", of_motion},
+    {"TYPE", "TYPE", "as the joints themselves say it"},
+    {"NODE_ID", "NODE_ID", "being of flexible bodies"},
+    {"NODE_LABEL", "NODE_LABEL", "being of flexible bodies"}};
 
 // Reports the arguments of converted statements that were not read: as left out if they have no
 // influence at rest, else as missing.
 void report_unread(Conversion& c) {
     Notes& notes = c.draft.notes;
-    std::set<std::pair<int, std::string>> left_out;
-    for (const auto& [why, places] : notes.left_out)
-        for (const Place& place : places) left_out.emplace(place.line, place.what);
+    std::set<std::pair<int, std::string>> omitted;
+    for (const auto& [why, places] : notes.omitted)
+        for (const Place& place : places) omitted.emplace(place.line, place.what);
     std::set<int> missing;
     for (const auto& [place, why] : notes.missing) missing.insert(place.line);
     for (const Statement& s : c.data.statements) {
-        if (missing.contains(s.line) || left_out.contains({s.line, s.place().what})) continue;
+        if (missing.contains(s.line) || omitted.contains({s.line, s.place().what})) continue;
         std::set<std::string_view> told;
         for (const auto& [argument, is_read] : s.arguments) {
             if (is_read) continue;
@@ -295,10 +302,11 @@ void report_unread(Conversion& c) {
                                 {s.line, std::string(argument) + " of " + s.place().what});
                 continue;
             }
-            const auto known = std::ranges::find(without_influence, argument, &WithoutInfluence::argument);
+            const auto known =
+                std::ranges::find(without_influence, argument, &WithoutInfluence::argument);
             if (known == std::end(without_influence))
-                notes.miss(s.place(),
-                           fmt::format("{}: given, but not used with what else is given", argument));
+                notes.miss(s.place(), fmt::format("{}: given, but not used with what else is given",
+                                                  argument));
             else if (told.insert(known->called).second)
                 notes.leave_out(std::string(known->why),
                                 {s.line, fmt::format("{} of {}", known->called, s.place().what)});
@@ -311,11 +319,13 @@ void report_unread(Conversion& c) {
 void require_ids(const Dataset& data) {
     std::map<std::pair<std::string_view, int>, int> lines;
     for (const Statement& s : data.statements) {
-        if (s.keyword == "UNITS" || s.keyword == "ACCGRAV" || !is_in(converted, s.keyword)) continue;
+        if (s.keyword == "UNITS" || s.keyword == "ACCGRAV" || !is_in(converted, s.keyword))
+            continue;
         if (s.id == 0) fail(data.file, s, "has no id");
         const auto [first, is_new] = lines.try_emplace({s.keyword, s.id}, s.line);
         if (!is_new)
-            fail(data.file, s, fmt::format("there is one with this id already, in line {}", first->second));
+            fail(data.file, s,
+                 fmt::format("there is one with this id already, in line {}", first->second));
     }
 }
 
@@ -340,7 +350,8 @@ void write_bodies(Conversion& c) {
         if (part.is_ground) continue;
         if (!c.held.contains(s.id)) {
             if (part.mass > 0 && c.draft.gravity)
-                c.draft.notes.miss(s.place(), "nothing in the scene holds it, and its weight pulls it away");
+                c.draft.notes.miss(s.place(),
+                                   "nothing in the scene holds it, and its weight pulls it away");
             else
                 c.draft.notes.leave_out("as nothing is attached to them", s.place());
             continue;
@@ -359,8 +370,9 @@ void write_bodies(Conversion& c) {
     // A damper does not hold a part at rest; it is kept if both its parts exist.
     std::erase_if(c.draft.dampers, [&](const Entry& damper) {
         const auto begin = damper.fields.find('[') + 1, comma = damper.fields.find(", ", begin);
-        const std::string names[] = {damper.fields.substr(begin, comma - begin),
-                                     damper.fields.substr(comma + 2, damper.fields.find(']') - comma - 2)};
+        const std::string names[] = {
+            damper.fields.substr(begin, comma - begin),
+            damper.fields.substr(comma + 2, damper.fields.find(']') - comma - 2)};
         if (there.contains(names[0]) && there.contains(names[1])) return false;
         c.draft.notes.leave_out("as nothing is attached to them", damper.from);
         return true;
@@ -384,7 +396,8 @@ void read_gravity(Conversion& c) {
 // ---- Outputs and a branch for the scene.
 
 bool is_called(const Statement& s, const std::string& wanted) {
-    return s.name == wanted || fmt::format("{}", s.id) == wanted || capitals(s.name) == capitals(wanted);
+    return s.name == wanted || fmt::format("{}", s.id) == wanted ||
+           capitals(s.name) == capitals(wanted);
 }
 
 // The wheel: a body, or a marker on it, whose axis closest to y is the spin axis.
@@ -407,15 +420,16 @@ void write_wheel(Conversion& c) {
         for (const auto& [id, candidate] : c.geometry.markers)
             if (!candidate.floats && is_called(*candidate.statement, wanted)) {
                 if (marker)
-                    reader::fail(
-                        c.data.file, 0, "--wheel",
-                        fmt::format("{} are several markers; name one by its id", reader::quote(wanted)));
+                    reader::fail(c.data.file, 0, "--wheel",
+                                 fmt::format("{} are several markers; name one by its id",
+                                             reader::quote(wanted)));
                 marker = &candidate;
             }
     if (!part && !marker)
-        reader::fail(c.data.file, 0, "--wheel",
-                     fmt::format("there is neither a part nor a marker called {}{}", reader::quote(wanted),
-                                 reader::did_you_mean(wanted, known, "parts")));
+        reader::fail(
+            c.data.file, 0, "--wheel",
+            fmt::format("there is neither a part nor a marker called {}{}", reader::quote(wanted),
+                        reader::did_you_mean(wanted, known, "parts")));
     int body = 0;
     for (const auto& [id, candidate] : c.geometry.parts)
         if (&candidate == part) body = id;
@@ -458,10 +472,11 @@ void write_probes(Conversion& c) {
     for (const Entry& body : c.draft.bodies) {
         const std::string_view fields = body.fields;
         const auto begin = std::string_view("{origin: ").size();
-        c.draft.probes.push_back({body.name,
-                                  fmt::format("{{on: {}, at: {}}}", body.name,
-                                              fields.substr(begin, fields.find_first_of(",}") - begin)),
-                                  {}});
+        c.draft.probes.push_back(
+            {body.name,
+             fmt::format("{{on: {}, at: {}}}", body.name,
+                         fields.substr(begin, fields.find_first_of(",}") - begin)),
+             {}});
     }
 }
 
@@ -469,8 +484,8 @@ void write_probes(Conversion& c) {
 std::optional<double> ratio(const Drive& drive, const Drive& first) {
     if (drive.kind != first.kind) return std::nullopt;
     const auto size = [](double x) { return std::abs(x); };
-    const auto k =
-        static_cast<std::size_t>(std::ranges::max_element(first.path, {}, size) - first.path.begin());
+    const auto k = static_cast<std::size_t>(std::ranges::max_element(first.path, {}, size) -
+                                            first.path.begin());
     const double r = drive.path[k] / first.path[k],
                  largest = std::max(std::abs(drive.least), std::abs(drive.most));
     for (std::size_t n = 0; n < drive.path.size(); ++n)
@@ -497,14 +512,16 @@ void write_drives(Conversion& c) {
     }
     const double at_rest = 1e-12;
     const auto stands = [&](const Drive& drive) {
-        return drive.kind == Drive::Kind::joint && std::abs(drive.path[0]) > at_rest * c.geometry.size;
+        return drive.kind == Drive::Kind::joint &&
+               std::abs(drive.path[0]) > at_rest * c.geometry.size;
     };
     const auto held = [&](const Group* moving) {
         std::string holds;
         for (const Drive& drive : c.drives) {
             const bool is_moving =
-                moving && std::ranges::find(moving->members, &drive,
-                                            &std::pair<const Drive*, double>::first) != moving->members.end();
+                moving &&
+                std::ranges::find(moving->members, &drive,
+                                  &std::pair<const Drive*, double>::first) != moving->members.end();
             if (!is_moving && stands(drive))
                 holds += fmt::format("{}{}: {}", holds.empty() ? "" : ", ", drive.quantity,
                                      computed(drive.path[0]));
@@ -518,35 +535,40 @@ void write_drives(Conversion& c) {
         const bool is_motion = first.kind == Drive::Kind::joint;
         std::string rates;
         for (const auto& [drive, r] : group.members)
-            rates += fmt::format("{}{}: {}", rates.empty() ? "" : ", ", drive->quantity, computed(r));
+            rates +=
+                fmt::format("{}{}: {}", rates.empty() ? "" : ", ", drive->quantity, computed(r));
         const double least = std::min(0.0, first.least), most = std::max(0.0, first.most);
         const double to = most > 0 ? most : least;
-        const std::string from = most > 0 && least < 0 ? fmt::format("from: {}, ", computed(least)) : "";
+        const std::string from =
+            most > 0 && least < 0 ? fmt::format("from: {}, ", computed(least)) : "";
         c.draft.branches.push_back(
             {branch_names.take(is_motion ? "motion" : "load"),
-             fmt::format("{{{}: {{{}}}, {}to: {}, steps: 100{}", is_motion ? "drive" : "load", rates, from,
-                         computed(to), held(&group)),
+             fmt::format("{{{}: {{{}}}, {}to: {}, steps: 100{}", is_motion ? "drive" : "load",
+                         rates, from, computed(to), held(&group)),
              {}});
     }
     if (!groups.empty())
         c.draft.remarks.push_back(fmt::format(
-            "Functions of TIME are followed from 0 to {:g}, {}: a branch goes over all that they cover.",
+            "Functions of TIME are followed from 0 to {:g}, {}: a branch goes over all that they "
+            "cover.",
             c.times.back(),
             c.has_events ? "where the last STEP or IF is over"
                          : "one second, as the dataset does not say how long it is simulated"));
     if (groups.size() > 1)
         c.draft.notes.warn(
             {0, "MOTION, loads"},
-            fmt::format("{} of them do not go in proportion: each has a branch of its own, while the "
-                        "others stand as at time 0",
-                        groups.size()));
+            fmt::format(
+                "{} of them do not go in proportion: each has a branch of its own, while the "
+                "others stand as at time 0",
+                groups.size()));
     for (const Drive& drive : c.drives)
         if (stands(drive))
             c.draft.notes.warn(
                 drive.from,
                 fmt::format("{}: the file's motion starts {:.4g} from where the parts are drawn{}",
                             drive.quantity, drive.path[0],
-                            drive.moves() ? "; its branch begins as drawn" : "; the branches hold it there"));
+                            drive.moves() ? "; its branch begins as drawn"
+                                          : "; the branches hold it there"));
     if (c.draft.branches.empty()) {
         if (c.draft.gravity) {
             double mass = 0;
@@ -570,7 +592,8 @@ void write_drives(Conversion& c) {
                  fmt::format("{{load: [{}], to: {}, steps: 10", names, computed(0.1 * weight)),
                  {}});
             c.draft.remarks.emplace_back(
-                "The file drives nothing: the branch begins at rest under gravity and goes on to a tenth "
+                "The file drives nothing: the branch begins at rest under gravity and goes on to a "
+                "tenth "
                 "more weight.");
         } else if (!c.draft.bodies.empty()) {
             const auto& [name, fields, from] =
@@ -582,7 +605,8 @@ void write_drives(Conversion& c) {
                                      {}});
             c.draft.branches.push_back({"push", "{load: push, to: 1, steps: 10", {}});
             c.draft.remarks.emplace_back(
-                "The file drives nothing: the branch pushes its first part. Put your own in its place.");
+                "The file drives nothing: the branch pushes its first part. Put your own in its "
+                "place.");
         }
     }
     if (groups.empty() && c.options.wheel.empty())
@@ -603,7 +627,8 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     // "Adams View model name: sla_front" is called sla_front.
     constexpr std::string_view before_name = "model name:";
     const auto name_at = data.title.find(before_name);
-    draft.title = name_at == data.title.npos ? data.title : data.title.substr(name_at + before_name.size());
+    draft.title =
+        name_at == data.title.npos ? data.title : data.title.substr(name_at + before_name.size());
     while (draft.title.starts_with(' ')) draft.title.erase(0, 1);
     if (draft.title.empty()) draft.title = std::filesystem::path(file).stem().string();
     draft.source = file;
@@ -631,8 +656,9 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     write_drives(c);
     report_unread(c);
     if (!data.has_end)
-        draft.notes.miss({data.last_line, "END"},
-                         "the dataset does not end with END: it may have been cut off, and more is missing");
+        draft.notes.miss(
+            {data.last_line, "END"},
+            "the dataset does not end with END: it may have been cut off, and more is missing");
     return draft;
 }
 

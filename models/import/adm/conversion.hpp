@@ -62,7 +62,7 @@ struct Conversion {
     std::map<int, const Statement*> variables = {};
     // from 0 to the end of the functions of TIME: their events, and fine steps between
     std::vector<double> times = {};
-    bool has_events = false;         // the end is that of the last STEP or IF in TIME; else one second
+    bool has_events = false;  // the end is that of the last STEP or IF in TIME; else one second
     int variables_left = 1'000'000;  // limit of substitutions of a VARIABLE, over the whole file
     double characters_left = 2e8;    // limit of evaluated characters of functions of TIME
     std::map<int, std::optional<std::string>> variable_functions = {};
@@ -86,7 +86,8 @@ struct Conversion {
 };
 
 // Whether both parts exist and differ; else notes why the statement is not converted.
-bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Arguments& at);
+bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
+                    const Arguments& at);
 
 // Allowed arguments of the statements with functions.
 const Shape& motion_shape();

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "models/import/adm/statements.hpp"
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
@@ -57,7 +57,8 @@ Value sum(Value a, const Value& b) {
         if ((a.linear[measure] += k) == 0) a.linear.erase(measure);
     a.curves.insert(a.curves.end(), b.curves.begin(), b.curves.end());
     inherit(a, b);
-    if (a.linear.size() + a.curves.size() > most_terms) return unknown("more terms than any force has");
+    if (a.linear.size() + a.curves.size() > most_terms)
+        return unknown("more terms than any force has");
     return a;
 }
 
@@ -121,8 +122,9 @@ const Function functions[] = {
 };
 
 constexpr std::string_view measures[] = {"DM", "DX", "DY", "DZ", "AX", "AY", "AZ"};
-constexpr std::string_view at_rest[] = {"VR",   "VM",   "VX",   "VY",   "VZ",   "WM",   "WX",   "WY",  "WZ",
-                                        "ACCM", "ACCX", "ACCY", "ACCZ", "WDTM", "WDTX", "WDTY", "WDTZ"};
+constexpr std::string_view at_rest[] = {"VR",   "VM",   "VX",   "VY",   "VZ",   "WM",
+                                        "WX",   "WY",   "WZ",   "ACCM", "ACCX", "ACCY",
+                                        "ACCZ", "WDTM", "WDTX", "WDTY", "WDTZ"};
 
 class Parser {
   public:
@@ -130,13 +132,15 @@ class Parser {
 
     Value whole() {
         Value value = expression();
-        if (!at_end()) return unknown(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
+        if (!at_end())
+            return unknown(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
         return value;
     }
 
   private:
     void skip() {
-        while (!text_.empty() && (text_.front() == ' ' || text_.front() == '\t')) text_.remove_prefix(1);
+        while (!text_.empty() && (text_.front() == ' ' || text_.front() == '\t'))
+            text_.remove_prefix(1);
     }
     bool at_end() {
         skip();
@@ -204,7 +208,8 @@ class Parser {
         skip();
         if (text_.starts_with("**")) {
             text_.remove_prefix(2);
-            if (++depth_ > deepest) return give_up("powers of powers deeper than any function has them");
+            if (++depth_ > deepest)
+                return give_up("powers of powers deeper than any function has them");
             const Value exponent = power();
             --depth_;
             if (!base.is_known()) return base;
@@ -237,10 +242,12 @@ class Parser {
         }
         std::size_t n = 0;
         const auto fits = [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                   c == '_';
         };
         while (n < text_.size() && fits(text_[n])) ++n;
-        if (n == 0) return give_up(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
+        if (n == 0)
+            return give_up(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
         const std::string name = capitals(text_.substr(0, n));
         text_.remove_prefix(n);
         if (take('(')) return call(name);
@@ -286,7 +293,8 @@ class Parser {
         if (const auto found = std::ranges::find(measures, name); found != std::end(measures)) {
             Measure measure{.kind = static_cast<Measure::Kind>(found - std::begin(measures))};
             int* const to[] = {&measure.i, &measure.j, &measure.rm};
-            if (p.empty() || p.size() > 3) return unknown(name + " of other than one to three markers");
+            if (p.empty() || p.size() > 3)
+                return unknown(name + " of other than one to three markers");
             for (std::size_t k = 0; k < p.size(); ++k) {
                 const auto marker = id(p[k]);
                 if (!marker) return unknown(name + " of what is no marker");
@@ -299,7 +307,8 @@ class Parser {
         if (name == "IF") return choose(p);
         if (name == "AKISPL" || name == "CUBSPL") return spline(name, p);
         if (name == "IMPACT") return impact(p);
-        if (name == "DIM" && p.size() == 2 && p[0].is_constant() != p[1].is_constant()) return penetration(p);
+        if (name == "DIM" && p.size() == 2 && p[0].is_constant() != p[1].is_constant())
+            return penetration(p);
         if (name == "BISTOP") return bistop(p);
         if (name == "VARVAL") {
             const auto variable = p.size() == 1 ? id(p[0]) : std::nullopt;
@@ -331,7 +340,8 @@ class Parser {
         if (numbers.size() < found->least || numbers.size() > found->most)
             return unknown(fmt::format("{} of {} arguments", name, numbers.size()));
         result.constant = found->f(numbers);
-        if (!std::isfinite(result.constant)) return unknown(name + " of numbers that it is not defined for");
+        if (!std::isfinite(result.constant))
+            return unknown(name + " of numbers that it is not defined for");
         return result;
     }
 
@@ -347,7 +357,9 @@ class Parser {
         if (p.size() != 4) return unknown("IF of other than four arguments");
         if (!p[0].is_known()) return p[0];
         note_event(p[0], 0);
-        const auto is_zero = [](const Value& value) { return value.is_constant() && value.constant == 0; };
+        const auto is_zero = [](const Value& value) {
+            return value.is_constant() && value.constant == 0;
+        };
         Value result;
         if (p[0].is_constant())
             result = p[0].constant < 0 ? p[1] : p[0].constant == 0 ? p[2] : p[3];
@@ -360,7 +372,8 @@ class Parser {
     // Extracts one measure with scale and offset; returns the reason if the value has another form.
     static std::string only_measure(const Value& x, CurveTerm& term) {
         if (!x.is_known()) return x.unknown;
-        if (!x.curves.empty() || x.linear.size() != 1) return "a curve of other than one displacement";
+        if (!x.curves.empty() || x.linear.size() != 1)
+            return "a curve of other than one displacement";
         term.of = x.linear.begin()->first;
         term.scale = x.linear.begin()->second;
         term.offset = x.constant;
@@ -368,8 +381,10 @@ class Parser {
     }
 
     Value spline(const std::string& name, const std::vector<Value>& p) const {
-        if (p.size() < 3 || p.size() > 4) return unknown(name + " of other than three or four arguments");
-        if (!p[1].is_constant() || p[1].constant != 0) return unknown(name + " of a second variable");
+        if (p.size() < 3 || p.size() > 4)
+            return unknown(name + " of other than three or four arguments");
+        if (!p[1].is_constant() || p[1].constant != 0)
+            return unknown(name + " of a second variable");
         if (p.size() == 4 && !(p[3].is_constant() && p[3].constant == 0))
             return unknown("a derivative of " + name);
         const auto number = id(p[2]);
@@ -404,7 +419,8 @@ class Parser {
         return value;
     }
     static bool is_penetration(const Value& x) {
-        if (!x.is_known() || x.constant != 0 || !x.linear.empty() || x.curves.size() != 1) return false;
+        if (!x.is_known() || x.constant != 0 || !x.linear.empty() || x.curves.size() != 1)
+            return false;
         const CurveTerm& term = x.curves.front();
         return term.kind == CurveTerm::Kind::impact && term.factor == 1 && term.rate == 1 &&
                term.exponent == 1 && term.spline == 0;
@@ -434,7 +450,8 @@ class Parser {
         term.contact = at.constant;
         term.rate = rate.constant;
         term.exponent = exponent.constant;
-        if (!(term.rate >= 0) || !(term.exponent > 0)) return unknown("IMPACT or BISTOP that pulls");
+        if (!(term.rate >= 0) || !(term.exponent > 0))
+            return unknown("IMPACT or BISTOP that pulls");
         Value value;
         inherit(value, x);
         value.of_velocity = true;
@@ -453,7 +470,8 @@ Value evaluate(std::string_view text, const Context& context) {
     if (text.size() > longest_function) return unknown("longer than any function is");
     Parser parser(text, context);
     Value value = parser.whole();
-    if (value.is_known() && !std::isfinite(value.constant)) return unknown("a number beyond all bounds");
+    if (value.is_known() && !std::isfinite(value.constant))
+        return unknown("a number beyond all bounds");
     for (const auto& [measure, k] : value.linear)
         if (!std::isfinite(k)) return unknown("a number beyond all bounds");
     return value;

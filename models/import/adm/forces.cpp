@@ -18,7 +18,7 @@
 
 #include "models/import/adm/conversion.hpp"
 #include "models/import/curves.hpp"
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
@@ -38,8 +38,8 @@ const Shape bushing_shape{{}, {"I", "J", "K", "KT", "C", "CT", "FORCE", "TORQUE"
 const Shape field_shape{
     {}, {"I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FORMULATION"}, {"FUNCTION"}};
 const Shape beam_shape{{"LINEAR", "STRING", "NONLINEAR"},
-                       {"I", "J", "LENGTH", "AREA", "IXX", "IYY", "IZZ", "EMODULUS", "GMODULUS", "ASY", "ASZ",
-                        "CRATIO", "CMATRIX", "FORMULATION"},
+                       {"I", "J", "LENGTH", "AREA", "IXX", "IYY", "IZZ", "EMODULUS", "GMODULUS",
+                        "ASY", "ASZ", "CRATIO", "CMATRIX", "FORMULATION"},
                        {}};
 const Shape spring_shape{{"TRANSLATIONAL", "ROTATIONAL"},
                          {"I", "J", "K", "C", "KT", "CT", "LENGTH", "ANGLE", "FORCE", "TORQUE"},
@@ -79,8 +79,8 @@ struct Element {
         const Matrix6& K = laws.K;
         const Matrix6 off = K - Matrix6(K.diagonal().asDiagonal());
         const auto three = [&](int first) {
-            return fmt::format("[{}, {}, {}]", number(K(first, first)), number(K(first + 1, first + 1)),
-                               number(K(first + 2, first + 2)));
+            return fmt::format("[{}, {}, {}]", number(K(first, first)),
+                               number(K(first + 1, first + 1)), number(K(first + 2, first + 2)));
         };
         if (off.isZero(0)) {
             fields.add("rates", three(0)).add("rotational_rates", three(3));
@@ -96,18 +96,23 @@ struct Element {
         std::string curves;
         for (std::size_t k = 0; k < 6; ++k)
             if (!laws.curves[k].empty())
-                curves += fmt::format("{}{}: {{table: {}{}}}", curves.empty() ? "" : ", ",
-                                      std::array{"x", "y", "z", "rx", "ry", "rz"}[k], table(laws.curves[k]),
-                                      laws.goes_on[k] ? "" : ", outside: unknown");
+                curves +=
+                    fmt::format("{}{}: {{table: {}{}}}", curves.empty() ? "" : ", ",
+                                std::array{"x", "y", "z", "rx", "ry", "rz"}[k],
+                                table(laws.curves[k]), laws.goes_on[k] ? "" : ", outside: unknown");
         if (!curves.empty()) fields.add("curves", "{" + curves + "}");
         const double size = c.geometry.size;
         const Vector3d undeformed = laws.x_0.head<3>() - drawn;
         if (undeformed.norm() > 1e-12 * size) fields.add("undeformed", triple(undeformed, size));
-        if (!laws.x_0.tail<3>().isZero(0)) fields.add("undeformed_angles", triple(laws.x_0.tail<3>()));
-        if (!laws.preload.head<3>().isZero(0)) fields.add("preload", triple(-laws.preload.head<3>()));
-        if (!laws.preload.tail<3>().isZero(0)) fields.add("preload_moment", triple(-laws.preload.tail<3>()));
+        if (!laws.x_0.tail<3>().isZero(0))
+            fields.add("undeformed_angles", triple(laws.x_0.tail<3>()));
+        if (!laws.preload.head<3>().isZero(0))
+            fields.add("preload", triple(-laws.preload.head<3>()));
+        if (!laws.preload.tail<3>().isZero(0))
+            fields.add("preload_moment", triple(-laws.preload.tail<3>()));
         fields.add("formulation", formulation);
-        c.draft.bushings.push_back({c.name(c.element_names, s), "{" + fields.text() + "}", place()});
+        c.draft.bushings.push_back(
+            {c.name(c.element_names, s), "{" + fields.text() + "}", place()});
     }
 
     static void frame(Fields& fields, const char* name, const Matrix3d& A) {
@@ -139,30 +144,33 @@ std::string fault(Matrix6& K) {
             const double rows = std::sqrt(std::abs(K(i, i) * K(k, k)));
             if (std::abs(K(i, k) - K(k, i)) > 1e-4 * std::max(larger, 1e-6 * rows))
                 return fmt::format(
-                    "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} across", K(i, k),
-                    i + 1, k + 1, K(k, i));
+                    "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} across",
+                    K(i, k), i + 1, k + 1, K(k, i));
         }
     K = (0.5 * (K + K.transpose())).eval();
     Vector6 d = K.diagonal();
     for (int i = 0; i < 6; ++i) {
         if (d[i] < 0) return fmt::format("its stiffness is negative: {:g} in row {}", d[i], i + 1);
         if (d[i] == 0 && !K.row(i).isZero(0))
-            return fmt::format("its stiffness is indefinite: row {} has no diagonal, and more", i + 1);
+            return fmt::format("its stiffness is indefinite: row {} has no diagonal, and more",
+                               i + 1);
         d[i] = d[i] > 0 ? 1 / std::sqrt(d[i]) : 1;
     }
     const Matrix6 S = d.asDiagonal() * K * d.asDiagonal();
-    if (Eigen::LDLT<Matrix6> factors(S + 1e-10 * Matrix6::Identity()); !(factors.vectorD().minCoeff() >= 0))
+    if (Eigen::LDLT<Matrix6> factors(S + 1e-10 * Matrix6::Identity());
+        !(factors.vectorD().minCoeff() >= 0))
         return "its stiffness is indefinite";
     return {};
 }
 
-void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written, const Matrix6& K) {
+void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written,
+                       const Matrix6& K) {
     const double off = (written - K).cwiseAbs().maxCoeff();
     if (off > 0)
-        c.draft.notes.warn(s.place(),
-                           fmt::format("its stiffness is not quite symmetric; here it is the mean with "
-                                       "its transpose, {:.3g} of its largest entry away",
-                                       off / K.cwiseAbs().maxCoeff()));
+        c.draft.notes.warn(
+            s.place(), fmt::format("its stiffness is not quite symmetric; here it is the mean with "
+                                   "its transpose, {:.3g} of its largest entry away",
+                                   off / K.cwiseAbs().maxCoeff()));
 }
 
 void convert_bushing(Conversion& c, const Statement& s) {
@@ -180,20 +188,23 @@ void convert_bushing(Conversion& c, const Statement& s) {
     const double apart = (I.pose.r - J.pose.r).norm();
     if (apart > far * c.geometry.size)
         c.draft.notes.warn(
-            s.place(), fmt::format("its markers are {:.4g} {} apart as drawn: it is loaded by as much", apart,
-                                   units.length_name));
+            s.place(),
+            fmt::format("its markers are {:.4g} {} apart as drawn: it is loaded by as much", apart,
+                        units.length_name));
     c.draft.notes.count("BUSHING");
-    Element{c, s, at, I, J.part, J.pose}.put({.K = in_scene_units(K, units), .preload = forces(F, units)});
+    Element{c, s, at, I, J.part, J.pose}.put(
+        {.K = in_scene_units(K, units), .preload = forces(F, units)});
 }
 
 void convert_field(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, field_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
-    if (at.has("FUNCTION")) return c.draft.notes.miss(s.place(), "its force is a function of the user's");
+    if (at.has("FUNCTION"))
+        return c.draft.notes.miss(s.place(), "its force is a function of the user's");
     const std::string formulated = at.word("FORMULATION");
     if (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated))
-        return c.draft.notes.miss(s.place(),
-                                  fmt::format("FORMULATION={}, whose law is not known here", formulated));
+        return c.draft.notes.miss(
+            s.place(), fmt::format("FORMULATION={}, whose law is not known here", formulated));
     if (!is_between_two(c, s, I, J, at)) return;
     const Units& units = c.geometry.units;
     const auto k = at.numbers("KMATRIX", 36, 36);
@@ -224,17 +235,19 @@ void convert_beam(Conversion& c, const Statement& s) {
     at.has("LINEAR");
     if (at.has("STRING") || at.has("NONLINEAR") ||
         (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
-        return c.draft.notes.miss(s.place(),
-                                  "a beam with another formulation than LINEAR, whose law is not known here");
+        return c.draft.notes.miss(
+            s.place(), "a beam with another formulation than LINEAR, whose law is not known here");
     if (!is_between_two(c, s, I, J, at)) return;
     const auto positive = [&](const char* name) {
         const double x = at.number(name, 0);
         if (!(x > 0))
-            at.fail(fmt::format("{} is {}; it must be above zero", name, at.has(name) ? "not" : "missing"));
+            at.fail(fmt::format("{} is {}; it must be above zero", name,
+                                at.has(name) ? "not" : "missing"));
         return x;
     };
-    const double L = positive("LENGTH"), A = positive("AREA"), Ix = positive("IXX"), Iy = positive("IYY"),
-                 Iz = positive("IZZ"), E = positive("EMODULUS"), G = positive("GMODULUS");
+    const double L = positive("LENGTH"), A = positive("AREA"), Ix = positive("IXX"),
+                 Iy = positive("IYY"), Iz = positive("IZZ"), E = positive("EMODULUS"),
+                 G = positive("GMODULUS");
     const double Py = 12 * E * Iz * at.number("ASY", 0) / (G * A * L * L),
                  Pz = 12 * E * Iy * at.number("ASZ", 0) / (G * A * L * L);
     if (!(Py >= 0) || !(Pz >= 0)) at.fail("ASY or ASZ is negative");
@@ -252,9 +265,9 @@ void convert_beam(Conversion& c, const Statement& s) {
     laws.x_0[0] = L * units.length;
     const double apart = (J.pose.A.transpose() * (I.pose.r - J.pose.r) - laws.x_0.head<3>()).norm();
     if (apart > 1e-3 * laws.x_0[0])
-        c.draft.notes.warn(s.place(),
-                           fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded", apart,
-                                       units.length_name));
+        c.draft.notes.warn(
+            s.place(), fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded",
+                                   apart, units.length_name));
     c.draft.notes.count("BEAM");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
 }
@@ -292,15 +305,16 @@ void warn_of_spline(Conversion& c, const Statement& s, const CurveTerm& term, co
         s.place(),
         fmt::format("up to {:.3g} {} apart (of {:.4g}), at {:.4g} {}: between the points of "
                     "SPLINE/{} the file has {}, a scene the monotone interpolant",
-                    apart.force, is_angle ? units.force_name + " " + units.length_name : units.force_name,
+                    apart.force,
+                    is_angle ? units.force_name + " " + units.length_name : units.force_name,
                     apart.of, apart.at, is_angle ? "rad" : units.length_name, term.spline,
                     is_akima ? "Akima's curve" : "a cubic spline"));
 }
 
 // Converts all terms of `value`, which are in one measure, to `law`. Returns the reason if a scene
 // cannot represent a term; empty if it can.
-std::string one_law(Conversion& c, const Statement& s, const Value& value, double x_from, double x_to,
-                    double unit, double force, bool is_angle, OneLaw& law) {
+std::string one_law(Conversion& c, const Statement& s, const Value& value, double x_from,
+                    double x_to, double unit, double force, bool is_angle, OneLaw& law) {
     const Units& units = c.geometry.units;
     const std::string unit_of_x = is_angle ? "rad" : units.length_name,
                       unit_of_force =
@@ -321,7 +335,8 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
                     return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
                 const Table& points = found->second;
                 if (points.x.front() != 0 || points.y.front() != 0)
-                    return fmt::format("SPLINE/{} of a penetration does not begin at 0, 0", term.spline);
+                    return fmt::format("SPLINE/{} of a penetration does not begin at 0, 0",
+                                       term.spline);
                 stop.goes_on = points.goes_on;
                 for (std::size_t n = 0; n < points.x.size(); ++n)
                     stop.curve.emplace_back(points.x[n] / std::abs(term.scale) * unit,
@@ -344,12 +359,12 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
                     stop.curve.emplace_back(p, factor * std::pow(p, term.exponent));
                 }
                 const Apart apart = off_power(stop.curve, factor, term.exponent);
-                c.draft.notes.warn(
-                    s.place(),
-                    fmt::format("up to {:.2g} {} apart (of {:.4g}): a contact with exponent {:g} is a table "
-                                "of {} rows up to {:.4g} {}",
-                                apart.force, unit_of_force, apart.of, term.exponent, rows_of_power + 1, depth,
-                                unit_of_x));
+                c.draft.notes.warn(s.place(),
+                                   fmt::format("up to {:.2g} {} apart (of {:.4g}): a contact with "
+                                               "exponent {:g} is a table "
+                                               "of {} rows up to {:.4g} {}",
+                                               apart.force, unit_of_force, apart.of, term.exponent,
+                                               rows_of_power + 1, depth, unit_of_x));
             }
             law.stops.push_back(stop);
             continue;
@@ -391,22 +406,27 @@ Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
 }
 
 // A force along the line from I to J, positive if repulsive; `value` is a function of DM(I, J).
-void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker& J, const Value& value,
-                bool is_damper) {
+void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker& J,
+                const Value& value, bool is_damper) {
     const Units& units = c.geometry.units;
     const double drawn = (I.pose.r - J.pose.r).norm();
     const std::string name = c.name(c.element_names, s);
     const auto ends = [&] {
-        return Fields{}.add("bodies", c.pair(I.part, J.part)).add("from", c.point(I)).add("to", c.point(J));
+        return Fields{}
+            .add("bodies", c.pair(I.part, J.part))
+            .add("from", c.point(I))
+            .add("to", c.point(J));
     };
     if (!(drawn > 1e-9 * c.geometry.size))
         return c.draft.notes.miss(s.place(), "its ends are at one place as drawn");
     OneLaw law;
-    const std::string why = one_law(c, s, value, 0, 2 * drawn, units.length, units.force, false, law);
+    const std::string why =
+        one_law(c, s, value, 0, 2 * drawn, units.length, units.force, false, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
     if (law.stops.size() > 2 || (law.stops.size() == 2 && law.stops[0].bump == law.stops[1].bump))
         return c.draft.notes.miss(s.place(), "more than one stop a way");
-    const bool is_nothing = law.curve.empty() && law.rate == 0 && law.at_zero == 0 && law.stops.empty();
+    const bool is_nothing =
+        law.curve.empty() && law.rate == 0 && law.at_zero == 0 && law.stops.empty();
     if (is_nothing) {
         if (!is_damper || c.options.drop_dynamics)
             return c.draft.notes.leave_out("exerting nothing at rest", s.place());
@@ -431,7 +451,8 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
             // A spring needs a positive length: write the same straight line as a table over the
             // drawn length.
             const double h = 0.5 * drawn, f = law.at_zero + law.rate * drawn;
-            fields.add("curve", "{table: " + table({{-h, f - law.rate * h}, {h, f + law.rate * h}}) + "}");
+            fields.add("curve",
+                       "{table: " + table({{-h, f - law.rate * h}, {h, f + law.rate * h}}) + "}");
         } else {
             fields.add("rate", law.rate).add("free_length", computed(free));
             if (free < drawn * (1 - 1e-9))
@@ -439,11 +460,12 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         }
     } else if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve",
-                   fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve", fmt::format("{{table: {}{}}}", table(law.curve),
+                                        law.goes_on ? "" : ", outside: unknown"));
     } else if (law.at_zero != 0) {
-        fields.add("curve",
-                   "{table: " + table({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}) + "}");
+        fields.add(
+            "curve",
+            "{table: " + table({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}) + "}");
     } else {
         for (const auto& stop : law.stops)
             fields.add(stop.bump ? "bump" : "rebound", "{" + stop_fields(stop, drawn).text() + "}");
@@ -451,13 +473,14 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         return;
     }
     for (const auto& stop : law.stops)
-        fields.add(stop.bump ? "bump_stop" : "rebound_stop", "{" + stop_fields(stop, drawn).text() + "}");
+        fields.add(stop.bump ? "bump_stop" : "rebound_stop",
+                   "{" + stop_fields(stop, drawn).text() + "}");
     c.draft.springs.push_back({name, "{" + fields.text() + "}", s.place()});
 }
 
 // A torque about z, positive on I; `value` is a function of AZ(I, J).
-void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const Marker& I, const Marker& J,
-                 const Value& value) {
+void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const Marker& I,
+                 const Marker& J, const Value& value) {
     const Units& units = c.geometry.units;
     const Vector3d z = J.pose.A.col(2);
     if (const double off = z.cross(Vector3d(I.pose.A.col(2))).norm(); off > 1e-2)
@@ -466,7 +489,8 @@ void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const M
     const double drawn =
         std::atan2(I.pose.A.col(0).dot(J.pose.A.col(1)), I.pose.A.col(0).dot(J.pose.A.col(0)));
     OneLaw law;
-    const std::string why = one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, true, law);
+    const std::string why =
+        one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, true, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
     if (!law.stops.empty())
         return c.draft.notes.miss(s.place(), "a stop of an angle, which a scene does not have");
@@ -476,15 +500,16 @@ void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const M
     fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve",
-                   fmt::format("{{table: {}{}}}", table(law.curve), law.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve", fmt::format("{{table: {}{}}}", table(law.curve),
+                                        law.goes_on ? "" : ", outside: unknown"));
     } else {
         fields.add("rate", law.rate);
         const double moment = law.at_zero + law.rate * drawn;
         if (std::abs(moment) > 1e-12 * (std::abs(law.at_zero) + std::abs(law.rate)))
             fields.add("preload_moment", computed(moment));
     }
-    c.draft.torsion_springs.push_back({c.name(c.element_names, s), "{" + fields.text() + "}", s.place()});
+    c.draft.torsion_springs.push_back(
+        {c.name(c.element_names, s), "{" + fields.text() + "}", s.place()});
 }
 
 Value linear_in(Measure::Kind kind, double k, double free, double force) {
@@ -509,7 +534,8 @@ void convert_springdamper(Conversion& c, const Statement& s) {
         put_torsion(c, s, at, I, J,
                     linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
     else
-        put_spring(c, s, I, J, linear_in(Measure::Kind::DM, k, at.number("LENGTH", 0), at.number("FORCE", 0)),
+        put_spring(c, s, I, J,
+                   linear_in(Measure::Kind::DM, k, at.number("LENGTH", 0), at.number("FORCE", 0)),
                    damps);
 }
 
@@ -531,8 +557,8 @@ void put_load(Conversion& c, const Statement& s, const Marker& I,
     const std::string ending = follows ? ", follows: true}" : "}";
     const auto load = [&](const Vector3d& v, bool is_moment) {
         return is_moment ? fmt::format("{{on: {}, moment: {}{}", c.body(I.part), triple(v), ending)
-                         : fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I), triple(v),
-                                       ending);
+                         : fmt::format("{{on: {}, at: {}, force: {}{}", c.body(I.part), c.point(I),
+                                       triple(v), ending);
     };
     Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
     for (const auto& [axis, is_moment, value] : components) {
@@ -550,13 +576,15 @@ void put_load(Conversion& c, const Statement& s, const Marker& I,
     }
     if (!force.isZero(0)) c.draft.static_loads.push_back({name, load(force, false), s.place()});
     if (!moment.isZero(0))
-        c.draft.static_loads.push_back({c.load_names.take(name + ".moment"), load(moment, true), s.place()});
+        c.draft.static_loads.push_back(
+            {c.load_names.take(name + ".moment"), load(moment, true), s.place()});
 }
 
 // A scene has no branch for a force between two parts that changes with time. If all its values lie
 // between the first and the last, it is held at the last, with a warning. Returns the reason if
 // that is not possible; else empty.
-std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& programme, Value& value) {
+std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& programme,
+                            Value& value) {
     if (!programme.varies()) return {};
     const double first = programme.path.front(), last = programme.path.back();
     const double round_off = 1e-12 * (programme.most - programme.least);
@@ -567,10 +595,10 @@ std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& 
             "a force between two parts that changes with time, {:g} to {:g}, which no branch "
             "of a scene does",
             programme.least, programme.most);
-    c.draft.notes.warn(s.place(),
-                       fmt::format("a force between two parts that goes from {:g} to {:g} over {:g} "
-                                   "of time; held here at its end",
-                                   first, last, c.times.back()));
+    c.draft.notes.warn(
+        s.place(), fmt::format("a force between two parts that goes from {:g} to {:g} over {:g} "
+                               "of time; held here at its end",
+                               first, last, c.times.back()));
     value.constant = last;
     return {};
 }
@@ -580,7 +608,8 @@ void convert_sforce(Conversion& c, const Statement& s) {
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     const bool rotates = at.has("ROTATIONAL");
     if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
-    if (at.has("ROUTINE")) return c.draft.notes.miss(s.place(), "its force is a function of the user's");
+    if (at.has("ROUTINE"))
+        return c.draft.notes.miss(s.place(), "its force is a function of the user's");
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
     const Programme programme = c.programme(*text);
@@ -594,13 +623,14 @@ void convert_sforce(Conversion& c, const Statement& s) {
         if (I.floats || c.is_flexible(I) || c.is_ground(I.part))
             return c.draft.notes.leave_out("acting on ground alone", s.place());
         if (!value.is_constant())
-            return c.draft.notes.miss(s.place(), "a force on one part alone that depends on displacements");
+            return c.draft.notes.miss(s.place(),
+                                      "a force on one part alone that depends on displacements");
         if (value.constant == 0 && !programme.varies())
             return c.draft.notes.leave_out("exerting nothing at rest", s.place());
         const bool follows = J.part == I.part;
         if (!follows && !c.is_ground(J.part))
-            return c.draft.notes.miss(s.place(),
-                                      "a force on one part alone along an axis of another that moves");
+            return c.draft.notes.miss(
+                s.place(), "a force on one part alone along an axis of another that moves");
         c.draft.notes.count("SFORCE");
         return put_load(c, s, I, {{J.pose.A.col(2), rotates, programme}}, follows);
     }
@@ -641,7 +671,8 @@ void convert_sforce(Conversion& c, const Statement& s) {
 void convert_vector(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, vector_shape());
     const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
-    if (at.has("FUNCTION") || at.has("ROUTINE")) return miss("its force is a function of the user's");
+    if (at.has("FUNCTION") || at.has("ROUTINE"))
+        return miss("its force is a function of the user's");
     const Marker &I = c.marker(at, "I"), &floating = c.marker(at, "JFLOAT");
     if (!at.has("RM")) return miss("without RM it is not known in what axes it acts");
     const Marker& RM = c.marker(at, "RM");
@@ -658,13 +689,16 @@ void convert_vector(Conversion& c, const Statement& s) {
         if (!text) continue;
         programmes[k] = c.programme(*text);
         component[k] = programmes[k].first;
-        if (!component[k].is_known()) return miss(fmt::format("{}: {}", names[k], component[k].unknown));
+        if (!component[k].is_known())
+            return miss(fmt::format("{}: {}", names[k], component[k].unknown));
         is_constant &= component[k].is_constant();
-        is_zero &= component[k].is_constant() && component[k].constant == 0 && !programmes[k].varies();
+        is_zero &=
+            component[k].is_constant() && component[k].constant == 0 && !programmes[k].varies();
         damps |= component[k].of_velocity;
     }
     if (is_zero) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
-    if (I.part == floating.part) return c.draft.notes.leave_out("as both ends are on one part", s.place());
+    if (I.part == floating.part)
+        return c.draft.notes.leave_out("as both ends are on one part", s.place());
     SixLaws laws;
     Vector6 F;
     const bool on_ground = c.is_ground(floating.part);
@@ -677,11 +711,13 @@ void convert_vector(Conversion& c, const Statement& s) {
         std::vector<LoadComponent> components;
         for (std::size_t k = 0; k < 6; ++k)
             if (!programmes[k].path.empty())
-                components.push_back({RM.pose.A.col(static_cast<int>(k % 3)), k >= 3, programmes[k]});
+                components.push_back(
+                    {RM.pose.A.col(static_cast<int>(k % 3)), k >= 3, programmes[k]});
         return put_load(c, s, I, components, turns);
     }
     for (std::size_t k = 0; k < 6; ++k) {
-        if (const std::string why = held_at_its_end(c, s, programmes[k], component[k]); !why.empty())
+        if (const std::string why = held_at_its_end(c, s, programmes[k], component[k]);
+            !why.empty())
             return miss(fmt::format("{}: {}", names[k], why));
         F[static_cast<int>(k)] = component[k].constant;
     }
@@ -741,8 +777,9 @@ void convert_vector(Conversion& c, const Statement& s) {
         Value value = own[r];
         const double rate = laws.K(row, row);
         const bool angle = r >= 3;
-        const std::string why = one_law(c, s, value, -1, 1, angle ? 1 : units.length,
-                                        angle ? units.force * units.length : units.force, angle, law);
+        const std::string why =
+            one_law(c, s, value, -1, 1, angle ? 1 : units.length,
+                    angle ? units.force * units.length : units.force, angle, law);
         if (!why.empty()) return miss(fmt::format("{}: {}", names[r], why));
         for (auto& [x, f] : law.curve) f += rate * x;
         laws.K(row, row) = 0;
@@ -755,7 +792,8 @@ void convert_vector(Conversion& c, const Statement& s) {
         std::ranges::any_of(laws.curves, [](const auto& curve) { return !curve.empty(); });
     if (has_curves && !(laws.K - Matrix6(laws.K.diagonal().asDiagonal())).isZero(0))
         return miss("a spline beside a coupled stiffness");
-    if (damps) c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+    if (damps)
+        c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
     c.draft.notes.count(s.keyword);
     Element{c, s, at, I, floating.part, {from ? from->pose.r : I.pose.r, RM.pose.A}}.put(laws);
 }
@@ -774,7 +812,8 @@ const Shape& vector_shape() {
 }
 
 void read_splines(Conversion& c) {
-    static const Shape shape{{"LINEAR_EXTRAPOLATE"}, {"X", "Y", "Z", "FILE", "BLOCK", "CHANNEL"}, {}};
+    static const Shape shape{
+        {"LINEAR_EXTRAPOLATE"}, {"X", "Y", "Z", "FILE", "BLOCK", "CHANNEL"}, {}};
     for (const Statement& s : c.data.statements) {
         if (s.keyword != "SPLINE") continue;
         const Arguments at(c.data.file, s, shape);
@@ -787,7 +826,8 @@ void read_splines(Conversion& c) {
                     .goes_on = at.has("LINEAR_EXTRAPOLATE"),
                     .statement = &s};
         if (table.x.empty() || table.x.size() != table.y.size())
-            at.fail(fmt::format("{} X and {} Y; as many of both are needed", table.x.size(), table.y.size()));
+            at.fail(fmt::format("{} X and {} Y; as many of both are needed", table.x.size(),
+                                table.y.size()));
         for (std::size_t n = 1; n < table.x.size(); ++n)
             if (!(table.x[n] > table.x[n - 1]))
                 at.fail(fmt::format("X: {:g} is not above the one before", table.x[n]));
@@ -803,7 +843,8 @@ void convert_forces(Conversion& c) {
         if (s.keyword == "BEAM") convert_beam(c, s);
         if (s.keyword == "SPRINGDAMPER") convert_springdamper(c, s);
         if (s.keyword == "SFORCE") convert_sforce(c, s);
-        if (s.keyword == "VFORCE" || s.keyword == "VTORQUE" || s.keyword == "GFORCE") convert_vector(c, s);
+        if (s.keyword == "VFORCE" || s.keyword == "VTORQUE" || s.keyword == "GFORCE")
+            convert_vector(c, s);
     }
 }
 

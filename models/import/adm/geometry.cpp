@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "models/reader/words.hpp"
-#include "models/reader/yaml.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
@@ -24,11 +24,12 @@ struct Named {
 constexpr std::size_t longest_chain = 100;                          // of markers in markers
 constexpr double pound = 0.45359237, g_n = 9.80665, inch = 0.0254;  // [kg], [m/s²], [m]
 
-constexpr Named lengths[] = {{"MILLIMETER", 1e-3},  {"METER", 1},           {"CENTIMETER", 1e-2},
-                             {"KILOMETER", 1e3},    {"INCH", inch},         {"FOOT", 12 * inch},
-                             {"YARD", 36 * inch},   {"MILE", 63360 * inch}, {"MICROINCH", 1e-6 * inch},
-                             {"MILS", 1e-3 * inch}, {"MICROMETER", 1e-6},   {"NANOMETER", 1e-9},
-                             {"ANGSTROM", 1e-10}};
+constexpr Named lengths[] = {
+    {"MILLIMETER", 1e-3},  {"METER", 1},           {"CENTIMETER", 1e-2},
+    {"KILOMETER", 1e3},    {"INCH", inch},         {"FOOT", 12 * inch},
+    {"YARD", 36 * inch},   {"MILE", 63360 * inch}, {"MICROINCH", 1e-6 * inch},
+    {"MILS", 1e-3 * inch}, {"MICROMETER", 1e-6},   {"NANOMETER", 1e-9},
+    {"ANGSTROM", 1e-10}};
 constexpr Named forces[] = {{"NEWTON", 1},
                             {"KNEWTON", 1e3},
                             {"MEGANEWTON", 1e6},
@@ -83,8 +84,11 @@ Units read_units(const Dataset& data) {
             if (found) fail(data.file, statement, "a second UNITS statement; allowed: one");
             found = &statement;
         }
-    if (!found) reader::fail(data.file, data.last_line, "UNITS", "missing: without it no number has a unit");
-    const Arguments at(data.file, *found, {{}, {"FORCE", "MASS", "LENGTH", "TIME", "SYSTEM", "UCF"}, {}});
+    if (!found)
+        reader::fail(data.file, data.last_line, "UNITS",
+                     "missing: without it no number has a unit");
+    const Arguments at(data.file, *found,
+                       {{}, {"FORCE", "MASS", "LENGTH", "TIME", "SYSTEM", "UCF"}, {}});
     double force = 1, mass = 1, length = 1, time = 1;
     if (at.has("SYSTEM")) {
         const std::string system = at.word("SYSTEM");
@@ -96,9 +100,9 @@ Units read_units(const Dataset& data) {
         } else if (system == "IPS") {
             force = pound * g_n, mass = pound, length = inch;
         } else
-            at.fail(
-                fmt::format("SYSTEM: {} is no system of units that is known here; known: MKS, CGS, FPS, IPS",
-                            reader::quote(system)));
+            at.fail(fmt::format(
+                "SYSTEM: {} is no system of units that is known here; known: MKS, CGS, FPS, IPS",
+                reader::quote(system)));
     }
     if (at.has("FORCE")) force = unit(at, "FORCE", forces);
     if (at.has("MASS")) mass = unit(at, "MASS", masses);
@@ -133,7 +137,9 @@ Matrix3d about(int axis, double angle) {
     return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
 }
 // Euler angles 3-1-3: body-fixed about z, the new x, the new z.
-Matrix3d euler_313(const std::vector<double>& a) { return about(2, a[0]) * about(0, a[1]) * about(2, a[2]); }
+Matrix3d euler_313(const std::vector<double>& a) {
+    return about(2, a[0]) * about(0, a[1]) * about(2, a[2]);
+}
 
 Vector3d vector(const std::vector<double>& v) {
     return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
@@ -185,13 +191,13 @@ Frame read_frame(const Arguments& at, const char* origin, const char* z_name, co
 }
 
 const Shape part_shape{{"GROUND"},
-                       {"MASS", "CM", "IM", "IP", "QG", "REULER", "ZG", "XG", "VX", "VY", "VZ", "WX", "WY",
-                        "WZ", "VM", "WM", "EXACT", "MATERIAL", "VELOCITY"},
+                       {"MASS", "CM", "IM", "IP", "QG", "REULER", "ZG", "XG", "VX", "VY", "VZ",
+                        "WX", "WY", "WZ", "VM", "WM", "EXACT", "MATERIAL", "VELOCITY"},
                        {}};
-const Shape marker_shape{
-    {"USEXP", "FLOATING"},
-    {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP", "RM", "NODE_ID", "NODE_LABEL"},
-    {}};
+const Shape marker_shape{{"USEXP", "FLOATING"},
+                         {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART", "QP", "REULER", "ZP", "XP",
+                          "RM", "NODE_ID", "NODE_LABEL"},
+                         {}};
 
 Part read_part(const Dataset& data, const Statement& statement, const Units& units) {
     const Arguments at(data.file, statement, part_shape);
@@ -221,18 +227,21 @@ Geometry read_geometry(const Dataset& data) {
         if (statement.keyword != "PART" && statement.keyword != "POINT_MASS") continue;
         Part part = read_part(data, statement, geometry.units);
         if (part.is_ground && ground)
-            fail(data.file, statement, fmt::format("a second ground; the first is PART/{}", ground));
+            fail(data.file, statement,
+                 fmt::format("a second ground; the first is PART/{}", ground));
         if (part.is_ground) ground = statement.id;
         add(geometry.parts, statement, part);
     }
-    if (!ground) reader::fail(data.file, data.last_line, "PART", "none of them is GROUND; one must be");
+    if (!ground)
+        reader::fail(data.file, data.last_line, "PART", "none of them is GROUND; one must be");
 
     // Poses relative to the part, or to another marker of the part.
     std::map<int, std::pair<Frame, int>> local;
     int last_body = 0;
     std::set<int> flexible;
     for (const Statement& statement : data.statements) {
-        if (statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART") flexible.insert(statement.id);
+        if (statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART")
+            flexible.insert(statement.id);
         if (statement.keyword == "PART" || statement.keyword == "POINT_MASS" ||
             statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART")
             last_body = statement.id;
@@ -247,9 +256,11 @@ Geometry read_geometry(const Dataset& data) {
         for (const char* flexible_part : {"FLEX_BODY", "FE_PART"})
             if (at.has(flexible_part)) marker.part = at.id(flexible_part);
         if (!geometry.parts.contains(marker.part) && !flexible.contains(marker.part))
-            at.fail(marker.part ? fmt::format("there is no PART/{}", marker.part) : "belongs to no part");
+            at.fail(marker.part ? fmt::format("there is no PART/{}", marker.part)
+                                : "belongs to no part");
         add(geometry.markers, statement, marker);
-        local[statement.id] = {read_frame(at, "QP", "ZP", "XP", geometry.units.length), at.id("RM")};
+        local[statement.id] = {read_frame(at, "QP", "ZP", "XP", geometry.units.length),
+                               at.id("RM")};
     }
 
     // Resolves chains of RM references, each link once.
@@ -264,17 +275,18 @@ Geometry read_geometry(const Dataset& data) {
                 fail(data.file, from, fmt::format("RM: there is no MARKER/{}", next));
             if (chain.size() == longest_chain || std::ranges::find(chain, next) != chain.end())
                 fail(data.file, from,
-                     fmt::format("RM: MARKER/{} stands in itself, or in a chain of more than {}", next,
-                                 longest_chain));
+                     fmt::format("RM: MARKER/{} stands in itself, or in a chain of more than {}",
+                                 next, longest_chain));
             if (geometry.markers.at(next).part != geometry.markers.at(at).part)
                 fail(data.file, from, fmt::format("RM: MARKER/{} is on another part", next));
             at = next;
         }
         for (std::size_t k = chain.size() - 1; k-- > 0;)
-            local.at(chain[k]) = {placed(local.at(chain[k + 1]).first, local.at(chain[k]).first), 0};
+            local.at(chain[k]) = {placed(local.at(chain[k + 1]).first, local.at(chain[k]).first),
+                                  0};
         const auto part = geometry.parts.find(marker.part);
-        marker.pose =
-            part == geometry.parts.end() ? local.at(id).first : placed(part->second.pose, local.at(id).first);
+        marker.pose = part == geometry.parts.end() ? local.at(id).first
+                                                   : placed(part->second.pose, local.at(id).first);
     }
 
     Eigen::AlignedBox3d box;

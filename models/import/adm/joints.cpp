@@ -13,7 +13,7 @@
 #include <tuple>
 
 #include "models/import/adm/conversion.hpp"
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
@@ -24,8 +24,8 @@ constexpr double round_off = 1e-6;  // of the model's size, or radians: not repo
 constexpr std::size_t most_motions = 10'000;
 constexpr double assembled = 1e-2;  // larger misalignment: rejected
 
-const Shape joint_shape{{"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR", "HOOKE",
-                         "UNIVERSAL", "CONVEL", "RACKPIN", "SCREW"},
+const Shape joint_shape{{"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR",
+                         "HOOKE", "UNIVERSAL", "CONVEL", "RACKPIN", "SCREW"},
                         {"I",
                          "J",
                          "IC",
@@ -72,7 +72,9 @@ constexpr const char* of_friction[] = {"FRICTION",
                                        "MAXIMUM_DEFORMATION",
                                        "IMPLICIT"};
 const Shape jprim_shape{
-    {"ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"}, {"I", "J"}, {}};
+    {"ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"},
+    {"I", "J"},
+    {}};
 const Shape gcon_shape{{}, {"I"}, {"FUNCTION"}};
 const Shape coupler_shape{{}, {"JOINTS", "TYPE", "SCALES"}, {"FUNCTION"}};
 
@@ -86,13 +88,14 @@ struct JointConversion {
     Place place() const { return s.place(); }
     Vector3d axis(const Marker& m, int k) const { return m.pose.A.col(k); }
 
-    void require_small(double off, double scale, const std::string& what, const std::string& unit) const {
+    void require_small(double off, double scale, const std::string& what,
+                       const std::string& unit) const {
         if (off <= round_off * scale) return;
         const std::string told = fmt::format("{} {:.3g} {}", what, off, unit);
         if (!(off <= assembled * scale))
-            at.fail(
-                told +
-                ": the parts do not meet as they stand in the file; assemble the model before it is written");
+            at.fail(told +
+                    ": the parts do not meet as they stand in the file; assemble the model before "
+                    "it is written");
         c.draft.notes.warn(place(), told + " in the file; here they meet");
     }
     void require_small_angle(double angle, const std::string& what) const {
@@ -120,7 +123,8 @@ struct JointConversion {
         if (cosine < 0)
             c.draft.notes.warn(
                 place(),
-                fmt::format("axes {} of I and J point opposite ways; here they are one line", "xyz"[k]));
+                fmt::format("axes {} of I and J point opposite ways; here they are one line",
+                            "xyz"[k]));
     }
     // Two perpendicular directions; the second is made exactly perpendicular.
     std::pair<Vector3d, Vector3d> perpendicular(const Vector3d& u, const Vector3d& v) const {
@@ -141,9 +145,10 @@ struct JointConversion {
     }
     std::size_t cross(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
         const auto [u, v] = perpendicular(on_i, on_j);
-        return put(
-            name,
-            fields("universal").add("at", c.point(I)).add("axis_i", triple(u)).add("axis_j", triple(v)));
+        return put(name, fields("universal")
+                             .add("at", c.point(I))
+                             .add("axis_i", triple(u))
+                             .add("axis_j", triple(v)));
     }
     void cross_only(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
         const auto [u, v] = perpendicular(on_i, on_j);
@@ -168,7 +173,9 @@ void convert_joint(Conversion& c, const Statement& s) {
             kind == "CONVEL"
                 ? "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
                   "joint transmits another angle)"
-                : kind + ": it couples a rotation with a displacement, which no joint of a scene does");
+                : kind +
+                      ": it couples a rotation with a displacement, which no joint of a scene "
+                      "does");
         return;
     }
     const std::string name = c.name(c.joint_names, s);
@@ -181,11 +188,13 @@ void convert_joint(Conversion& c, const Statement& s) {
         }
     if (!friction.empty()) {
         if (c.options.drop_dynamics)
-            c.draft.notes.leave_out("by --drop dynamics", {s.line, friction + " of " + s.place().what});
+            c.draft.notes.leave_out("by --drop dynamics",
+                                    {s.line, friction + " of " + s.place().what});
         else
-            c.draft.notes.miss(s.place(), friction +
-                                              ": its friction holds, too, and a scene has none (--drop "
-                                              "dynamics leaves it out)");
+            c.draft.notes.miss(s.place(),
+                               friction +
+                                   ": its friction holds, too, and a scene has none (--drop "
+                                   "dynamics leaves it out)");
     }
     std::size_t entry = 0;
     if (kind == "REVOLUTE") {
@@ -276,8 +285,9 @@ void convert_gcon(Conversion& c, const Statement& s) {
         if (std::abs(offset - drawn) > 1e-9 * c.geometry.size) {
             fields.add("length", computed(offset, c.geometry.size));
             c.draft.notes.warn(
-                s.place(), fmt::format("the markers are {:.6g} {} apart in the file, and held {:.6g} apart",
-                                       drawn, c.geometry.units.length_name, offset));
+                s.place(),
+                fmt::format("the markers are {:.6g} {} apart in the file, and held {:.6g} apart",
+                            drawn, c.geometry.units.length_name, offset));
         }
         joint.put(name, fields);
         return;
@@ -285,12 +295,14 @@ void convert_gcon(Conversion& c, const Statement& s) {
     const int axis = static_cast<int>(measure.kind) - static_cast<int>(Measure::Kind::DX);
     if (axis > 2 || measure.rm == 0 || c.marker(at, measure.rm).part != J.part)
         return miss(
-            "a constraint other than of a distance, or of a displacement in the axes of its second marker");
+            "a constraint other than of a distance, or of a displacement in the axes of its second "
+            "marker");
     const Vector3d normal = c.marker(at, measure.rm).pose.A.col(axis);
     joint.require_small(std::abs(normal.dot(I.pose.r - J.pose.r) - offset), c.geometry.size,
                         "the constraint is off by", c.geometry.units.length_name);
     c.draft.notes.count("GCON of a displacement");
-    joint.put(name, joint.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
+    joint.put(name,
+              joint.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
 }
 
 // ---- Motions. ADAMS measures from where I and J coincide, a scene from the design position.
@@ -371,7 +383,8 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
         if (found == c.joints.end()) {
             if (!in_the_file.contains(at.id("JOINT")))
                 at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
-            c.draft.notes.miss(s.place(), fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
+            c.draft.notes.miss(s.place(),
+                               fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
             return;
         }
         if (!by) return;
@@ -402,15 +415,16 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
     for (int k = 0; k < 3; ++k)
         if (at.has(std::string(1, "XYZ"[k]))) axis = k;
     if (axis < 0) {
-        c.draft.notes.miss(s.place(),
-                           "a motion of an angle between two markers; of a joint it could be driven");
+        c.draft.notes.miss(
+            s.place(), "a motion of an angle between two markers; of a joint it could be driven");
         return;
     }
     if (!by || !is_between_two(c, s, I, J, at)) return;
     const JointConversion plane{c, s, at, I, J};
     const std::string name = c.name(c.joint_names, s);
     const Vector3d normal = J.pose.A.col(axis);
-    plane.put(name, plane.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
+    plane.put(name,
+              plane.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
     drive(c, s, "joints." + name, *by, length, normal.dot(I.pose.r - J.pose.r), false);
     c.draft.notes.count("MOTION");
 }
@@ -449,34 +463,39 @@ void convert_coupler(Conversion& c, const Statement& s) {
         if (found != c.drives.end()) {
             if (sum.size() < found->path.size()) sum.resize(found->path.size(), sum[0]);
             for (std::size_t n = 0; n < sum.size(); ++n)
-                sum[n] += scale[k] * found->path[std::min(n, found->path.size() - 1)] / unit(*written[k]);
+                sum[n] +=
+                    scale[k] * found->path[std::min(n, found->path.size() - 1)] / unit(*written[k]);
         } else if (free == joints.size())
             free = k;
         else
-            return miss("it couples joints that no MOTION prescribes; a scene has no joint that does");
+            return miss(
+                "it couples joints that no MOTION prescribes; a scene has no joint that does");
     }
     if (free == joints.size()) return miss("it couples joints that MOTIONs prescribe already");
     const WrittenJoint& joint = *written[free];
     if (joint.kind != "REVOLUTE" && joint.kind != "TRANSLATIONAL")
-        return miss(fmt::format("it couples a {} joint, which has no coordinate or two", joint.kind));
+        return miss(
+            fmt::format("it couples a {} joint, which has no coordinate or two", joint.kind));
     if (scale[free] == 0) at.fail("SCALES: zero for a joint that nothing else moves");
     hold(c, joint.entry);
     Drive drive{.quantity = quantity(joint), .path = sum, .from = s.place()};
     for (double& x : drive.path) x *= -unit(joint) / scale[free];
-    std::tie(drive.least, drive.most) = std::pair(std::ranges::min(drive.path), std::ranges::max(drive.path));
+    std::tie(drive.least, drive.most) =
+        std::pair(std::ranges::min(drive.path), std::ranges::max(drive.path));
     c.drives.push_back(std::move(drive));
     c.draft.notes.count("COUPLER");
     c.draft.notes.warn(
-        s.place(), fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
-                               "drive's of its own",
-                               quantity(joint)));
+        s.place(),
+        fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
+                    "drive's of its own",
+                    quantity(joint)));
 }
 
 }  // namespace
 
 const Shape& motion_shape() {
-    static const Shape shape{{"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3", "DISPLACEMENT",
-                              "VELOCITY", "ACCELERATION"},
+    static const Shape shape{{"TRANSLATIONAL", "ROTATIONAL", "X", "Y", "Z", "B1", "B2", "B3",
+                              "DISPLACEMENT", "VELOCITY", "ACCELERATION"},
                              {"JOINT", "I", "J", "ICDISP", "ICVEL"},
                              {"FUNCTION"}};
     return shape;

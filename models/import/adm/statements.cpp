@@ -9,28 +9,31 @@
 #include <optional>
 #include <span>
 
-#include "models/reader/words.hpp"
-#include "models/reader/yaml.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
 
 // All keywords of a dataset, to resolve abbreviations.
 constexpr std::string_view keywords[] = {
-    "ACCGRAV",    "ADAMS",       "ARRAY",       "BEAM",       "BUSHING",    "CONTACT",      "CONTROL",
-    "COSIM",      "COUPLER",     "CURVE",       "CVCV",       "DEACTIVATE", "DEBUG",        "DIFF",
-    "END",        "EQUILIBRIUM", "EXECUTION",   "FE_LOAD",    "FE_NODE",    "FE_PART",      "FIELD",
-    "FLEX_BODY",  "FRICTION",    "GCON",        "GEAR",       "GFORCE",     "GRAPHICS",     "GSE",
-    "IC",         "INCLUDE",     "INFO",        "INTEGRATOR", "JOINT",      "JPRIM",        "KINEMATICS",
-    "LINEAR",     "LIST",        "LSE",         "LSSOLVER",   "MARKER",     "MATERIAL",     "MATRIX",
-    "MFORCE",     "MODE",        "MOTION",      "NFORCE",     "OUTPUT",     "PART",         "PINPUT",
-    "POINT_MASS", "POUTPUT",     "PREFERENCES", "PTCV",       "PTSF",       "REQUEST",      "RESULTS",
-    "SECTION",    "SENSOR",      "SFORCE",      "SOLVER",     "SPLINE",     "SPRINGDAMPER", "STRING",
-    "SURFACE",    "TFSISO",      "TIRE",        "UCON",       "UNITS",      "VARIABLE",     "VFORCE",
-    "VTORQUE",    "WHEEL"};
+    "ACCGRAV", "ADAMS",        "ARRAY",    "BEAM",        "BUSHING",    "CONTACT",
+    "CONTROL", "COSIM",        "COUPLER",  "CURVE",       "CVCV",       "DEACTIVATE",
+    "DEBUG",   "DIFF",         "END",      "EQUILIBRIUM", "EXECUTION",  "FE_LOAD",
+    "FE_NODE", "FE_PART",      "FIELD",    "FLEX_BODY",   "FRICTION",   "GCON",
+    "GEAR",    "GFORCE",       "GRAPHICS", "GSE",         "IC",         "INCLUDE",
+    "INFO",    "INTEGRATOR",   "JOINT",    "JPRIM",       "KINEMATICS", "LINEAR",
+    "LIST",    "LSE",          "LSSOLVER", "MARKER",      "MATERIAL",   "MATRIX",
+    "MFORCE",  "MODE",         "MOTION",   "NFORCE",      "OUTPUT",     "PART",
+    "PINPUT",  "POINT_MASS",   "POUTPUT",  "PREFERENCES", "PTCV",       "PTSF",
+    "REQUEST", "RESULTS",      "SECTION",  "SENSOR",      "SFORCE",     "SOLVER",
+    "SPLINE",  "SPRINGDAMPER", "STRING",   "SURFACE",     "TFSISO",     "TIRE",
+    "UCON",    "UNITS",        "VARIABLE", "VFORCE",      "VTORQUE",    "WHEEL"};
 
 // NUL counts as a blank: some writers pad their text with it.
-bool is_space(char c) { return c == ' ' || c == '\0' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+bool is_space(char c) {
+    return c == ' ' || c == '\0' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
+}
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name(char c) { return is_letter(c) || is_digit(c); }
@@ -42,7 +45,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 // Words that an abbreviation can mean: the exact match alone, else all that begin with it.
-std::vector<std::string_view> meant(std::string_view beginning, std::span<const std::string_view> words) {
+std::vector<std::string_view> meant(std::string_view beginning,
+                                    std::span<const std::string_view> words) {
     std::vector<std::string_view> found;
     for (const std::string_view word : words) {
         if (word == beginning) return {word};
@@ -80,18 +84,20 @@ struct Reading {
         std::size_t slash = n;
         while (slash < line.size() && is_space(line[slash])) ++slash;
         if (n == 0 || slash == line.size() || line[slash] != '/')
-            fail(fmt::format(
-                "expected a statement KEYWORD/..., a line that begins with a comma, or a comment, found {}",
-                reader::quote(line)));
+            fail(
+                fmt::format("expected a statement KEYWORD/..., a line that begins with a comma, or "
+                            "a comment, found {}",
+                            reader::quote(line)));
         const std::string word = capitals(line.substr(0, n));
         const auto found = meant(word, keywords);
         if (found.size() > 1)
             fail(fmt::format("{} may be {}; too short to tell", reader::quote(word),
                              fmt::join(found, " or ")));
         if (found.empty())
-            fail(fmt::format("{} is no statement of a dataset{}", reader::quote(word),
-                             reader::did_you_mean(word, strings({std::begin(keywords), std::end(keywords)}),
-                                                  "there are")));
+            fail(fmt::format(
+                "{} is no statement of a dataset{}", reader::quote(word),
+                reader::did_you_mean(word, strings({std::begin(keywords), std::end(keywords)}),
+                                     "there are")));
         if (data.statements.size() == most_statements)
             fail(fmt::format("more than {} statements", most_statements));
         Statement statement;
@@ -102,9 +108,11 @@ struct Reading {
         std::size_t digits = 0;
         while (digits < line.size() && is_digit(line[digits])) ++digits;
         if (digits > 0) {
-            const auto [end, error] = std::from_chars(line.data(), line.data() + digits, statement.id);
+            const auto [end, error] =
+                std::from_chars(line.data(), line.data() + digits, statement.id);
             if (error != std::errc{})
-                fail(fmt::format("{} is too large for an id", reader::quote(line.substr(0, digits))));
+                fail(fmt::format("{} is too large for an id",
+                                 reader::quote(line.substr(0, digits))));
             line.remove_prefix(digits);
         }
         line = trimmed(line);
@@ -177,7 +185,8 @@ Dataset read_statements(std::string_view text, const std::string& file) {
         }
         reading.read(line);
     }
-    if (data.statements.empty()) reader::fail(file, data.last_line, "", "no statement: this is no dataset");
+    if (data.statements.empty())
+        reader::fail(file, data.last_line, "", "no statement: this is no dataset");
     return data;
 }
 
@@ -194,7 +203,8 @@ std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees)
         ++n;
     }
     bool any = false;
-    for (bool point = false; n < text.size() && (is_digit(text[n]) || (text[n] == '.' && !point)); ++n) {
+    for (bool point = false; n < text.size() && (is_digit(text[n]) || (text[n] == '.' && !point));
+         ++n) {
         if (text[n] == '.') point = true;
         any |= is_digit(text[n]);
         digits += text[n];
@@ -234,11 +244,12 @@ struct Scanner {
 
     [[noreturn]] void fail(const std::string& what) const { adm::fail(file, statement, what); }
     void skip_blanks() {
-        while (!text.empty() && (is_space(text.front()) || text.front() == '\n')) text.remove_prefix(1);
+        while (!text.empty() && (is_space(text.front()) || text.front() == '\n'))
+            text.remove_prefix(1);
     }
     void skip_separators() {
-        while (!text.empty() && (is_space(text.front()) || text.front() == '\n' || text.front() == ',' ||
-                                 text.front() == '\\'))
+        while (!text.empty() && (is_space(text.front()) || text.front() == '\n' ||
+                                 text.front() == ',' || text.front() == '\\'))
             text.remove_prefix(1);
     }
     // The word at the beginning, and whether "=" follows.
@@ -258,7 +269,8 @@ struct Scanner {
     // Whether another argument begins here, after a comma or on a new line of a complete
     // expression.
     bool is_argument(std::string_view rest) const {
-        while (!rest.empty() && (is_space(rest.front()) || rest.front() == ',' || rest.front() == '\n'))
+        while (!rest.empty() &&
+               (is_space(rest.front()) || rest.front() == ',' || rest.front() == '\n'))
             rest.remove_prefix(1);
         bool assigns = false;
         const std::string_view name = word(rest, assigns);
@@ -278,7 +290,8 @@ struct Scanner {
                 continue;
             }
             depth += c == '(' ? 1 : c == ')' ? -1 : 0;
-            if (depth < 0) fail(fmt::format("{}: a bracket closes that none opened", reader::quote(result)));
+            if (depth < 0)
+                fail(fmt::format("{}: a bracket closes that none opened", reader::quote(result)));
             result += c;
         }
         if (depth > 0) fail(fmt::format("{}: a bracket is left open", reader::quote(result)));
@@ -290,7 +303,8 @@ struct Scanner {
         skip_blanks();
         for (bool more = true; more;) {
             std::size_t n = 0;
-            while (n < text.size() && text[n] != ',' && text[n] != ':' && text[n] != '\n' && text[n] != '\\')
+            while (n < text.size() && text[n] != ',' && text[n] != ':' && text[n] != '\n' &&
+                   text[n] != '\\')
                 ++n;
             list.emplace_back(trimmed(text.substr(0, n)));
             text.remove_prefix(n);
@@ -304,7 +318,8 @@ struct Scanner {
             // After a comma and/or a new line the following text is a value if it is a number.
             std::string_view rest = text;
             if (rest.front() == ',') rest.remove_prefix(1);
-            while (!rest.empty() && (is_space(rest.front()) || rest.front() == '\n')) rest.remove_prefix(1);
+            while (!rest.empty() && (is_space(rest.front()) || rest.front() == '\n'))
+                rest.remove_prefix(1);
             double ignored = 0;
             bool degrees = false;
             if (number_at(rest, ignored, degrees) == 0) break;
@@ -397,7 +412,8 @@ double Arguments::read(const Argument& argument, const std::string& text, bool i
         fail(fmt::format("{}: {} is out of range; allowed: up to 1e30 in size", argument.name,
                          reader::quote(text)));
     if (degrees && !is_angle)
-        fail(fmt::format("{}: {} is in degrees, but this is no angle", argument.name, reader::quote(text)));
+        fail(fmt::format("{}: {} is in degrees, but this is no angle", argument.name,
+                         reader::quote(text)));
     return degrees ? value * std::numbers::pi / 180 : value;
 }
 
@@ -432,9 +448,11 @@ std::vector<double> Arguments::list(std::string_view name, std::size_t least, st
     std::vector<double> result;
     if (!argument) return result;
     if (argument->values.size() < least || argument->values.size() > most)
-        fail(fmt::format("{}: {} numbers, where {} are asked for", name, argument->values.size(),
-                         least == most ? std::to_string(least) : fmt::format("{} to {}", least, most)));
-    for (const std::string& text : argument->values) result.push_back(read(*argument, text, angles));
+        fail(fmt::format(
+            "{}: {} numbers, where {} are asked for", name, argument->values.size(),
+            least == most ? std::to_string(least) : fmt::format("{} to {}", least, most)));
+    for (const std::string& text : argument->values)
+        result.push_back(read(*argument, text, angles));
     return result;
 }
 
@@ -446,7 +464,8 @@ double Arguments::angle(std::string_view name, double missing) const {
     const auto one = list(name, 1, 1, true);
     return one.empty() ? missing : one[0];
 }
-std::vector<double> Arguments::numbers(std::string_view name, std::size_t least, std::size_t most) const {
+std::vector<double> Arguments::numbers(std::string_view name, std::size_t least,
+                                       std::size_t most) const {
     return list(name, least, most, false);
 }
 std::vector<double> Arguments::angles(std::string_view name, std::size_t count) const {

@@ -90,7 +90,8 @@ class Arguments {
     const Argument* find(std::string_view name) const;
     const Argument* taken(std::string_view name) const;  // find(), marked as read
     double read(const Argument& argument, const std::string& text, bool is_angle) const;
-    std::vector<double> list(std::string_view name, std::size_t least, std::size_t most, bool angles) const;
+    std::vector<double> list(std::string_view name, std::size_t least, std::size_t most,
+                             bool angles) const;
 
     const std::string* file_;
     const Statement* statement_;

@@ -9,7 +9,7 @@
 
 #include "models/import/chrono/json.hpp"
 #include "models/import/chrono/suspension.hpp"
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
 namespace {
@@ -25,8 +25,8 @@ std::optional<Cursor> bushing_of(const Suspension& s, const char* path) {
 
 // An arm on an axis through two points: chassis to arm at their middle, arm to upright at its ball
 // joint.
-void arm(Suspension& s, const std::string& name, const char* part, const char* front, const char* back,
-         const char* ball, const std::string& upright) {
+void arm(Suspension& s, const std::string& name, const char* part, const char* front,
+         const char* back, const char* ball, const std::string& upright) {
     const std::string p(part);
     const auto path = [&](const char* key) { return p + "/" + key; };
     const std::string of = s.sided(name), data = path("Bushing Data");
@@ -43,7 +43,8 @@ void arm(Suspension& s, const std::string& name, const char* part, const char* f
 
 void upright_body(Suspension& s) { s.body(s.sided("upright"), s.point("Upright/COM"), "Upright"); }
 
-void spring_and_shock(Suspension& s, const char* end, const std::string& on, const char* spring = "Spring") {
+void spring_and_shock(Suspension& s, const char* end, const std::string& on,
+                      const char* spring = "Spring") {
     for (const char* part : {spring, "Shock"}) {
         if (!s.has(part)) continue;
         const std::string p(part);
@@ -70,7 +71,8 @@ void double_wishbone(Suspension& s) {
 void double_wishbone_reduced(Suspension& s) {
     upright_body(s);
     const std::string upright = s.sided("upright");
-    for (const auto& [name, part] : {std::pair{"upper", "Upper Control Arm"}, {"lower", "Lower Control Arm"}})
+    for (const auto& [name, part] :
+         {std::pair{"upper", "Upper Control Arm"}, {"lower", "Lower Control Arm"}})
         for (const auto& [way, key] :
              {std::pair{"front", "Location Chassis Front"}, {"rear", "Location Chassis Back"}}) {
             const std::string from = std::string(part) + "/" + key,
@@ -86,12 +88,14 @@ void double_wishbone_reduced(Suspension& s) {
 void mcpherson(Suspension& s) {
     upright_body(s);
     const std::string upright = s.sided("upright"), strut = s.sided("strut");
-    arm(s, "arm", "Control Arm", "Location Chassis Front", "Location Chassis Back", "Location Upright",
-        upright);
-    const Vector3d top = s.point("Spring/Location Chassis"), seat = s.point("Spring/Location Upright");
+    arm(s, "arm", "Control Arm", "Location Chassis Front", "Location Chassis Back",
+        "Location Upright", upright);
+    const Vector3d top = s.point("Spring/Location Chassis"),
+                   seat = s.point("Spring/Location Upright");
     s.body(strut, 0.5 * (top + seat), "Strut");
     const Matrix3d A = frame_along(seat - top, Vector3d::UnitX());
-    s.universal(s.sided("strut.mount"), "ground", strut, top, A.col(0), A.col(1), "Spring/Location Chassis");
+    s.universal(s.sided("strut.mount"), "ground", strut, top, A.col(0), A.col(1),
+                "Spring/Location Chassis");
     s.joint(s.sided("strut.tube"), "cylindrical", strut, upright,
             Fields{}
                 .add("at", s.hardpoint(s.sided("strut.tube"), seat, "Spring/Location Upright"))
@@ -103,7 +107,8 @@ void mcpherson(Suspension& s) {
 }
 
 // x of the universal joint is fixed to the link, y to the chassis.
-void axes_link(Suspension& s, const std::string& name, const char* part, const std::string& upright) {
+void axes_link(Suspension& s, const std::string& name, const char* part,
+               const std::string& upright) {
     const std::string p(part), of = s.sided(name);
     const auto at = [&](const char* key) { return p + "/" + key; };
     s.body(of, s.point(at("COM").c_str()), part);
@@ -117,8 +122,8 @@ void axes_link(Suspension& s, const std::string& name, const char* part, const s
 void multi_link(Suspension& s) {
     upright_body(s);
     const std::string upright = s.sided("upright");
-    arm(s, "upper_arm", "Upper Arm", "Location Chassis Front", "Location Chassis Back", "Location Upright",
-        upright);
+    arm(s, "upper_arm", "Upper Arm", "Location Chassis Front", "Location Chassis Back",
+        "Location Upright", upright);
     axes_link(s, "lateral", "Lateral", upright);
     axes_link(s, "trailing_link", "Trailing Link", upright);
     s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
@@ -137,20 +142,22 @@ void three_link_irs(Suspension& s) {
     s.left("Trailing Arm/Location Spindle");
     const std::string arm_name = s.sided("arm");
     s.body(arm_name, s.point("Trailing Arm/COM"), "Trailing Arm");
-    const auto on_chassis = bushing_of(s, "Bushing Data Chassis"), on_arm = bushing_of(s, "Bushing Data Arm");
+    const auto on_chassis = bushing_of(s, "Bushing Data Chassis"),
+               on_arm = bushing_of(s, "Bushing Data Arm");
     s.joint_or_bushing(Kind::spherical, s.sided("arm.joint"), "ground", arm_name,
-                       s.point("Trailing Arm/Location Chassis"), no_turn, "Trailing Arm/Location Chassis",
-                       on_chassis);
-    for (const auto& [name, part] : {std::pair{"upper_link", "Upper Link"}, {"lower_link", "Lower Link"}}) {
+                       s.point("Trailing Arm/Location Chassis"), no_turn,
+                       "Trailing Arm/Location Chassis", on_chassis);
+    for (const auto& [name, part] :
+         {std::pair{"upper_link", "Upper Link"}, {"lower_link", "Lower Link"}}) {
         const std::string of = s.sided(name), p(part), inner = p + "/Location Chassis",
                           outer = p + "/Location Arm";
         s.body(of, s.point((p + "/COM").c_str()), part);
         const Vector3d c = s.point(inner.c_str()), a = s.point(outer.c_str());
-        s.joint_or_bushing(Kind::spherical, s.sided(std::string(name) + ".outer"), of, arm_name, a, no_turn,
-                           outer.c_str(), on_arm);
+        s.joint_or_bushing(Kind::spherical, s.sided(std::string(name) + ".outer"), of, arm_name, a,
+                           no_turn, outer.c_str(), on_arm);
         s.joint_or_bushing(Kind::universal, s.sided(std::string(name) + ".inner"), of, "ground", c,
-                           frame_along(c - a, s.point((p + "/Universal Joint Axis").c_str())), inner.c_str(),
-                           on_chassis);
+                           frame_along(c - a, s.point((p + "/Universal Joint Axis").c_str())),
+                           inner.c_str(), on_chassis);
     }
     spring_and_shock(s, "Location Arm", arm_name);
     s.spindle(arm_name);
@@ -162,8 +169,8 @@ void single_wishbone(Suspension& s) {
     s.body(arm_name, s.point("Control Arm/COM"), "Control Arm");
     s.joint_or_bushing(Kind::revolute, s.sided("arm.axis"), "ground", arm_name,
                        s.point("Control Arm/Location Chassis"),
-                       frame_along(Vector3d::UnitX(), Vector3d::UnitZ()), "Control Arm/Location Chassis",
-                       bushing_of(s, "Control Arm/Bushing Data"));
+                       frame_along(Vector3d::UnitX(), Vector3d::UnitZ()),
+                       "Control Arm/Location Chassis", bushing_of(s, "Control Arm/Bushing Data"));
     s.revolute(s.sided("king_pin"), arm_name, upright, s.point("Control Arm/Location Upright"),
                Vector3d::UnitZ(), "Control Arm/Location Upright");
     s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
@@ -188,8 +195,8 @@ void knuckle(Suspension& s, const char* lower = "Knuckle/Location Lower",
              const char* upper = "Knuckle/Location Upper") {
     s.body(s.sided("knuckle"), s.point("Knuckle/COM"), "Knuckle");
     const Vector3d middle = s.midpoint("king_pin", "lower", lower, "upper", upper);
-    s.revolute(s.sided("king_pin"), "axle", s.sided("knuckle"), middle, s.point(lower) - s.point(upper),
-               "Knuckle");
+    s.revolute(s.sided("king_pin"), "axle", s.sided("knuckle"), middle,
+               s.point(lower) - s.point(upper), "Knuckle");
 }
 
 // The track rod between both knuckles, and the drag link from ground to one of them.
@@ -200,24 +207,25 @@ void shared_tierod(Suspension& s) {
     s.side = +1;
     s.body("tierod", 0.5 * (end + other), "Tierod");
     s.spherical("tierod.left", "tierod", "knuckle_left", end, "Tierod/Location Knuckle");
-    s.universal("tierod.right", "tierod", "knuckle_right", other, Vector3d::UnitX(), Vector3d::UnitZ(),
-                "Tierod/Location Knuckle");
+    s.universal("tierod.right", "tierod", "knuckle_right", other, Vector3d::UnitX(),
+                Vector3d::UnitZ(), "Tierod/Location Knuckle");
 }
 
 void draglink(Suspension& s, bool universal) {
     const Vector3d chassis = s.left("Draglink/Location Chassis");
     const Vector3d end = s.left("Knuckle/Location Draglink");  // the sign of y tells the knuckle
     s.link("draglink", "Draglink", 0.5 * (chassis + end), "ground", chassis,
-           end.y() > 0 ? "knuckle_left" : "knuckle_right", end, universal, "Draglink/Location Chassis",
-           "Knuckle/Location Draglink");
+           end.y() > 0 ? "knuckle_left" : "knuckle_right", end, universal,
+           "Draglink/Location Chassis", "Knuckle/Location Draglink");
 }
 
 void solid_axle(Suspension& s) {
     axle_tube(s);
     both(s, [&] {
         knuckle(s);
-        for (const auto& [name, part, other] : {std::tuple{"upper_link", "Upper Link", "Lower Link"},
-                                                std::tuple{"lower_link", "Lower Link", "Upper Link"}}) {
+        for (const auto& [name, part, other] :
+             {std::tuple{"upper_link", "Upper Link", "Lower Link"},
+              std::tuple{"lower_link", "Lower Link", "Upper Link"}}) {
             const std::string of = s.sided(name), p(part), inner = p + "/Location Chassis",
                               outer = p + "/Location Axle";
             const Vector3d c = s.point(inner.c_str()), a = s.point(outer.c_str());
@@ -234,22 +242,27 @@ void solid_axle(Suspension& s) {
     shared_tierod(s);
     if (s.has("Trackbar")) {  // without it the non-parallel links already hold the axle sideways
         s.one_freedom = true;
-        s.draft().notes.warn(s.place("Trackbar"),
-                             "links and track bar together leave the axle one freedom, and that hardly: the "
-                             "branch moves the left wheel, the right one follows");
-        const Vector3d a = s.left("Trackbar/Location Axle"), c = s.left("Trackbar/Location Chassis");
+        s.draft().notes.warn(
+            s.place("Trackbar"),
+            "links and track bar together leave the axle one freedom, and that hardly: the "
+            "branch moves the left wheel, the right one follows");
+        const Vector3d a = s.left("Trackbar/Location Axle"),
+                       c = s.left("Trackbar/Location Chassis");
         s.link("trackbar", "Trackbar", 0.5 * (a + c), "ground", c, "axle", a, false,
                "Trackbar/Location Chassis", "Trackbar/Location Axle");
     }
     // Drag link, bell crank, and the pin of the bell crank in the track rod's plane.
-    const Vector3d d = s.left("Draglink/Location Bell Crank"), steering = s.left("Draglink/Location Chassis");
-    const Vector3d pivot = s.left("Bell Crank/Location Axle"), pin = s.left("Bell Crank/Location Tierod");
+    const Vector3d d = s.left("Draglink/Location Bell Crank"),
+                   steering = s.left("Draglink/Location Chassis");
+    const Vector3d pivot = s.left("Bell Crank/Location Axle"),
+                   pin = s.left("Bell Crank/Location Tierod");
     s.body("bell_crank", (d + pivot + pin) / 3, "Bell Crank");
     s.link("draglink", "Draglink", 0.5 * (d + steering), "ground", steering, "bell_crank", d, true,
            "Draglink/Location Chassis", "Draglink/Location Bell Crank");
     const Vector3d axis = (d - pivot).cross(pin - pivot);
     if (!(axis.norm() > 1e-12))
-        s.at("Bell Crank/Location Axle").fail("on one line with the other points of the bell crank");
+        s.at("Bell Crank/Location Axle")
+            .fail("on one line with the other points of the bell crank");
     s.revolute("bell_crank.pivot", "bell_crank", "axle", pivot, axis, "Bell Crank/Location Axle");
     s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY(),
                s.place("Bell Crank/Location Tierod"));
@@ -257,7 +270,8 @@ void solid_axle(Suspension& s) {
 
 // Triangle and links of the three-link axles.
 void three_links(Suspension& s) {
-    Vector3d c = s.left("Triangular Link/Location Chassis"), a = s.left("Triangular Link/Location Axle");
+    Vector3d c = s.left("Triangular Link/Location Chassis"),
+             a = s.left("Triangular Link/Location Axle");
     c.y() = a.y() = 0;  // the middle of both sides
     s.draft().points.at(c, "triangle.axis", {0, "Triangular Link/Location Chassis, at y = 0"});
     s.draft().points.at(a, "triangle.ball_joint", {0, "Triangular Link/Location Axle, at y = 0"});
@@ -269,7 +283,8 @@ void three_links(Suspension& s) {
         const Vector3d chassis = s.point("Longitudinal Link/Location Chassis"),
                        axle = s.point("Longitudinal Link/Location Axle");
         s.body(s.sided("link"), 0.5 * (chassis + axle), "Longitudinal Link");
-        s.spherical(s.sided("link.outer"), s.sided("link"), "axle", axle, "Longitudinal Link/Location Axle");
+        s.spherical(s.sided("link.outer"), s.sided("link"), "axle", axle,
+                    "Longitudinal Link/Location Axle");
         const Matrix3d A = frame_along(chassis - axle, Vector3d::UnitY());
         s.universal(s.sided("link.inner"), s.sided("link"), "ground", chassis, A.col(0), A.col(1),
                     "Longitudinal Link/Location Chassis");
@@ -290,16 +305,19 @@ void solid_bellcrank_three_link(Suspension& s) {
     three_links(s);
     const Vector3d pivot = s.left("Bellcrank/Location Axle");
     s.body("bellcrank", pivot, "Bellcrank");
-    s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ(), "Bellcrank/Location Axle");
-    const Vector3d d = s.left("Draglink/Location Bellcrank"), steering = s.left("Draglink/Location Steering");
+    s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ(),
+               "Bellcrank/Location Axle");
+    const Vector3d d = s.left("Draglink/Location Bellcrank"),
+                   steering = s.left("Draglink/Location Steering");
     s.link("draglink", "Draglink", 0.5 * (d + steering), "ground", steering, "bellcrank", d, true,
            "Draglink/Location Steering", "Draglink/Location Bellcrank");
     both(s, [&] {
         knuckle(s);
         const Vector3d inner = s.point("Bellcrank/Location Tierod"),
                        outer = s.point("Knuckle/Location Tierod");
-        s.link(s.sided("tierod"), "Tierod", 0.5 * (inner + outer), "bellcrank", inner, s.sided("knuckle"),
-               outer, false, "Bellcrank/Location Tierod", "Knuckle/Location Tierod");
+        s.link(s.sided("tierod"), "Tierod", 0.5 * (inner + outer), "bellcrank", inner,
+               s.sided("knuckle"), outer, false, "Bellcrank/Location Tierod",
+               "Knuckle/Location Tierod");
         spring_and_shock(s, "Location Axle", "axle");
         s.spindle(s.sided("knuckle"));
     });
@@ -335,12 +353,14 @@ void leafspring_guide(Suspension& s) {
     const Vector3d p = s.left("Axle Tube/COM");
     s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX(), s.place("Axle Tube"));
     s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY(), s.place("Axle Tube"));
-    s.joint("axle.roll_axis", "parallel", "axle", "ground", Fields{}.add("axis", "x"), s.place("Axle Tube"));
+    s.joint("axle.roll_axis", "parallel", "axle", "ground", Fields{}.add("axis", "x"),
+            s.place("Axle Tube"));
 }
 
 void panhard_rod(Suspension& s, const char* chassis, const char* axle) {
     const Vector3d c = s.left(chassis), a = s.left(axle);
-    s.link("panhard_rod", "Panhard Rod", 0.5 * (c + a), "ground", c, "axle", a, false, chassis, axle);
+    s.link("panhard_rod", "Panhard Rod", 0.5 * (c + a), "ground", c, "axle", a, false, chassis,
+           axle);
 }
 
 void push_pipe(Suspension& s) {
@@ -365,17 +385,19 @@ void rigid_panhard(Suspension& s) {
     // to it.
     const Vector3d chassis = s.left("Anti Roll Bar/Location Chassis");
     const Vector3d middle(chassis.x(), 0, chassis.z());
-    s.draft().points.at(middle, "antiroll_bar.bearing", {0, "Anti Roll Bar/Location Chassis, at y = 0"});
+    s.draft().points.at(middle, "antiroll_bar.bearing",
+                        {0, "Anti Roll Bar/Location Chassis, at y = 0"});
     both(s, [&] {
         s.body(s.sided("antiroll_bar"), 0.5 * (s.point("Anti Roll Bar/Location Chassis") + middle),
                "Anti Roll Bar");
     });
     s.revolute("antiroll_bar.bearing", "ground", "antiroll_bar_left", middle, Vector3d::UnitY(),
                "Anti Roll Bar/Location Chassis");
-    s.revolute("antiroll_bar.middle", "antiroll_bar_left", "antiroll_bar_right", middle, Vector3d::UnitY(),
-               "Anti Roll Bar/Location Chassis");
-    s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right", middle, Vector3d::UnitY(),
-              s.real("Anti Roll Bar/Rotational Stiffness"), 0, "Anti Roll Bar/Rotational Stiffness");
+    s.revolute("antiroll_bar.middle", "antiroll_bar_left", "antiroll_bar_right", middle,
+               Vector3d::UnitY(), "Anti Roll Bar/Location Chassis");
+    s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right", middle,
+              Vector3d::UnitY(), s.real("Anti Roll Bar/Rotational Stiffness"), 0,
+              "Anti Roll Bar/Rotational Stiffness");
     both(s, [&] {
         s.in_plane(s.sided("antiroll_bar.slide"), s.sided("antiroll_bar"), "axle",
                    s.point("Anti Roll Bar/Location Axle"), Vector3d::UnitZ(),
@@ -404,7 +426,8 @@ void steered_wheels(Suspension& s, bool universal_draglink) {
 // shared equally.
 void leaf(Suspension& s) {
     const Vector3d hanger = s.point("Leafspring/Location Front Hanger"),
-                   a = s.point("Leafspring/Location Clamp A"), b = s.point("Leafspring/Location Clamp B"),
+                   a = s.point("Leafspring/Location Clamp A"),
+                   b = s.point("Leafspring/Location Clamp B"),
                    shackle = s.point("Leafspring/Location Shackle"),
                    rear = s.point("Leafspring/Location Rear Hanger");
     const double bias = s.real("Leafspring/Stiffness Bias"),
@@ -426,8 +449,8 @@ void leaf(Suspension& s) {
     const auto on_shackle = bushing_of(s, "Leafspring/Shackle Bushing Data"),
                on_clamp = bushing_of(s, "Leafspring/Clamp Bushing Data"),
                on_leaf = bushing_of(s, "Leafspring/Leafspring Bushing Data");
-    s.joint_or_bushing(Kind::revolute, s.sided("shackle.hanger"), shackle_name, "ground", rear, about_y,
-                       "Leafspring/Location Rear Hanger", on_shackle);
+    s.joint_or_bushing(Kind::revolute, s.sided("shackle.hanger"), shackle_name, "ground", rear,
+                       about_y, "Leafspring/Location Rear Hanger", on_shackle);
     s.spherical(s.sided("front_leaf.hanger"), front_leaf, "ground", hanger,
                 "Leafspring/Location Front Hanger");
     s.spherical(s.sided("rear_leaf.shackle"), rear_leaf, shackle_name, shackle,
@@ -440,24 +463,26 @@ void leaf(Suspension& s) {
     };
     for (const Half& half :
          {Half{"clamp_a", "Leafspring/Location Clamp A", clamp_a, front_leaf, a, a - hanger, 1},
-          Half{"clamp_b", "Leafspring/Location Clamp B", clamp_b, rear_leaf, b, b - shackle, bias}}) {
+          Half{"clamp_b", "Leafspring/Location Clamp B", clamp_b, rear_leaf, b, b - shackle,
+               bias}}) {
         const std::string name(half.name);
         const double square = half.arm.squaredNorm();
-        s.joint_or_bushing(Kind::revolute, s.sided(name + ".yaw"), half.clamp, "axle", half.p, no_turn,
-                           half.path, on_clamp);
+        s.joint_or_bushing(Kind::revolute, s.sided(name + ".yaw"), half.clamp, "axle", half.p,
+                           no_turn, half.path, on_clamp);
         s.torsion(s.sided(name + ".lateral"), half.clamp, "axle", half.p, Vector3d::UnitZ(),
                   half.share * lateral * square, 0, half.path);
-        s.joint_or_bushing(Kind::revolute, s.sided(name + ".pitch"), half.clamp, half.leaf, half.p, about_y,
-                           half.path, on_leaf);
+        s.joint_or_bushing(Kind::revolute, s.sided(name + ".pitch"), half.clamp, half.leaf, half.p,
+                           about_y, half.path, on_leaf);
         // Moment about y on the leaf whose far end then pushes the chassis up with half the
         // preload: arm × force.
         s.torsion(s.sided(name + ".vertical"), half.clamp, half.leaf, half.p, Vector3d::UnitY(),
                   half.share * vertical * square, -0.5 * preload * half.arm.x(), half.path);
     }
     if (preload != 0 && s.side > 0)
-        s.draft().notes.warn(s.place("Leafspring/Vertical Preload Force"),
-                             "taken as what holds the chassis up at the design position: the sign of "
-                             "Chrono's rest angle is not known here");
+        s.draft().notes.warn(
+            s.place("Leafspring/Vertical Preload Force"),
+            "taken as what holds the chassis up at the design position: the sign of "
+            "Chrono's rest angle is not known here");
 }
 
 void sae_leafspring(Suspension& s, bool steered) {
@@ -501,8 +526,9 @@ void hendrickson(Suspension& s) {
         for (const auto& [name, part, end] :
              {std::tuple{"housing_shock", "Shock Axle Housing", "Location Axle Housing"},
               std::tuple{"beam_shock", "Shock Lower Beam", "Location Lower Beam"}})
-            s.tsda(s.sided(name), "ground", s.point((std::string(part) + "/Location Chassis").c_str()),
-                   "axle", s.point((std::string(part) + "/" + end).c_str()), s.at(part));
+            s.tsda(s.sided(name), "ground",
+                   s.point((std::string(part) + "/Location Chassis").c_str()), "axle",
+                   s.point((std::string(part) + "/" + end).c_str()), s.at(part));
         s.spindle(s.sided("knuckle"));
     });
 }
@@ -554,8 +580,8 @@ struct Generic {
         std::vector<std::string> known{"Chassis", "Subchassis", "Steering"};
         known.insert(known.end(), sided.begin(), sided.end());
         known.insert(known.end(), shared.begin(), shared.end());
-        at.fail(
-            fmt::format("{} is no body here{}", at.found(), reader::did_you_mean(name, known, "there are")));
+        at.fail(fmt::format("{} is no body here{}", at.found(),
+                            reader::did_you_mean(name, known, "there are")));
     }
 
     static bool is_mirrored(const Cursor& entry) {
@@ -564,7 +590,8 @@ struct Generic {
     }
 
     // Calls `make` for each entry of a section and for each of its sides.
-    void each(const char* section, const std::function<void(const Cursor&, const std::string&)>& make) {
+    void each(const char* section,
+              const std::function<void(const Cursor&, const std::string&)>& make) {
         if (!s.has(section)) return;
         for (const Cursor& entry : s.at(section).items()) {
             const std::string name = scene_name(entry.require("Name").text("a name"));
@@ -581,14 +608,17 @@ struct Generic {
         }
     }
 
-    Vector3d at(const Cursor& entry, const char* key) const { return s.mirrored(vector(entry.require(key))); }
+    Vector3d at(const Cursor& entry, const char* key) const {
+        return s.mirrored(vector(entry.require(key)));
+    }
 };
 
 void generic(Suspension& s) {
     Generic g{s, {}, {}};
     if (s.has("Bodies"))
         for (const Cursor& entry : s.at("Bodies").items())
-            (Generic::is_mirrored(entry) ? g.sided : g.shared).insert(entry.require("Name").text("a name"));
+            (Generic::is_mirrored(entry) ? g.sided : g.shared)
+                .insert(entry.require("Name").text("a name"));
     auto& draft = s.draft();
     g.each("Bodies", [&](const Cursor& entry, const std::string& name) {
         const Place from{entry.value->line, "Bodies/" + name};
@@ -604,7 +634,8 @@ void generic(Suspension& s) {
         const std::string type = entry.require("Type").text("a type of joint");
         const std::string i = g.body(entry.require("Body1")), j = g.body(entry.require("Body2"));
         const Vector3d p = g.at(entry, "Position");
-        const Matrix3d A = entry.optional("Rotation") ? rotation(s, entry.require("Rotation")) : no_turn;
+        const Matrix3d A =
+            entry.optional("Rotation") ? rotation(s, entry.require("Rotation")) : no_turn;
         const Place from{entry.value->line, "Joints/" + name};
         const auto data = entry.optional("Bushing Data");
         const std::string at = draft.points.at(p, name, from);
@@ -625,18 +656,23 @@ void generic(Suspension& s) {
             s.joint(name, "fixed", i, j, Fields{}.add("at", at), from);
         } else if (is({"Point Line", "POINTLINE"})) {
             if (data)
-                s.ignore(*data, "Chrono makes nothing of a bushing in place of this joint; here a joint");
-            s.joint(name, "in_line", i, j, Fields{}.add("at", at).add("axis", direction(A.col(0))), from);
+                s.ignore(*data,
+                         "Chrono makes nothing of a bushing in place of this joint; here a joint");
+            s.joint(name, "in_line", i, j, Fields{}.add("at", at).add("axis", direction(A.col(0))),
+                    from);
         } else if (is({"Point Plane", "POINTPLANE"})) {
             if (data)
-                s.ignore(*data, "Chrono makes nothing of a bushing in place of this joint; here a joint");
-            s.joint(name, "in_plane", i, j, Fields{}.add("at", at).add("normal", direction(A.col(2))), from);
+                s.ignore(*data,
+                         "Chrono makes nothing of a bushing in place of this joint; here a joint");
+            s.joint(name, "in_plane", i, j,
+                    Fields{}.add("at", at).add("normal", direction(A.col(2))), from);
         } else if (is({"Prismatic", "PRISMATIC", "Cylindrical", "CYLINDRICAL"})) {
             entry.require("Type").fail(
-                "Chrono reads this as a lock, which is hardly meant; write Lock, or change the joint");
+                "Chrono reads this as a lock, which is hardly meant; write Lock, or change the "
+                "joint");
         } else
-            entry.require("Type").fail(
-                fmt::format("{} is no joint of Chrono's that is known here", entry.require("Type").found()));
+            entry.require("Type").fail(fmt::format("{} is no joint of Chrono's that is known here",
+                                                   entry.require("Type").found()));
     });
     g.each("Distance Constraints", [&](const Cursor& entry, const std::string& name) {
         const Place from{entry.value->line, "Distance Constraints/" + name};
@@ -647,12 +683,12 @@ void generic(Suspension& s) {
                 from);
     });
     g.each("TSDAs", [&](const Cursor& entry, const std::string& name) {
-        s.tsda(name, g.body(entry.require("Body1")), g.at(entry, "Point1"), g.body(entry.require("Body2")),
-               g.at(entry, "Point2"), entry);
+        s.tsda(name, g.body(entry.require("Body1")), g.at(entry, "Point1"),
+               g.body(entry.require("Body2")), g.at(entry, "Point2"), entry);
     });
     g.each("RSDAs", [&](const Cursor& entry, const std::string& name) {
-        s.rsda(name, g.body(entry.require("Body1")), g.body(entry.require("Body2")), g.at(entry, "Position"),
-               g.at(entry, "Axis").normalized(), entry);
+        s.rsda(name, g.body(entry.require("Body1")), g.body(entry.require("Body2")),
+               g.at(entry, "Position"), g.at(entry, "Axis").normalized(), entry);
     });
     both(s, [&] { s.spindle(g.body(s.at("Spindle/Attachment Body"))); });
 }
@@ -679,11 +715,13 @@ const Template templates[] = {
     {"DeDionAxle", false, [](Suspension& s) { dedion(s), rigid_wheels(s); }},
     {"ToeBarDeDionAxle", false, [](Suspension& s) { dedion(s), steered_wheels(s, false); }},
     {"LeafspringAxle", false, [](Suspension& s) { leafspring_guide(s), rigid_wheels(s); }},
-    {"ToeBarLeafspringAxle", false, [](Suspension& s) { leafspring_guide(s), steered_wheels(s, true); }},
+    {"ToeBarLeafspringAxle", false,
+     [](Suspension& s) { leafspring_guide(s), steered_wheels(s, true); }},
     {"PushPipeAxle", false, [](Suspension& s) { push_pipe(s), rigid_wheels(s); }},
     {"ToeBarPushPipeAxle", false, [](Suspension& s) { push_pipe(s), steered_wheels(s, true); }},
     {"RigidPanhardAxle", false, [](Suspension& s) { rigid_panhard(s), rigid_wheels(s); }},
-    {"ToeBarRigidPanhardAxle", false, [](Suspension& s) { rigid_panhard(s), steered_wheels(s, true); }},
+    {"ToeBarRigidPanhardAxle", false,
+     [](Suspension& s) { rigid_panhard(s), steered_wheels(s, true); }},
     {"SAELeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, false); }},
     {"SAEToeBarLeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, true); }},
     {"HendricksonPRIMAXX", false, hendrickson},
@@ -705,14 +743,15 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
         root.fail("expected an object: this is no suspension of Chrono::Vehicle");
     const std::string type = root.require("Type").text("a type");
     if (type != "Suspension")
-        root.require("Type").fail(
-            fmt::format("{} is no suspension; allowed: Suspension (of a wheeled vehicle; its file is named "
-                        "in the file of the vehicle)",
-                        reader::quote(type)));
+        root.require("Type").fail(fmt::format(
+            "{} is no suspension; allowed: Suspension (of a wheeled vehicle; its file is named "
+            "in the file of the vehicle)",
+            reader::quote(type)));
     const auto named = root.require("Template");
     const std::string name = named.text("a template");
     if (name == "RigidPinnedAxle" || name == "RigidSuspension")
-        named.fail(fmt::format("{}: no spring at all, and so nothing that carries the wheel", name));
+        named.fail(
+            fmt::format("{}: no spring at all, and so nothing that carries the wheel", name));
     const auto found = std::ranges::find(chrono::templates, name, &Template::name);
     if (found == std::end(chrono::templates)) {
         std::vector<std::string> known;
@@ -721,7 +760,8 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
                                reader::did_you_mean(name, known, "known")));
     }
     if (!options.wheel.empty())
-        reader::fail(file, 0, "--wheel", "a suspension of Chrono::Vehicle says itself which its wheels are");
+        reader::fail(file, 0, "--wheel",
+                     "a suspension of Chrono::Vehicle says itself which its wheels are");
 
     Draft draft;
     draft.title = root.optional("Name") ? root.require("Name").text("a name") : name;
@@ -729,7 +769,8 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
     draft.format = "Chrono::Vehicle " + name;
     draft.units = "{length: m, angle: rad, force: N}";
     draft.remarks = {
-        "m, N, kg, rad as in the file; x forward, y left, z up. Chassis, subchassis and steering are ground.",
+        "m, N, kg, rad as in the file; x forward, y left, z up. Chassis, subchassis and steering "
+        "are ground.",
         "The file has no gravity and no tyre: the branches move the wheels on jacks."};
     if (found->mirrors) draft.mirror = "left -> right";
     Suspension suspension(root, options, draft);

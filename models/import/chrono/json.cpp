@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
 namespace {
@@ -27,8 +27,9 @@ class Parser {
     [[noreturn]] void fail(const std::string& what) const { reader::fail(file_, line_, "", what); }
     [[noreturn]] void expected(const char* what) const {
         if (text_.empty()) fail(fmt::format("the file ends where {} is expected", what));
-        fail(fmt::format("expected {}, found {}", what,
-                         reader::quote(text_.substr(0, std::min<std::size_t>(text_.find('\n'), 20)))));
+        fail(fmt::format(
+            "expected {}, found {}", what,
+            reader::quote(text_.substr(0, std::min<std::size_t>(text_.find('\n'), 20)))));
     }
 
     void advance(std::size_t n) {
@@ -147,7 +148,8 @@ class Parser {
 }  // namespace
 
 Value parse_json(std::string_view text, const std::string& file) {
-    if (text.size() > largest_json) reader::fail(file, 0, "", "larger than 1 MiB, which no suspension is");
+    if (text.size() > largest_json)
+        reader::fail(file, 0, "", "larger than 1 MiB, which no suspension is");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.find('\0') != text.npos || !reader::is_utf8(text))
         reader::fail(file, 0, "", "not plain text (UTF-8): this is no JSON");

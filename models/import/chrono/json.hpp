@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "models/reader/yaml.hpp"
+#include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::chrono {
 

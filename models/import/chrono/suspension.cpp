@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "models/import/curves.hpp"
-#include "models/reader/words.hpp"
+#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
 namespace {
@@ -26,7 +26,8 @@ Vector3d vector(const Cursor& at) {
 struct WithoutInfluence {
     std::string_view key, why;
 };
-constexpr std::string_view of_motion = "being of motion alone", of_pictures = "being of pictures alone",
+constexpr std::string_view of_motion = "being of motion alone",
+                           of_pictures = "being of pictures alone",
                            of_nothing = "saying nothing of the mechanism";
 constexpr WithoutInfluence without_influence[] = {
     {"Inertia", of_motion},
@@ -111,7 +112,8 @@ Place Suspension::place(const char* path) const { return {at(path).value->line, 
 namespace {
 
 // Calls visit(scalar) for every scalar of a value.
-void visit_scalars(const reader::Value& value, const std::function<void(const reader::Value&)>& visit) {
+void visit_scalars(const reader::Value& value,
+                   const std::function<void(const reader::Value&)>& visit) {
     if (value.items.empty()) return visit(value);
     for (const auto& item : value.items) visit_scalars(item, visit);
 }
@@ -122,8 +124,8 @@ struct Unread {
     const reader::Value *object, *value;
     std::string path, key;
 };
-void find_unread(const reader::Accesses& accesses, const reader::Value& object, const std::string& path,
-                 std::vector<Unread>& unread) {
+void find_unread(const reader::Accesses& accesses, const reader::Value& object,
+                 const std::string& path, std::vector<Unread>& unread) {
     for (std::size_t k = 0; k < object.items.size(); ++k) {
         const auto& item = object.items[k];
         const bool has_key = object.kind == reader::Value::Kind::map;
@@ -145,12 +147,14 @@ void find_unread(const reader::Accesses& accesses, const reader::Value& object, 
 }  // namespace
 
 void Suspension::leave_out(const Cursor& field, const std::string& why) {
-    visit_scalars(*field.value, [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
+    visit_scalars(*field.value,
+                  [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
     if (side > 0) draft_.notes.leave_out(why, {field.value->line, field.path});
 }
 
 void Suspension::ignore(const Cursor& field, const std::string& why) {
-    visit_scalars(*field.value, [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
+    visit_scalars(*field.value,
+                  [&](const reader::Value& scalar) { field.accesses->read.insert(&scalar); });
     if (side > 0) draft_.notes.warn({field.value->line, field.path}, "not used: " + why);
 }
 
@@ -160,13 +164,13 @@ void Suspension::report_unread() {
     std::vector<Unread> unread;
     find_unread(*file_.accesses, *file_.value, "", unread);
     // (reason, key) -> " of part, part"
-    std::map<std::pair<std::string_view, std::string>, std::string> left_out;
+    std::map<std::pair<std::string_view, std::string>, std::string> omitted;
     for (const auto& [object, value, path, key] : unread) {
         const auto known = std::ranges::find(without_influence, key, &WithoutInfluence::key);
         if (known != std::end(without_influence)) {
             const std::string of =
                 path.size() > key.size() ? path.substr(0, path.size() - key.size() - 1) : "";
-            std::string& parts = left_out[{known->why, key}];
+            std::string& parts = omitted[{known->why, key}];
             if (!of.empty()) parts += (parts.empty() ? " of " : ", ") + of;
             continue;
         }
@@ -179,11 +183,12 @@ void Suspension::report_unread() {
             return std::ranges::find(object->keys, name) != object->keys.end();
         });
         for (const auto& field : without_influence) allowed.emplace_back(field.key);
-        notes.miss({value->line, path},
-                   is_known ? "given, but not used with what else is given"
-                            : "not known of this template" + reader::did_you_mean(key, allowed, "not given"));
+        notes.miss({value->line, path}, is_known
+                                            ? "given, but not used with what else is given"
+                                            : "not known of this template" +
+                                                  reader::did_you_mean(key, allowed, "not given"));
     }
-    for (const auto& [reason, parts] : left_out)
+    for (const auto& [reason, parts] : omitted)
         notes.leave_out(std::string(reason.first), {0, reason.second + parts});
 }
 
@@ -194,7 +199,8 @@ Vector3d Suspension::midpoint(const std::string& name, const char* first, const 
     const Vector3d a = point(first_path), b = point(second_path), middle = 0.5 * (a + b);
     hardpoint(sided(name + "." + first), a, first_path);
     hardpoint(sided(name + "." + second), b, second_path);
-    draft_.points.at(middle, sided(name), {0, fmt::format("midpoint of {} and {}", first_path, second_path)});
+    draft_.points.at(middle, sided(name),
+                     {0, fmt::format("midpoint of {} and {}", first_path, second_path)});
     return middle;
 }
 
@@ -202,7 +208,8 @@ std::string Suspension::hardpoint(const std::string& name, const Vector3d& p, co
     return draft_.points.at(p, name, path ? place(path) : Place{});
 }
 
-void Suspension::body(const std::string& name, const Vector3d& com, const char* part, const char* mass) {
+void Suspension::body(const std::string& name, const Vector3d& com, const char* part,
+                      const char* mass) {
     Fields fields;
     fields.add("origin", hardpoint(name + ".cm", com, nullptr));
     const std::string path = std::string(part) + "/" + mass;
@@ -214,11 +221,12 @@ void Suspension::body(const std::string& name, const Vector3d& com, const char* 
     draft_.notes.count("bodies");
 }
 
-void Suspension::joint(const std::string& name, const char* type, const std::string& i, const std::string& j,
-                       Fields fields, const Place& from) {
+void Suspension::joint(const std::string& name, const char* type, const std::string& i,
+                       const std::string& j, Fields fields, const Place& from) {
     Fields all;
     all.add("type", type).add("bodies", "[" + i + ", " + j + "]");
-    draft_.joints.push_back({joint_names_.take(name), "{" + all.text() + ", " + fields.text() + "}", from});
+    draft_.joints.push_back(
+        {joint_names_.take(name), "{" + all.text() + ", " + fields.text() + "}", from});
     draft_.notes.count("joints");
 }
 
@@ -228,18 +236,22 @@ void Suspension::spherical(const std::string& name, const std::string& i, const 
 }
 
 void Suspension::universal(const std::string& name, const std::string& i, const std::string& j,
-                           const Vector3d& p, const Vector3d& x, const Vector3d& y, const char* path) {
+                           const Vector3d& p, const Vector3d& x, const Vector3d& y,
+                           const char* path) {
     const Vector3d u = x.normalized(), v = (y - u.dot(y) * u).normalized();
     if (const double off = std::abs(u.dot(y.normalized())); off > 1e-9)
         draft_.notes.warn(
             place(path),
-            fmt::format("the axes of the universal joint are {:.2g} deg off the right angle; here the "
-                        "second is put right",
-                        std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
-    joint(
-        name, "universal", i, j,
-        Fields{}.add("at", hardpoint(name, p, path)).add("axis_i", direction(u)).add("axis_j", direction(v)),
-        place(path));
+            fmt::format(
+                "the axes of the universal joint are {:.2g} deg off the right angle; here the "
+                "second is put right",
+                std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
+    joint(name, "universal", i, j,
+          Fields{}
+              .add("at", hardpoint(name, p, path))
+              .add("axis_i", direction(u))
+              .add("axis_j", direction(v)),
+          place(path));
 }
 
 void Suspension::revolute(const std::string& name, const std::string& i, const std::string& j,
@@ -249,13 +261,14 @@ void Suspension::revolute(const std::string& name, const std::string& i, const s
           place(path));
 }
 
-void Suspension::fixed(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                       const char* path) {
+void Suspension::fixed(const std::string& name, const std::string& i, const std::string& j,
+                       const Vector3d& p, const char* path) {
     joint(name, "fixed", i, j, Fields{}.add("at", hardpoint(name, p, path)), place(path));
 }
 
 void Suspension::distance(const std::string& name, const std::string& i, const Vector3d& from,
-                          const char* path_i, const std::string& j, const Vector3d& to, const char* path_j) {
+                          const char* path_i, const std::string& j, const Vector3d& to,
+                          const char* path_j) {
     joint(name, "distance", i, j,
           Fields{}
               .add("from", hardpoint(name + ".inner", from, path_i))
@@ -266,7 +279,9 @@ void Suspension::distance(const std::string& name, const std::string& i, const V
 void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
                           const Vector3d& p, const Vector3d& normal, const Place& from) {
     joint(name, "in_plane", i, j,
-          Fields{}.add("at", hardpoint(name, p, nullptr)).add("normal", direction(normal.normalized())),
+          Fields{}
+              .add("at", hardpoint(name, p, nullptr))
+              .add("normal", direction(normal.normalized())),
           from);
 }
 
@@ -274,8 +289,9 @@ void Suspension::in_plane(const std::string& name, const std::string& i, const s
 // along its axes. F is isotropic, so it acts along the line of both points. T has an energy if
 // K_rot is isotropic. Otherwise, as in place of a revolute, it is not conjugate, as in Chrono.
 void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
-                                  const std::string& body2, const Vector3d& p, const Matrix3d& frame,
-                                  const char* path, const std::optional<Cursor>& data) {
+                                  const std::string& body2, const Vector3d& p,
+                                  const Matrix3d& frame, const char* path,
+                                  const std::optional<Cursor>& data) {
     if (!data) {
         if (kind == Kind::revolute) return revolute(name, body1, body2, p, frame.col(2), path);
         if (kind == Kind::universal)
@@ -291,15 +307,16 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
             leave_out(*unused, "as Chrono reads it and does not use it");
     }
     const auto rate = [&](int axis) {
-        const bool is_free = kind == Kind::spherical || (kind == Kind::revolute ? axis == 2 : axis != 2);
+        const bool is_free =
+            kind == Kind::spherical || (kind == Kind::revolute ? axis == 2 : axis != 2);
         return is_free ? free : rotational;
     };
     Fields fields;
     fields.add("bodies", "[" + body2 + ", " + body1 + "]").add("at", hardpoint(name, p, path));
     const bool is_round = rate(0) == rate(1) && rate(1) == rate(2);
     if (!is_round)
-        fields.add("frame",
-                   fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)), direction(frame.col(0))));
+        fields.add("frame", fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)),
+                                        direction(frame.col(0))));
     fields.add("rates", fmt::format("[{0}, {0}, {0}]", number(linear)))
         .add("rotational_rates",
              fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
@@ -332,7 +349,8 @@ Suspension::Law Suspension::law_of(const Cursor& data) {
                                          : "Chrono takes the Damping Curve Data instead: there "
                                            "is no spring");
     if (law == Law::damper)
-        for (const char* field : {"Free Length", "Free Angle", "Preload", "Minimum Length", "Maximum Length"})
+        for (const char* field :
+             {"Free Length", "Free Angle", "Preload", "Minimum Length", "Maximum Length"})
             unused(field, "Chrono does not use it for a damper");
     return law;
 }
@@ -351,10 +369,10 @@ void Suspension::require_rising(const Cursor& at, const Rows& rows) {
     if (rows.size() < 2) at.fail("a curve needs at least two rows");
     for (std::size_t n = 1; n < rows.size(); ++n)
         if (!(rows[n].first > rows[n - 1].first) || rows[n].second < rows[n - 1].second)
-            at.fail(
-                fmt::format("row {}: a deflection that does not rise, or a force that falls, which no "
-                            "spring of a scene has",
-                            n + 1));
+            at.fail(fmt::format(
+                "row {}: a deflection that does not rise, or a force that falls, which no "
+                "spring of a scene has",
+                n + 1));
 }
 
 // Rows of the map over speed (rows) and deformation (columns) at speed zero, by linear
@@ -365,7 +383,8 @@ Rows Suspension::map_at_rest(const Cursor& data, double offset, double preload) 
     std::vector<double> speeds;
     std::vector<std::vector<double>> forces;
     for (const Cursor& line : map.items()) {
-        const auto cells = line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
+        const auto cells =
+            line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
         speeds.push_back(cells[0].number());
         if (speeds.size() > 1 && !(speeds.back() > speeds[speeds.size() - 2]))
             line.fail("its speed does not rise from row to row");
@@ -374,7 +393,8 @@ Rows Suspension::map_at_rest(const Cursor& data, double offset, double preload) 
     }
     if (speeds.size() < 2) map.fail("a map needs at least two speeds");
     const auto at_least = std::ranges::lower_bound(speeds, 0.0) - speeds.begin();
-    const std::size_t v = std::clamp<std::size_t>(static_cast<std::size_t>(at_least), 1, speeds.size() - 1);
+    const std::size_t v =
+        std::clamp<std::size_t>(static_cast<std::size_t>(at_least), 1, speeds.size() - 1);
     const double t = -speeds[v - 1] / (speeds[v] - speeds[v - 1]);
     Rows rows;
     for (std::size_t n = 0; n < columns.size(); ++n)
@@ -408,13 +428,14 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     };
     const Law law = law_of(data);
     if (law == Law::none)
-        return draft_.notes.miss(here,
-                                 "neither a spring nor a damper: Chrono has no element of these fields");
+        return draft_.notes.miss(
+            here, "neither a spring nor a damper: Chrono has no element of these fields");
     if (law == Law::damper) return put_damper();
     const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
     auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
     if (least.has_value() != most.has_value()) {
-        ignore(least ? *least : *most, "Chrono makes stops where both lengths are given, and here none");
+        ignore(least ? *least : *most,
+               "Chrono makes stops where both lengths are given, and here none");
         least = most = std::nullopt;
     }
     // The force at the design position, pushing apart, and the rows from l - L0 on.
@@ -428,7 +449,8 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
         if (rate == 0) {
             is_nothing = preload == 0;
             if (!is_nothing)
-                fields.add("curve", linear({{-0.5 * drawn, -preload}, {0.5 * drawn, -preload}}, true));
+                fields.add("curve",
+                           linear({{-0.5 * drawn, -preload}, {0.5 * drawn, -preload}}, true));
         } else if (preload == 0) {
             fields.add("rate", rate).add("free_length", free);
         } else if (const double length = free + preload / rate; length > 0) {
@@ -458,18 +480,19 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     if (is_nothing && !least) return put_damper();
     if (side > 0) {
         if (force < 0 && !is_nothing)
-            draft_.notes.warn(here, fmt::format("in tension at the design position: {:.4g} N", -force));
+            draft_.notes.warn(here,
+                              fmt::format("in tension at the design position: {:.4g} N", -force));
         if (least && least->number() > most->number())
-            draft_.notes.warn(
-                here,
-                fmt::format(
-                    "its minimum length {} is above its maximum length {}: both stops are always closed",
-                    least->value->text, most->value->text));
+            draft_.notes.warn(here, fmt::format("its minimum length {} is above its maximum length "
+                                                "{}: both stops are always closed",
+                                                least->value->text, most->value->text));
         else if (least && (least->number() > drawn || most->number() < drawn))
-            draft_.notes.warn(here, fmt::format("a stop is closed at the design length {:.4g} m", drawn));
+            draft_.notes.warn(here,
+                              fmt::format("a stop is closed at the design length {:.4g} m", drawn));
     }
     const auto stop = [&](double clearance) {
-        return fmt::format("{{clearance: {}, curve: {}}}", computed(clearance), linear(stop_table, true));
+        return fmt::format("{{clearance: {}, curve: {}}}", computed(clearance),
+                           linear(stop_table, true));
     };
     if (least)
         fields.add(is_nothing ? "bump" : "bump_stop", stop(drawn - least->number()))
@@ -480,13 +503,13 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
 
 // Rotational spring of body 2 relative to body 1 about the axis: at rest the torque on body 2 is
 // P - k (angle - free), and the angle is 0 as drawn.
-void Suspension::rsda(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                      const Vector3d& axis, const Cursor& data) {
+void Suspension::rsda(const std::string& name, const std::string& i, const std::string& j,
+                      const Vector3d& p, const Vector3d& axis, const Cursor& data) {
     const Place here{data.value->line, data.path};
     const Law law = law_of(data);
     if (law == Law::none || law == Law::map)
-        return draft_.notes.miss(here,
-                                 "neither a spring nor a damper: Chrono has no element of these fields");
+        return draft_.notes.miss(
+            here, "neither a spring nor a damper: Chrono has no element of these fields");
     if (law == Law::damper) {
         draft_.notes.leave_out("being of motion alone", here);
         return;
@@ -494,10 +517,10 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
     const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
     const double free = data.optional("Free Angle") ? data.require("Free Angle").number() : 0;
     if (side < 0 && (preload != 0 || free != 0))
-        draft_.notes.warn(
-            here,
-            "its axis has y turned round on the right, so that its torque at rest is not the mirror "
-            "image of the left one's; here as in Chrono");
+        draft_.notes.warn(here,
+                          "its axis has y turned round on the right, so that its torque at rest is "
+                          "not the mirror "
+                          "image of the left one's; here as in Chrono");
     Fields law_fields;
     if (law == Law::linear) {
         const double rate = data.require("Spring Coefficient").number();
@@ -505,9 +528,9 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
         if (const double moment = -rate * free - preload; moment != 0)
             law_fields.add("preload_moment", computed(moment));
     } else {
-        law_fields.add("curve",
-                       "{table: " + table(rows_of(data.require("Spring Curve Data"), free, preload)) +
-                           ", interpolation: linear, outside: unknown}");
+        law_fields.add(
+            "curve", "{table: " + table(rows_of(data.require("Spring Curve Data"), free, preload)) +
+                         ", interpolation: linear, outside: unknown}");
     }
     torsion(name, i, j, p, axis, law_fields, here);
 }
@@ -522,7 +545,8 @@ void Suspension::torsion(const std::string& name, const std::string& i, const st
 }
 
 void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
-                         const Vector3d& p, const Vector3d& axis, const Fields& law, const Place& from) {
+                         const Vector3d& p, const Vector3d& axis, const Fields& law,
+                         const Place& from) {
     Fields fields;
     fields.add("bodies", "[" + i + ", " + j + "]")
         .add("at", hardpoint(name, p, nullptr))
@@ -545,8 +569,9 @@ void Suspension::spindle(const std::string& carrier) {
         return given ? given->number() * std::numbers::pi / 180 : 0.0;
     };
     const double toe = angle("Toe Angle (deg)"), camber = angle("Camber Angle (deg)");
-    Vector3d axis = Eigen::AngleAxisd(-side * toe, Vector3d::UnitZ()) *
-                    (Eigen::AngleAxisd(-side * camber, Vector3d::UnitX()) * Vector3d(Vector3d::UnitY()));
+    Vector3d axis =
+        Eigen::AngleAxisd(-side * toe, Vector3d::UnitZ()) *
+        (Eigen::AngleAxisd(-side * camber, Vector3d::UnitX()) * Vector3d(Vector3d::UnitY()));
     axis *= side;
     draft_.wheels.push_back({side > 0 ? "left" : "right",
                              "{" +
@@ -560,9 +585,10 @@ void Suspension::spindle(const std::string& carrier) {
                              place("Spindle")});
 }
 
-void Suspension::link(const std::string& name, const char* part, const Vector3d& com, const std::string& i,
-                      const Vector3d& at_i, const std::string& j, const Vector3d& at_j, bool universal_at_j,
-                      const char* path_i, const char* path_j) {
+void Suspension::link(const std::string& name, const char* part, const Vector3d& com,
+                      const std::string& i, const Vector3d& at_i, const std::string& j,
+                      const Vector3d& at_j, bool universal_at_j, const char* path_i,
+                      const char* path_j) {
     body(name, com, part);
     spherical(name + ".inner", i, name, at_i, path_i);
     if (!universal_at_j) return spherical(name + ".outer", name, j, at_j, path_j);
@@ -576,15 +602,16 @@ void Suspension::tierod(const char* part, const char* chassis_end, const char* o
                       outer_path = std::string(part) + "/" + outer_end;
     const Vector3d inner = point(inner_path.c_str()), outer = point(outer_path.c_str());
     const std::string name = sided("tierod"), path(part);
-    const bool is_body =
-        has((path + "/Mass").c_str()) && has((path + "/Inertia").c_str()) && has((path + "/Radius").c_str());
+    const bool is_body = has((path + "/Mass").c_str()) && has((path + "/Inertia").c_str()) &&
+                         has((path + "/Radius").c_str());
     if (!is_body) {
         for (const char* field : {"/Mass", "/Bushing Data"})
             if (has((path + field).c_str()))
-                ignore(
-                    at((path + field).c_str()),
-                    "Chrono makes a tie rod without Mass, Inertia and Radius a distance, rigid and massless");
-        return distance(name, "ground", inner, inner_path.c_str(), on_outer, outer, outer_path.c_str());
+                ignore(at((path + field).c_str()),
+                       "Chrono makes a tie rod without Mass, Inertia and Radius a distance, rigid "
+                       "and massless");
+        return distance(name, "ground", inner, inner_path.c_str(), on_outer, outer,
+                        outer_path.c_str());
     }
     body(name, 0.5 * (inner + outer), part);
     std::optional<Cursor> data;
@@ -592,7 +619,8 @@ void Suspension::tierod(const char* part, const char* chassis_end, const char* o
     Matrix3d A = frame_along(outer - inner, Vector3d::UnitX());
     joint_or_bushing(Kind::spherical, name + ".outer", on_outer, name, outer, Matrix3d::Identity(),
                      outer_path.c_str(), data);
-    joint_or_bushing(Kind::universal, name + ".inner", "ground", name, inner, A, inner_path.c_str(), data);
+    joint_or_bushing(Kind::universal, name + ".inner", "ground", name, inner, A, inner_path.c_str(),
+                     data);
 }
 
 }  // namespace elastocheck::importer::chrono

@@ -8,7 +8,7 @@
 
 #include "models/import/curves.hpp"
 #include "models/import/import.hpp"
-#include "models/reader/cursor.hpp"
+#include "models/reader/document/cursor.hpp"
 
 namespace elastocheck::importer::chrono {
 
@@ -34,7 +34,9 @@ class Suspension {
 
     // ---- The side. Mirrored scenes are written with left entries only.
     int side = +1;
-    std::string sided(const std::string& name) const { return name + (side > 0 ? "_left" : "_right"); }
+    std::string sided(const std::string& name) const {
+        return name + (side > 0 ? "_left" : "_right");
+    }
     Vector3d mirrored(Vector3d v) const {
         if (side < 0) v.y() = -v.y();
         return v;
@@ -51,25 +53,26 @@ class Suspension {
     // ---- Writing. A body or a hardpoint is named by the caller, sided or not.
     // Midpoint of two points of the file, named `name` on its side. Both points stay hardpoints,
     // "name.first" and "name.second".
-    Vector3d midpoint(const std::string& name, const char* first, const char* first_path, const char* second,
-                      const char* second_path);
+    Vector3d midpoint(const std::string& name, const char* first, const char* first_path,
+                      const char* second, const char* second_path);
     std::string hardpoint(const std::string& name, const Vector3d& p, const char* path);
-    void body(const std::string& name, const Vector3d& com, const char* part, const char* mass = "Mass");
-    void joint(const std::string& name, const char* type, const std::string& i, const std::string& j,
-               Fields fields, const Place& from);
-    void spherical(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                   const char* path);
+    void body(const std::string& name, const Vector3d& com, const char* part,
+              const char* mass = "Mass");
+    void joint(const std::string& name, const char* type, const std::string& i,
+               const std::string& j, Fields fields, const Place& from);
+    void spherical(const std::string& name, const std::string& i, const std::string& j,
+                   const Vector3d& p, const char* path);
     // x is fixed to body i and y to body j.
-    void universal(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                   const Vector3d& x, const Vector3d& y, const char* path);
-    void revolute(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                  const Vector3d& axis, const char* path);
-    void fixed(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-               const char* path);
-    void distance(const std::string& name, const std::string& i, const Vector3d& from, const char* path_i,
-                  const std::string& j, const Vector3d& to, const char* path_j);
-    void in_plane(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                  const Vector3d& normal, const Place& from);
+    void universal(const std::string& name, const std::string& i, const std::string& j,
+                   const Vector3d& p, const Vector3d& x, const Vector3d& y, const char* path);
+    void revolute(const std::string& name, const std::string& i, const std::string& j,
+                  const Vector3d& p, const Vector3d& axis, const char* path);
+    void fixed(const std::string& name, const std::string& i, const std::string& j,
+               const Vector3d& p, const char* path);
+    void distance(const std::string& name, const std::string& i, const Vector3d& from,
+                  const char* path_i, const std::string& j, const Vector3d& to, const char* path_j);
+    void in_plane(const std::string& name, const std::string& i, const std::string& j,
+                  const Vector3d& p, const Vector3d& normal, const Place& from);
 
     // A joint of Chrono: with "Bushing Data" under `data` a bushing at its frame, else a joint of
     // the given kind.
@@ -77,13 +80,14 @@ class Suspension {
                           const std::string& body2, const Vector3d& p, const Matrix3d& frame,
                           const char* path, const std::optional<reader::Cursor>& data);
     // A translational spring and damper from `i` (on the chassis) to `j`.
-    void tsda(const std::string& name, const std::string& i, const Vector3d& from, const std::string& j,
-              const Vector3d& to, const reader::Cursor& data);
+    void tsda(const std::string& name, const std::string& i, const Vector3d& from,
+              const std::string& j, const Vector3d& to, const reader::Cursor& data);
     // A rotational spring and damper of `j` relative to `i`.
-    void rsda(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-              const Vector3d& axis, const reader::Cursor& data);
-    void torsion(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                 const Vector3d& axis, double rate, double moment, const char* path);
+    void rsda(const std::string& name, const std::string& i, const std::string& j,
+              const Vector3d& p, const Vector3d& axis, const reader::Cursor& data);
+    void torsion(const std::string& name, const std::string& i, const std::string& j,
+                 const Vector3d& p, const Vector3d& axis, double rate, double moment,
+                 const char* path);
 
     // The spindle, held on `carrier`, and the wheel on it.
     void spindle(const std::string& carrier);
@@ -108,8 +112,8 @@ class Suspension {
     static Rows rows_of(const reader::Cursor& curve, double offset, double preload);
     static Rows map_at_rest(const reader::Cursor& data, double offset, double preload);
     static void require_rising(const reader::Cursor& at, const Rows& rows);
-    void torsion(const std::string& name, const std::string& i, const std::string& j, const Vector3d& p,
-                 const Vector3d& axis, const Fields& law, const Place& from);
+    void torsion(const std::string& name, const std::string& i, const std::string& j,
+                 const Vector3d& p, const Vector3d& axis, const Fields& law, const Place& from);
 
     const reader::Cursor& file_;
     const Options& options_;

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "models/import/import.hpp"
-#include "models/reader/property_file.hpp"
-#include "models/reader/words.hpp"
-#include "models/reader/yaml.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
+#include "models/reader/tables/property_file.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -20,7 +20,8 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
         std::abs(value) > 1e30)
-        reader::fail(file.file, line, "HARDPOINT", fmt::format("{} is no number", reader::quote(text)));
+        reader::fail(file.file, line, "HARDPOINT",
+                     fmt::format("{} is no number", reader::quote(text)));
     return value;
 }
 
@@ -31,9 +32,9 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
 Draft import_subsystem(std::string_view text, const std::string& name, const Options& options) {
     const std::string axes = options.axes.empty() ? "x-rearward,y-right" : options.axes;
     if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
-        reader::fail(
-            name, 0, "--axes",
-            fmt::format("{} are no axes; allowed: {}", reader::quote(axes), fmt::join(axes_of_tables, " ")));
+        reader::fail(name, 0, "--axes",
+                     fmt::format("{} are no axes; allowed: {}", reader::quote(axes),
+                                 fmt::join(axes_of_tables, " ")));
     const double along_x = axes.starts_with("x-forward") ? 1 : -1,
                  along_y = axes.ends_with("y-left") ? 1 : -1;
     const double along_z = along_x * along_y;  // a rotation: the frame stays right-handed
@@ -43,10 +44,11 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     draft.source = name;
     draft.format = "hardpoints of an Adams/Car subsystem";
     draft.units = "{length: mm, angle: deg, force: N}";
-    draft.remarks = {fmt::format("Axes turned from {}, z {} to x forward, y left, z up (ISO 8855).", axes,
-                                 along_z > 0 ? "up" : "down"),
-                     "Hardpoints alone: joints and bodies are in the subsystem's template, which is another "
-                     "file. Put yours below."};
+    draft.remarks = {
+        fmt::format("Axes turned from {}, z {} to x forward, y left, z up (ISO 8855).", axes,
+                    along_z > 0 ? "up" : "down"),
+        "Hardpoints alone: joints and bodies are in the subsystem's template, which is another "
+        "file. Put yours below."};
     draft.points = Hardpoints(1);
     bool any_pair = false;
     for (const auto& block : file.blocks) {
@@ -60,7 +62,8 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             } else if (block.name != "UNITS") {
                 draft.notes.leave_out(
                     "being no hardpoints",
-                    {block.line, block.name + (block.subblock.empty() ? "" : " " + block.subblock)});
+                    {block.line,
+                     block.name + (block.subblock.empty() ? "" : " " + block.subblock)});
             }
             continue;
         }
@@ -74,8 +77,8 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             reader::fail(file.file, block.line, "HARDPOINT", fmt::format("no column {}", wanted));
         };
         if (block.table.columns.empty()) continue;
-        const std::size_t of_name = column("hardpoint_name"), of_side = column("symmetry"), x = column("x"),
-                          y = column("y"), z = column("z");
+        const std::size_t of_name = column("hardpoint_name"), of_side = column("symmetry"),
+                          x = column("x"), y = column("y"), z = column("z");
         for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
             const auto& row = block.table.rows[n];
             const int line = block.table.lines[n];
@@ -86,12 +89,14 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             const std::string& side = row[of_side];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";
-            const std::string called = row[of_name] + (pair ? side == "right" ? "_right" : "_left" : "");
+            const std::string called =
+                row[of_name] + (pair ? side == "right" ? "_right" : "_left" : "");
             draft.points.add(p, called, {line, row[of_name]});
             draft.notes.count("HARDPOINT");
         }
     }
-    if (draft.points.entries().empty()) reader::fail(file.file, 0, "HARDPOINT", "no hardpoint in this file");
+    if (draft.points.entries().empty())
+        reader::fail(file.file, 0, "HARDPOINT", "no hardpoint in this file");
     if (any_pair) draft.mirror = "left -> right";
     return draft;
 }

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
 #include "reports/tables/select.hpp"
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -36,9 +36,11 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
                   .y = ""};
     FigureGroup group;
     group.table = page_table(
-        fmt::format("Gap at the end of branch {}, {}: whole = lever + axis + load + rest", name, reading),
+        fmt::format("Gap at the end of branch {}, {}: whole = lever + axis + load + rest", name,
+                    reading),
         shares, gap_columns);
-    for (const auto& term : terms) figure.series.push_back({term.name, Series::Style::bars, term.colour});
+    for (const auto& term : terms)
+        figure.series.push_back({term.name, Series::Style::bars, term.colour});
     double row = 0;
     std::string said;
     for (std::size_t r = 0; r < shares.rows.size(); ++r) {
@@ -50,10 +52,11 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
         for (std::size_t t = 0; t < std::size(terms); ++t) {
             const double value = 100 * number(shares, r, terms[t].key) / range;
             const double middle = row + 0.26 * (1 - static_cast<double>(t));
-            figure.series[t].rows.push_back({value / 2, middle, std::min(0.0, value), std::max(0.0, value),
-                                             middle - 0.11, middle + 0.11});
+            figure.series[t].rows.push_back({value / 2, middle, std::min(0.0, value),
+                                             std::max(0.0, value), middle - 0.11, middle + 0.11});
         }
-        said += fmt::format(" {}: {} % of its range.", channel.label(), number(100 * whole / range, 2));
+        said +=
+            fmt::format(" {}: {} % of its range.", channel.label(), number(100 * whole / range, 2));
     }
     if (row == 0) return std::nullopt;
     figure.y_low = row - 0.6;

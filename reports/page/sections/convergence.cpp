@@ -4,16 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
 #include "reports/tables/select.hpp"
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-double worse(double a, double b) { return std::isnan(a) || std::isnan(b) ? NAN : std::max(a, std::abs(b)); }
+double worse(double a, double b) {
+    return std::isnan(a) || std::isnan(b) ? NAN : std::max(a, std::abs(b));
+}
 
 // Largest errors over the positions at the end of a branch, per step count.
 struct Levels {
@@ -38,7 +40,8 @@ Levels levels_of(const compare::Table& table) {
     return levels;
 }
 
-std::vector<std::vector<double>> rows(const std::vector<double>& steps, const std::vector<double>& values) {
+std::vector<std::vector<double>> rows(const std::vector<double>& steps,
+                                      const std::vector<double>& values) {
     std::vector<std::vector<double>> result;
     for (std::size_t l = 0; l < steps.size(); ++l)
         if (values[l] > 1e-16) result.push_back({steps[l], values[l]});
@@ -51,7 +54,8 @@ std::string spoken(const std::string& reading) { return ChannelInfo{reading, ""}
 // Step errors of one method over one branch.
 std::optional<FigureGroup> group(const std::string& branch, const compare::Table& table) {
     FigureGroup group;
-    group.table.caption = fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
+    group.table.caption =
+        fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
     group.table.columns = {{"steps"}, {"|Φ|, eq. (31)"}};
     group.table.folded = true;
     std::vector<Levels> both;
@@ -67,18 +71,20 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
                       .y = "at the end of the branch [mm]",
                       .log_x = true,
                       .log_y = true};
-        figure.series = {{"error to the truth", Series::Style::line_points, vermilion, 6, rows(steps, truth)},
-                         {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
-                         {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
+        figure.series = {
+            {"error to the truth", Series::Style::line_points, vermilion, 6, rows(steps, truth)},
+            {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
+            {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
         std::erase_if(figure.series, [](const Series& s) { return s.rows.empty(); });
         if (figure.series.empty()) continue;
         figure.description = fmt::format(
-            "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes from {} to {} "
+            "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes from "
+            "{} to {} "
             "mm, "
             "the step error from {} to {} mm, the error to the truth from {} to {} mm.",
             name, number(steps.front(), 4), number(steps.back(), 4), number(phi.front(), 2),
-            number(phi.back(), 2), number(step.front(), 2), number(step.back(), 2), number(truth.front(), 2),
-            number(truth.back(), 2));
+            number(phi.back(), 2), number(step.front(), 2), number(step.back(), 2),
+            number(truth.front(), 2), number(truth.back(), 2));
         group.table.columns.push_back({fmt::format("step error, {}", name)});
         group.table.columns.push_back({fmt::format("error to the truth, {}", name)});
         group.figures.push_back(std::move(figure));
@@ -94,7 +100,8 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
         }
         group.table.rows.push_back(row);
     }
-    group.caption = fmt::format("Branch {}: worst position at its end, published recursion.", branch);
+    group.caption =
+        fmt::format("Branch {}: worst position at its end, published recursion.", branch);
     return group;
 }
 
@@ -117,7 +124,9 @@ std::optional<Section> convergence_section(const Field& scene) {
             if (const auto& why = words(published, r, "not studied");
                 !why.empty() && words(published, r, "reading") != readings.front())
                 section.words["notes"].push_back(
-                    {{"branch", branch}, {"reading", spoken(words(published, r, "reading"))}, {"why", why}});
+                    {{"branch", branch},
+                     {"reading", spoken(words(published, r, "reading"))},
+                     {"why", why}});
         section.tables.push_back(
             page_table(fmt::format("Orders and gaps, branch {}, {}", branch, readings.front()),
                        where(found, "reading", readings.front()), study_columns));

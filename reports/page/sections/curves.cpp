@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/candidate.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/measured.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/page/sections/inputs/candidate.hpp"
+#include "reports/page/sections/inputs/measured.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -23,7 +23,8 @@ struct Output {
 std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     std::vector<Output> outputs;
     const auto channels = main_channels_of(scene);
-    const bool wheel = std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.angle(); });
+    const bool wheel =
+        std::ranges::any_of(channels, [](const ChannelInfo& c) { return c.angle(); });
     for (const auto& c : channels) {
         const auto names = [&](std::string_view what) {
             return c.name == what || c.name.ends_with("." + std::string(what));
@@ -41,8 +42,8 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
     }
     for (const auto& c : channels) {
         if (wheel && (c.name.find("wheel_centre") != std::string::npos || c.angle())) continue;
-        outputs.push_back(
-            {slug(c.name), c.label(), fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
+        outputs.push_back({slug(c.name), c.label(),
+                           fmt::format("{}, change [{}]", c.label(), c.unit), c.name, true});
     }
     if (!sweep.abscissa.empty() && !measured_over_parameter(scene, sweep)) {
         if (compare::parameter_word(sweep.unit) == "load") {
@@ -76,7 +77,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
     Table table;
     table.folded = true;
     std::vector<std::pair<double, std::vector<std::string>>> rows;
-    const auto measured = measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
+    const auto measured =
+        measured_series(scene, sweep, output.load ? "" : output.channel, output.change);
     const bool fourth = measured && !output.load;  // has its own column
     const bool travel = !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
     double most = 0;
@@ -95,21 +97,24 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         }
         const LegCurve a = curve_of(branch, "equilibrium"), b = curve_of(branch, "recursive"),
                        e = curve_of(branch, "energy");
-        const auto points =
-            fourth ? measured_for(scene, sweep, branch, output.channel, output.change) : std::nullopt;
+        const auto points = fourth
+                                ? measured_for(scene, sweep, branch, output.channel, output.change)
+                                : std::nullopt;
         const auto va = values_of(a, output), vb = values_of(b, output), ve = values_of(e, output);
         for (const auto k : thinned(a.a.size(), 6)) {
             if (k == 0 && !rows.empty()) continue;
             std::vector<std::string> row{number(a.a[k], 4)};
             if (output.load) {
-                for (const auto* c : {&a, &e, &b}) row.push_back(k < c->x.size() ? number(c->x[k], 5) : "–");
+                for (const auto* c : {&a, &e, &b})
+                    row.push_back(k < c->x.size() ? number(c->x[k], 5) : "–");
             } else {
                 if (travel) row.push_back(k < a.x.size() ? number(a.x[k], 4) : "–");
-                for (const auto* v : {&va, &ve, &vb}) row.push_back(k < v->size() ? value((*v)[k]) : "–");
+                for (const auto* v : {&va, &ve, &vb})
+                    row.push_back(k < v->size() ? value((*v)[k]) : "–");
                 if (fourth)
-                    row.push_back(
-                        points ? value(value_between(*points, travel && k < a.x.size() ? a.x[k] : a.a[k]))
-                               : "–");
+                    row.push_back(points ? value(value_between(
+                                               *points, travel && k < a.x.size() ? a.x[k] : a.a[k]))
+                                         : "–");
             }
             rows.emplace_back(a.a[k], row);
         }
@@ -143,18 +148,22 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
         if (row.size() == 2) low = std::min(low, row[1]), high = std::max(high, row[1]);
     const std::string from = number(low), to = number(high);
     figure.description = fmt::format(
-        "{} over {}: by the full solution {}. The points of its check by energy lie on its line; the "
+        "{} over {}: by the full solution {}. The points of its check by energy lie on its line; "
+        "the "
         "published "
         "recursion's line is drawn over it.",
-        output.axis, figure.x, from == to ? from + " throughout" : fmt::format("from {} to {}", from, to));
-    return FigureGroup{fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name), {figure}, table};
+        output.axis, figure.x,
+        from == to ? from + " throughout" : fmt::format("from {} to {}", from, to));
+    return FigureGroup{
+        fmt::format("{} over {}, {}.", output.title, figure.x, sweep.name), {figure}, table};
 }
 
 // Every main output at the end of a branch, by leg.
 Table outputs(const Field& scene, const Field& branch) {
     Table table{
-        .caption = fmt::format("Outputs at the end ({} {}) of branch {}", number(branch["to"].number(), 4),
-                               branch["unit"].text(), branch["name"].text()),
+        .caption =
+            fmt::format("Outputs at the end ({} {}) of branch {}", number(branch["to"].number(), 4),
+                        branch["unit"].text(), branch["name"].text()),
         .columns = {{"output", true}, {"published recursion"}, {"equilibrium"}, {"energy"}}};
     for (const auto& channel : channels_of(scene)) {
         if (!channel.main) continue;
@@ -175,8 +184,10 @@ std::optional<Section> curves_section(const Field& scene) {
     Section section{.id = "curves", .title = "Outputs over what drives them"};
     for (const auto& sweep : sweeps_of(scene))
         for (const auto& output : outputs_of(scene, sweep))
-            if (auto made = group(scene, sweep, output)) section.figures.push_back(std::move(*made));
-    for (const auto& branch : scene["branches"].items()) section.tables.push_back(outputs(scene, branch));
+            if (auto made = group(scene, sweep, output))
+                section.figures.push_back(std::move(*made));
+    for (const auto& branch : scene["branches"].items())
+        section.tables.push_back(outputs(scene, branch));
     section.words["wheel"] =
         std::ranges::any_of(main_channels_of(scene), [](const auto& c) { return c.angle(); });
     return section;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -41,7 +41,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     std::erase_if(channels, [&](const ChannelInfo& c) { return c.unit != unit; });
     if (channels.empty()) return std::nullopt;
     const bool angle = unit == "deg";
-    const std::string at_parameter = sweep.at_equal_parameter(), at_abscissa = sweep.at_equal_abscissa();
+    const std::string at_parameter = sweep.at_equal_parameter(),
+                      at_abscissa = sweep.at_equal_abscissa();
     Curves curves;
     curves.load.title = "published, " + at_parameter;
     curves.travel.title = "published, " + at_abscissa;
@@ -61,9 +62,11 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     std::vector<std::pair<double, std::vector<std::string>>> rows_by_load;
     for (const auto& branch : sweep.branches) {
         const LegCurve a = curve_of(branch, "equilibrium");
-        const auto profile = [&](const char* reading) { return branch["profiles"][reading][unit].numbers(); };
-        const Profile by_load = profile("at_equal_parameter"), by_travel = profile("at_equal_abscissa"),
-                      doubt = profile("references");
+        const auto profile = [&](const char* reading) {
+            return branch["profiles"][reading][unit].numbers();
+        };
+        const Profile by_load = profile("at_equal_parameter"),
+                      by_travel = profile("at_equal_abscissa"), doubt = profile("references");
         for (const auto* one : {&by_load, &by_travel, &doubt})
             if (one->size() > a.a.size()) branch["profiles"].fail("more numbers than points");
         raise_peak(load_peak, by_load);
@@ -90,9 +93,10 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
             if (recommended) {
                 std::size_t nearest = 0;
                 for (std::size_t l = 0; l < rung.size(); ++l)
-                    if (std::abs(rung_load[l] - a.a[k]) < std::abs(rung_load[nearest] - a.a[k])) nearest = l;
-                const bool same =
-                    !rung.empty() && std::abs(rung_load[nearest] - a.a[k]) <= 1e-9 * std::abs(a.a.back());
+                    if (std::abs(rung_load[l] - a.a[k]) < std::abs(rung_load[nearest] - a.a[k]))
+                        nearest = l;
+                const bool same = !rung.empty() && std::abs(rung_load[nearest] - a.a[k]) <=
+                                                       1e-9 * std::abs(a.a.back());
                 row.push_back(same ? number(rung[nearest]) : "–");
             }
             row.push_back(k < doubt.size() ? number(doubt[k]) : "–");
@@ -101,12 +105,13 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     }
     std::ranges::sort(rows_by_load, {}, [](const auto& row) { return row.first; });
     for (auto& [load, row] : rows_by_load) table.rows.push_back(std::move(row));
-    Figure figure{.id = fmt::format("deviation-{}-{}", slug(sweep.name), unit),
-                  .title = fmt::format("{}: worst deviation, {}", angle ? "Angles" : "Positions", sweep.name),
-                  .x = sweep.parameter(),
-                  .y = fmt::format("deviation from the full solution [{}]", unit),
-                  .log_y = true,
-                  .height = 1.12};
+    Figure figure{
+        .id = fmt::format("deviation-{}-{}", slug(sweep.name), unit),
+        .title = fmt::format("{}: worst deviation, {}", angle ? "Angles" : "Positions", sweep.name),
+        .x = sweep.parameter(),
+        .y = fmt::format("deviation from the full solution [{}]", unit),
+        .log_y = true,
+        .height = 1.12};
     std::vector<std::string> names;
     names.reserve(channels.size());
     for (const auto& c : channels) names.push_back(c.label());
@@ -115,19 +120,22 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
             if (row.size() == 2) high = std::max(high, row[1]);
     double tolerance = NAN;
     if (const auto trade = scene.find("trade"))
-        if (const auto asked = (*trade)["tolerance"].find(std::string(unit))) tolerance = asked->number();
+        if (const auto asked = (*trade)["tolerance"].find(std::string(unit)))
+            tolerance = asked->number();
     if (std::isfinite(tolerance)) high = std::max(high, tolerance);
     // Six decades are shown; smaller values lie on the lower edge.
     figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
     double best = 0;  // the recommended configuration may be more accurate and stays visible
     for (const auto& row : curves.recommended.rows)
         if (row.size() == 2 && std::isfinite(row[1])) best = std::max(best, row[1]);
-    if (best > 0) figure.y_low = std::min(figure.y_low, std::pow(10, std::floor(std::log10(best)) - 1));
+    if (best > 0)
+        figure.y_low = std::min(figure.y_low, std::pow(10, std::floor(std::log10(best)) - 1));
     for (auto* series : {&curves.load, &curves.travel, &curves.recommended, &curves.references}) {
         for (auto& row : series->rows)
             if (row.size() == 2) row[1] = std::max(row[1], figure.y_low);
-        const bool seen = std::ranges::any_of(
-            series->rows, [&](const auto& row) { return row.size() == 2 && row[1] > figure.y_low; });
+        const bool seen = std::ranges::any_of(series->rows, [&](const auto& row) {
+            return row.size() == 2 && row[1] > figure.y_low;
+        });
         if (seen) figure.series.push_back(*series);
     }
     if (figure.series.empty()) return std::nullopt;
@@ -138,20 +146,23 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         complete ? fmt::format("The references are at most {} apart.", quantity(apart, unit))
                  : "The references did not both go all the way.";
     figure.description = fmt::format(
-        "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the full solution: "
+        "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the full "
+        "solution: "
         "published {} up to {}{}{}. {}",
         compare::parameter_word(sweep.unit),
         number(sweep.branches.size() > 1 ? sweep.branches.back()["to"].number()
                                          : sweep.branches.front()["from"].number(),
                4),
-        number(sweep.branches.front()["to"].number(), 4), sweep.unit, enumerated(names), at_parameter,
-        quantity(load_peak, unit),
-        curves.travel.rows.empty() ? ""
-                                   : fmt::format(", {} up to {}", at_abscissa, quantity(travel_peak, unit)),
+        number(sweep.branches.front()["to"].number(), 4), sweep.unit, enumerated(names),
+        at_parameter, quantity(load_peak, unit),
+        curves.travel.rows.empty()
+            ? ""
+            : fmt::format(", {} up to {}", at_abscissa, quantity(travel_peak, unit)),
         std::isfinite(tolerance) ? ", tolerance " + setting(tolerance, unit) : "", agreement);
     table.caption = fmt::format("Worst of {}, {}", enumerated(names), sweep.name);
     table.folded = true;
-    return FigureGroup{fmt::format("Worst of {}. {}", enumerated(names), agreement), {figure}, table};
+    return FigureGroup{
+        fmt::format("Worst of {}. {}", enumerated(names), agreement), {figure}, table};
 }
 
 // 0 below 1e-9, which is rounding.
@@ -159,9 +170,9 @@ std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); 
 
 // One row per main channel, and per joint for its worst force and moment component.
 Table deviations(const Field& scene, const Field& branch) {
-    Table table{.caption =
-                    fmt::format("Deviation of the published recursion from the full solution, branch {}",
-                                branch["name"].text())};
+    Table table{.caption = fmt::format(
+                    "Deviation of the published recursion from the full solution, branch {}",
+                    branch["name"].text())};
     const Sweep alone = sweep_of(scene, branch);
     table.columns = {
         {"output", true},
@@ -206,9 +217,9 @@ Table deviations(const Field& scene, const Field& branch) {
                                      small(d["rms"].number()),
                                      percent(max / d["range"].number())};
         if (const auto t = travel.find(channel.name)) {
-            row.insert(row.end(),
-                       {deviation_number((*t)["signed_max"].number()), number((*t)["at"].number(), 4),
-                        small((*t)["rms"].number()), percent((*t)["max"].number() / (*t)["range"].number())});
+            row.insert(row.end(), {deviation_number((*t)["signed_max"].number()),
+                                   number((*t)["at"].number(), 4), small((*t)["rms"].number()),
+                                   percent((*t)["max"].number() / (*t)["range"].number())});
         } else {
             row.insert(row.end(), {"–", "–", "–", "–"});
         }
@@ -231,9 +242,10 @@ std::optional<Section> deviation_section(const Field& scene) {
         section.tables.push_back(deviations(scene, branch));
         const std::string why = branch["deviation"]["at_equal_abscissa"]["not_compared"].text();
         if (!why.empty())
-            section.words["notes"].push_back({{"branch", branch["name"].text()},
-                                              {"reading", sweep_of(scene, branch).at_equal_abscissa()},
-                                              {"why", why}});
+            section.words["notes"].push_back(
+                {{"branch", branch["name"].text()},
+                 {"reading", sweep_of(scene, branch).at_equal_abscissa()},
+                 {"why", why}});
     }
     return section;
 }

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <map>
 
-#include "compare/table.hpp"
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "compare/tables/table.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/select.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -47,7 +47,8 @@ Largest largest_of(const compare::Table& forces) {
         const auto [known, is_new] = place.emplace(words(forces, r, "output"), result.rows.size());
         if (is_new)
             result.rows.push_back(r);
-        else if (std::size_t& row = result.rows[known->second]; size > std::abs(number(forces, row, "value")))
+        else if (std::size_t& row = result.rows[known->second];
+                 size > std::abs(number(forces, row, "value")))
             row = r;
     }
     return result;
@@ -94,13 +95,14 @@ std::optional<Section> forces_section(const Field& scene) {
         const auto deformed =
             at.find({words(forces, r, "branch"), number(forces, r, "end"), deformation_of(output)});
         const bool known = deformed != at.end();
-        table.rows.push_back({output, number(number(forces, r, "value")), words(forces, r, "unit"),
-                              fmt::format("{}, {} {}", words(forces, r, "branch"),
-                                          number(number(forces, r, "end")), words(forces, r, "end unit")),
-                              known ? number(number(forces, deformed->second, "value")) : "",
-                              known ? words(forces, deformed->second, "unit") : "",
-                              deviation_number(number(forces, r, "error")),
-                              percent(std::abs(number(forces, r, "share")) / 100)});
+        table.rows.push_back(
+            {output, number(number(forces, r, "value")), words(forces, r, "unit"),
+             fmt::format("{}, {} {}", words(forces, r, "branch"), number(number(forces, r, "end")),
+                         words(forces, r, "end unit")),
+             known ? number(number(forces, deformed->second, "value")) : "",
+             known ? words(forces, deformed->second, "unit") : "",
+             deviation_number(number(forces, r, "error")),
+             percent(std::abs(number(forces, r, "share")) / 100)});
     }
     const auto shown =
         std::ranges::count_if(largest.of_element, [&](const auto& e) { return e.second >= least; });

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/table.hpp"
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "compare/tables/table.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/tables/select.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 
@@ -15,7 +15,8 @@ std::optional<Section> formulations_section(const Field& scene) {
     const auto study = scene.find("formulations");
     if (!study) return std::nullopt;
     Section section{.id = "formulations", .title = "What tools may differ by"};
-    const compare::Table spread = read_table((*study)["spread"], compare::formulation_table({}, {}));
+    const compare::Table spread =
+        read_table((*study)["spread"], compare::formulation_table({}, {}));
     Table table{.caption = "Largest less smallest value over the formulations, where that is most",
                 .columns = {{"branch", true},
                             {"output", true},
@@ -29,19 +30,22 @@ std::optional<Section> formulations_section(const Field& scene) {
     for (std::size_t r = 0; r < spread.rows.size(); ++r) {
         const double value = reports::number(spread, r, "spread");
         const std::string& unit = words(spread, r, "unit");
-        table.rows.push_back({words(spread, r, "branch"), words(spread, r, "output"), deviation_number(value),
-                              unit, words(spread, r, "smallest by"), words(spread, r, "largest by"),
+        table.rows.push_back({words(spread, r, "branch"), words(spread, r, "output"),
+                              deviation_number(value), unit, words(spread, r, "smallest by"),
+                              words(spread, r, "largest by"),
                               number(reports::number(spread, r, "references apart"), 2),
                               number(reports::number(spread, r, "deviation"), 2)});
         if (unit != "mm" || !(value > most)) continue;
         most = value;
-        section.words["most"] = {{"value", quantity(value, unit)}, {"channel", words(spread, r, "output")}};
+        section.words["most"] = {{"value", quantity(value, unit)},
+                                 {"channel", words(spread, r, "output")}};
     }
     section.words["formulations"] = enumerated((*study)["formulations"].texts());
     section.words["bushings"] = enumerated((*study)["bushings"].texts());
     section.words["reasons"] = nlohmann::ordered_json::array();
     for (const auto& why : (*study)["not_solved"].texts()) section.words["reasons"].push_back(why);
-    for (const auto& why : (*study)["inconclusive"].texts()) section.words["reasons"].push_back(why);
+    for (const auto& why : (*study)["inconclusive"].texts())
+        section.words["reasons"].push_back(why);
     section.tables.push_back(std::move(table));
     return section;
 }

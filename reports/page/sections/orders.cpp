@@ -5,11 +5,11 @@
 #include <map>
 #include <numbers>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
-#include "reports/tables/order_tables.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
 #include "reports/tables/select.hpp"
+#include "reports/tables/studies/order_tables.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -19,8 +19,9 @@ constexpr Colour colours[] = {vermilion, blue, green, purple};
 FigureGroup group(const std::string& branch, const compare::Table& levels) {
     FigureGroup group;
     group.caption = fmt::format("Expansions that branch {} takes over their order.", branch);
-    group.table = page_table(fmt::format("Series over branch {}; error to the full solution", branch), levels,
-                             order_columns);
+    group.table =
+        page_table(fmt::format("Series over branch {}; error to the full solution", branch), levels,
+                   order_columns);
     group.table.folded = true;
     Figure figure{.id = fmt::format("orders-{}", slug(branch)),
                   .title = branch,
@@ -32,7 +33,8 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
     for (std::size_t r = 0; r < levels.rows.size(); ++r)
         if (const double told = number(levels, r, "told");
             std::isfinite(told) && words(levels, r, "outcome") == name(Outcome::converged))
-            by_tolerance[told].push_back({number(levels, r, "order"), number(levels, r, "expansions")});
+            by_tolerance[told].push_back(
+                {number(levels, r, "order"), number(levels, r, "expansions")});
     std::vector<std::string> told;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
@@ -46,7 +48,8 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
     }
     if (figure.series.empty()) return group;
     figure.description =
-        "Logarithmic plot of the expansions a branch takes over their order: " + enumerated(told) + ".";
+        "Logarithmic plot of the expansions a branch takes over their order: " + enumerated(told) +
+        ".";
     group.figures.push_back(std::move(figure));
     return group;
 }
@@ -67,7 +70,8 @@ std::optional<Section> orders_section(const Field& scene) {
             nearest.push_back(
                 {{"branch", branch},
                  {"radius", number(radius, 3)},
-                 {"degrees", number(number(levels, last, "its angle") * 180 / std::numbers::pi, 2)}});
+                 {"degrees",
+                  number(number(levels, last, "its angle") * 180 / std::numbers::pi, 2)}});
     }
     return section;
 }

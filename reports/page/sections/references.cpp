@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 
@@ -14,20 +14,23 @@ std::optional<Section> references_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
     Section section{.id = "references", .title = "The references, certified"};
     Table agreement{
-        .caption = "How far the solution by energy is from the one by equilibrium, worst over the branch",
+        .caption =
+            "How far the solution by energy is from the one by equilibrium, worst over the branch",
         .columns = {{"branch", true},
                     {"positions [mm]"},
                     {"angles [deg]"},
                     {"forces [N]"},
                     {"moments [N·m]"},
                     {"numbers compared"}}};
-    Table judged{.caption = "What each solution leaves in the equations of the others, worst over the points",
-                 .columns = {{"branch", true},
-                             {"states of", true},
-                             {"judged by", true},
-                             {"force [N]"},
-                             {"moment [N·m]"},
-                             {"constraint [mm]"}}};
+    Table judged{
+        .caption =
+            "What each solution leaves in the equations of the others, worst over the points",
+        .columns = {{"branch", true},
+                    {"states of", true},
+                    {"judged by", true},
+                    {"force [N]"},
+                    {"moment [N·m]"},
+                    {"constraint [mm]"}}};
     Table work{.caption = "How each solution ended, and its work",
                .columns = {{"branch", true},
                            {"solution", true},
@@ -36,18 +39,18 @@ std::optional<Section> references_section(const Field& scene) {
                            {"factorisations"},
                            {"iterations"},
                            {"evaluations"}}};
-    Table proofs{
-        .caption =
-            "What is proved by interval arithmetic, of the points at the start, the middle and the ends",
-        .columns = {{"branch", true},
-                    {"points of", true},
-                    {"proved"},
-                    {"off at most [mm]"},
-                    {"at most [deg]"},
-                    {"at most [N]"},
-                    {"alone within [mm]"},
-                    {"stable"},
-                    {"remark", true}}};
+    Table proofs{.caption =
+                     "What is proved by interval arithmetic, of the points at the start, the "
+                     "middle and the ends",
+                 .columns = {{"branch", true},
+                             {"points of", true},
+                             {"proved"},
+                             {"off at most [mm]"},
+                             {"at most [deg]"},
+                             {"at most [N]"},
+                             {"alone within [mm]"},
+                             {"stable"},
+                             {"remark", true}}};
     bool times = false;
     for (const auto& branch : scene["branches"].items())
         for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
@@ -89,8 +92,9 @@ std::optional<Section> references_section(const Field& scene) {
                     return proved > 0 ? number((*proof)[key].number(), 2) : std::string("–");
                 };
                 proofs.rows.push_back(
-                    {name, leg["leg"].text(), fmt::format("{} of {}", proved, points), size("off_at_most_mm"),
-                     size("off_at_most_deg"), size("off_at_most_N"), size("alone_within_mm"),
+                    {name, leg["leg"].text(), fmt::format("{} of {}", proved, points),
+                     size("off_at_most_mm"), size("off_at_most_deg"), size("off_at_most_N"),
+                     size("alone_within_mm"),
                      proved > 0 ? fmt::format("{} of {}", (*proof)["stable"].whole(), proved)
                                 : std::string("–"),
                      (*proof)["not_proved"].text()});
@@ -101,12 +105,13 @@ std::optional<Section> references_section(const Field& scene) {
             }
             if (const auto told = leg.find("told"))
                 for (const auto& line : told->texts())
-                    section.words["told"].push_back(
-                        fmt::format("On branch {}, by the account of {}: {}", name, leg["leg"].text(), line));
+                    section.words["told"].push_back(fmt::format(
+                        "On branch {}, by the account of {}: {}", name, leg["leg"].text(), line));
             const std::string detail = leg["detail"].text();
             std::vector<std::string> cells{
                 name, leg["leg"].text(),
-                detail.empty() ? leg["outcome"].text() : fmt::format("{}: {}", leg["outcome"].text(), detail),
+                detail.empty() ? leg["outcome"].text()
+                               : fmt::format("{}: {}", leg["outcome"].text(), detail),
                 whole_number(static_cast<long>(leg["curve"]["a"].items().size()))};
             for (const char* count : {"factorisations", "iterations", "evaluations"})
                 cells.push_back(whole_number(leg["counts"][count].whole()));
@@ -114,17 +119,18 @@ std::optional<Section> references_section(const Field& scene) {
             work.rows.push_back(cells);
         }
         if (const auto why = branch.find("energy_not_asked"); why && !why->text().empty()) {
-            nlohmann::ordered_json words{
-                {"branch", name}, {"second", branch["second_reference"].text()}, {"why", why->text()}};
+            nlohmann::ordered_json words{{"branch", name},
+                                         {"second", branch["second_reference"].text()},
+                                         {"why", why->text()}};
             const auto witness = branch.find("witness");
             if (!witness) {
                 section.words["no_energy"].push_back(words);
             } else {
                 for (const char* of : {"left", "at_most"})
-                    words[of] =
-                        fmt::format("{} N, {} N·m and {} mm", number((*witness)[of]["force_N"].number(), 2),
-                                    number((*witness)[of]["moment_Nm"].number(), 2),
-                                    number((*witness)[of]["constraint_mm"].number(), 2));
+                    words[of] = fmt::format("{} N, {} N·m and {} mm",
+                                            number((*witness)[of]["force_N"].number(), 2),
+                                            number((*witness)[of]["moment_Nm"].number(), 2),
+                                            number((*witness)[of]["constraint_mm"].number(), 2));
                 section.words["witness"].push_back(words);
             }
         }

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "reports/page/numbers.hpp"
-#include "reports/page/sections/common.hpp"
-#include "reports/page/sections/sections.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -40,8 +40,9 @@ std::optional<Worst> worst_of(const Field& scene, const char* reading, const cha
     for (const auto& branch : scene["branches"].items()) {
         if (branch["name"].text() != worst.branch) continue;
         const Sweep sweep = sweep_of(scene, branch);
-        worst.reading = std::string_view(reading) == "worst_at_equal_parameter" ? sweep.at_equal_parameter()
-                                                                                : sweep.at_equal_abscissa();
+        worst.reading = std::string_view(reading) == "worst_at_equal_parameter"
+                            ? sweep.at_equal_parameter()
+                            : sweep.at_equal_abscissa();
     }
     if (worst.reading.empty()) (*found)["branch"].fail("no such branch");
     return worst;
@@ -103,7 +104,8 @@ json failures(const Field& scene) {
     for (const auto& branch : scene["branches"].items())
         for (const auto& leg : branch["legs"].items())
             if (leg["leg"].text() == "recursive" && leg["outcome"].text() != "converged")
-                list.push_back({{"branch", branch["name"].text()}, {"outcome", leg["outcome"].text()}});
+                list.push_back(
+                    {{"branch", branch["name"].text()}, {"outcome", leg["outcome"].text()}});
     return list;
 }
 
@@ -121,7 +123,8 @@ json gap_words(const Field& scene) {
 std::string held(const Field& chosen) {
     std::string text;
     for (const char* unit : {"mm", "deg"}) {
-        const auto found = chosen["expected_error"].find(unit), again = chosen["confirmed_error"].find(unit);
+        const auto found = chosen["expected_error"].find(unit),
+                   again = chosen["confirmed_error"].find(unit);
         if (!found || !again) continue;
         if (!text.empty()) text += " and ";
         text += quantity(std::max(found->number(), again->number()), unit);
@@ -187,7 +190,9 @@ std::optional<Section> verdict_section(const Field& scene) {
         for (const auto& branch : scene["branches"].items()) {
             const auto points = curve_of(branch, "recursive").a.size();
             const auto taken = branch.find("steps");
-            const int count = taken ? taken->whole() : points > 0 ? static_cast<int>(points) - 1 : 0;
+            const int count = taken        ? taken->whole()
+                              : points > 0 ? static_cast<int>(points) - 1
+                                           : 0;
             if (std::ranges::find(steps, count) == steps.end()) steps.push_back(count);
         }
         const bool wheel = [&] {
@@ -203,8 +208,10 @@ std::optional<Section> verdict_section(const Field& scene) {
             std::vector<std::string> counts;
             counts.reserve(steps.size());
             for (const int count : steps) counts.push_back(whole_number(count));
-            published = {{"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
-            const bool exact = (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);
+            published = {
+                {"steps", enumerated(counts)}, {"wheel", wheel}, {"failed", failures(scene)}};
+            const bool exact =
+                (!load_mm || load_mm->max < nothing) && (!load_deg || load_deg->max < nothing);
             published["exact"] = exact;
             const json rates = rate_words(scene), forces = force_words(scene);
             published["forces"] = forces;
@@ -222,19 +229,22 @@ std::optional<Section> verdict_section(const Field& scene) {
                 published["gap"] = gap_words(scene);
             }
             if (travel_deg && travel_deg->max >= nothing)
-                tiles.push_back(
-                    {{"key", "travel"}, {"value", travel_deg->text()}, {"label", travel_deg->label()}});
+                tiles.push_back({{"key", "travel"},
+                                 {"value", travel_deg->text()},
+                                 {"label", travel_deg->label()}});
             else if (travel_mm && travel_mm->max >= nothing)
-                tiles.push_back(
-                    {{"key", "travel"}, {"value", travel_mm->text()}, {"label", travel_mm->label()}});
+                tiles.push_back({{"key", "travel"},
+                                 {"value", travel_mm->text()},
+                                 {"label", travel_mm->label()}});
             if (load_mm)
-                tiles.push_back({{"key", "load"}, {"value", load_mm->text()}, {"label", load_mm->label()}});
+                tiles.push_back(
+                    {{"key", "load"}, {"value", load_mm->text()}, {"label", load_mm->label()}});
             for (const auto& rate : scene["rate_errors"].items())
                 if (const double off = rate["off"].number(); std::isfinite(off))
-                    tiles.push_back(
-                        {{"key", "rate"},
-                         {"value", percent(off)},
-                         {"label", fmt::format("wheel rate at the end of {}, error", end_of(scene, rate))}});
+                    tiles.push_back({{"key", "rate"},
+                                     {"value", percent(off)},
+                                     {"label", fmt::format("wheel rate at the end of {}, error",
+                                                           end_of(scene, rate))}});
         }
         words["published"] = published;
         std::vector<std::string> agreement;
@@ -245,7 +255,8 @@ std::optional<Section> verdict_section(const Field& scene) {
     }
     words["recommendation"] = recommendation_words(scene, tiles);
     if (const auto measured = scene.find("measured"))
-        words["measured"] = {{"file", (*measured)["file"].text()}, {"points", (*measured)["points"].whole()}};
+        words["measured"] = {{"file", (*measured)["file"].text()},
+                             {"points", (*measured)["points"].whole()}};
     words["tiles"] = tiles;
     return section;
 }

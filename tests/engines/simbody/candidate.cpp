@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "compare/trim.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "tests/engines/simbody/engine.hpp"
 
 namespace {
@@ -35,7 +35,9 @@ std::string line(const Model& model, const Branch& branch, const Equilibrium& st
         bodies[model.bodies[b].name] = {{"position", {r.x(), r.y(), r.z()}},
                                         {"orientation", {p.w(), p.x(), p.y(), p.z()}}};
     }
-    return nlohmann::json{{"branch", branch.name}, {"load", state.load}, {"bodies", bodies}}.dump() + "\n";
+    return nlohmann::json{{"branch", branch.name}, {"load", state.load}, {"bodies", bodies}}
+               .dump() +
+           "\n";
 }
 
 // Each way from its start; of two, the first one told backwards and without the start that the other has as well.
@@ -65,7 +67,8 @@ void write(const std::filesystem::path& output, const std::string& text) {
 }
 
 int run(const std::vector<std::string>& arguments) {
-    if (arguments.size() < 3) throw SceneError("usage: simbody_candidate SCENE STEPS OUTPUT [BRANCH...]");
+    if (arguments.size() < 3)
+        throw SceneError("usage: simbody_candidate SCENE STEPS OUTPUT [BRANCH...]");
     const std::string& number = arguments[1];
     int steps = 0;
     const auto read = std::from_chars(number.data(), number.data() + number.size(), steps);
@@ -73,7 +76,8 @@ int run(const std::vector<std::string>& arguments) {
         throw SceneError("STEPS: expected a positive integer, found '" + number + "'");
     const std::vector<std::string> asked(arguments.begin() + 3, arguments.end());
     const auto trimmed = compare::trim(read_scene(arguments[0]));
-    if (trimmed.record && !trimmed.record->reached()) throw DoesNotSettle("trim: " + trimmed.record->detail);
+    if (trimmed.record && !trimmed.record->reached())
+        throw DoesNotSettle("trim: " + trimmed.record->detail);
     const Model model = compile(trimmed.scene);
     for (const auto& name : asked)
         if (std::ranges::find(model.branches, name, &Branch::name) == model.branches.end())

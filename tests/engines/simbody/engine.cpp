@@ -12,7 +12,9 @@
 namespace SimTK {
 template <class Index>
 requires requires(const Index& index) { index.isValidExtended(); }
-bool operator==(const Index& a, const Index& b) { return static_cast<int>(a) == static_cast<int>(b); }
+bool operator==(const Index& a, const Index& b) {
+    return static_cast<int>(a) == static_cast<int>(b);
+}
 }  // namespace SimTK
 
 #include <Simbody.h>
@@ -28,12 +30,14 @@ bool operator==(const Index& a, const Index& b) { return static_cast<int>(a) == 
 namespace elastocheck::engines {
 namespace {
 
-using SimTK::Constraint, SimTK::Force, SimTK::MobilizedBody, SimTK::Transform, SimTK::UnitVec3, SimTK::Vec3,
-    SimTK::Vec6;
+using SimTK::Constraint, SimTK::Force, SimTK::MobilizedBody, SimTK::Transform, SimTK::UnitVec3,
+    SimTK::Vec3, SimTK::Vec6;
 
 constexpr double unit_of_stiffness = 1e6;  // k [N/m]
-constexpr double settled = 1e-11;  // what Newton's last step moves [m, rad] and leaves [m, 1e6 N, 1e6 N·m]
-constexpr double far = 0.5;        // [m, rad] for one step of the load: some other equilibrium, not the next
+constexpr double settled =
+    1e-11;  // what Newton's last step moves [m, rad] and leaves [m, 1e6 N, 1e6 N·m]
+constexpr double far =
+    0.5;  // [m, rad] for one step of the load: some other equilibrium, not the next
 constexpr int iteration_limit = 40, most_halvings = 8;
 constexpr double rank =
     1e-8;  // reciprocal condition of J below which a motion is idle; differences leave less
@@ -47,18 +51,19 @@ SimTK::Rotation rotation(const Eigen::Quaterniond& p) {
 // ---- The model at one value of the parameter: what is driven, written into it as plain data.
 
 void offset(ConstraintKind& kind, double by) {
-    std::visit(
-        overloaded{[&](PointInPlane& c) { c.offset += by; }, [&](DistanceBetween& c) { c.length += by; },
-                   [&](DirectionAtAngle& c) { c.angle += by; }, [](CoincidentPoints&) {},
-                   [](PerpendicularDirections&) {}},
-        kind);
+    std::visit(overloaded{[&](PointInPlane& c) { c.offset += by; },
+                          [&](DistanceBetween& c) { c.length += by; },
+                          [&](DirectionAtAngle& c) { c.angle += by; }, [](CoincidentPoints&) {},
+                          [](PerpendicularDirections&) {}},
+               kind);
 }
 
 Load times(Load load, double factor) {
-    std::visit(overloaded{[&](DeadForce& l) { l.f *= factor; }, [&](DeadMoment& l) { l.m *= factor; },
-                          [&](FollowerForce& l) { l.f_local *= factor; },
-                          [&](FollowerMoment& l) { l.m_local *= factor; }},
-               load.kind);
+    std::visit(
+        overloaded{[&](DeadForce& l) { l.f *= factor; }, [&](DeadMoment& l) { l.m *= factor; },
+                   [&](FollowerForce& l) { l.f_local *= factor; },
+                   [&](FollowerMoment& l) { l.m_local *= factor; }},
+        load.kind);
     return load;
 }
 
@@ -66,19 +71,20 @@ Model standing_at(double a, Model model, const Branch& branch) {
     const auto at = [](auto& list, int k) -> auto& { return list[static_cast<std::size_t>(k)]; };
     for (const Driver& driver : branch.drivers) {
         const double value = driver.start + driver.rate * a;
-        std::visit(overloaded{[&](const Load& load) { model.static_loads.push_back(times(load, value)); },
-                              [&](const Motion& m) {
-                                  offset(at(model.constraints, at(model.joints, m.joint).driven).kind, value);
-                              },
-                              [&](const FreeLength& f) {
-                                  std::get<AxialSpring>(at(model.elastics, f.elastic).kind).free_length +=
-                                      value;
-                              },
-                              [&](const Preload& p) {
-                                  std::get<Bushing>(at(model.elastics, p.elastic).kind).preload +=
-                                      value * p.direction;
-                              }},
-                   driver.what);
+        std::visit(
+            overloaded{
+                [&](const Load& load) { model.static_loads.push_back(times(load, value)); },
+                [&](const Motion& m) {
+                    offset(at(model.constraints, at(model.joints, m.joint).driven).kind, value);
+                },
+                [&](const FreeLength& f) {
+                    std::get<AxialSpring>(at(model.elastics, f.elastic).kind).free_length += value;
+                },
+                [&](const Preload& p) {
+                    std::get<Bushing>(at(model.elastics, p.elastic).kind).preload +=
+                        value * p.direction;
+                }},
+            driver.what);
     }
     return model;
 }
@@ -97,7 +103,9 @@ class CurvedSpring : public Force::Custom::Implementation {
         i_.applyForceToBodyPoint(state, vec(spring_.i.s_local), pull, on_bodies);
         j_.applyForceToBodyPoint(state, vec(spring_.j.s_local), -pull, on_bodies);
     }
-    SimTK::Real calcPotentialEnergy(const SimTK::State&) const override { return SimTK::NaN; }  // nobody asks
+    SimTK::Real calcPotentialEnergy(const SimTK::State&) const override {
+        return SimTK::NaN;
+    }  // nobody asks
     bool dependsOnlyOnPositions() const override { return true; }
 
   private:
@@ -107,8 +115,8 @@ class CurvedSpring : public Force::Custom::Implementation {
     }
     double force(double x) const {
         const Curve& curve = std::get<Curve>(spring_.law);
-        const auto piece =
-            static_cast<std::size_t>(std::ranges::upper_bound(curve.knots, x) - curve.knots.begin());
+        const auto piece = static_cast<std::size_t>(std::ranges::upper_bound(curve.knots, x) -
+                                                    curve.knots.begin());
         const auto& c = curve.pieces[piece];
         const double t = x - curve.knots[piece == 0 ? 0 : piece - 1];
         return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
@@ -127,16 +135,19 @@ struct Mechanism {
     SimTK::State state;
 
     // The ground is its body 0.
-    MobilizedBody& body(BodyId b) { return matter.updMobilizedBody(SimTK::MobilizedBodyIndex(b + 1)); }
+    MobilizedBody& body(BodyId b) {
+        return matter.updMobilizedBody(SimTK::MobilizedBodyIndex(b + 1));
+    }
     MobilizedBody& on(const Point& p) { return body(p.body); }
     MobilizedBody& on(const Direction& d) { return body(d.body); }
 
     explicit Mechanism(const Model& model) {
         // Free bodies, by three angles and three lengths that are 0 at the design position; at rest masses play no part.
         for (const Body& b : model.bodies)
-            MobilizedBody::Bushing(matter.Ground(), Transform(rotation(b.design.p), vec(b.design.r)),
-                                   SimTK::Body::Rigid(SimTK::MassProperties(1, Vec3(0), SimTK::Inertia(1))),
-                                   Transform());
+            MobilizedBody::Bushing(
+                matter.Ground(), Transform(rotation(b.design.p), vec(b.design.r)),
+                SimTK::Body::Rigid(SimTK::MassProperties(1, Vec3(0), SimTK::Inertia(1))),
+                Transform());
         for (const auto& constraint : model.constraints)
             std::visit([&](const auto& kind) { add(kind); }, constraint.kind);
         for (const Elastic& elastic : model.elastics)
@@ -144,7 +155,8 @@ struct Mechanism {
         for (const Load& load : model.static_loads)
             std::visit([&](const auto& kind) { add(load.name, kind); }, load.kind);
         state = system.realizeTopology();
-        system.realize(state, SimTK::Stage::Instance);  // by then it is known how many constraints there are
+        system.realize(
+            state, SimTK::Stage::Instance);  // by then it is known how many constraints there are
     }
 
     void add(const CoincidentPoints& c) {
@@ -161,14 +173,15 @@ struct Mechanism {
         Constraint::Rod(on(c.i), vec(c.i.s_local), on(c.j), vec(c.j.s_local), c.length);
     }
     void add(const DirectionAtAngle& c) {
-        const Direction across{c.j.body, std::cos(c.angle) * c.y_j.u_local - std::sin(c.angle) * c.j.u_local};
+        const Direction across{c.j.body,
+                               std::cos(c.angle) * c.y_j.u_local - std::sin(c.angle) * c.j.u_local};
         add(PerpendicularDirections{c.i, across});
     }
 
     void add(const std::string& name, const AxialSpring& s) {
         if (const auto* linear = std::get_if<LinearRate>(&s.law))
-            Force::TwoPointLinearSpring(forces, on(s.i), vec(s.i.s_local), on(s.j), vec(s.j.s_local),
-                                        linear->k, s.free_length);
+            Force::TwoPointLinearSpring(forces, on(s.i), vec(s.i.s_local), on(s.j),
+                                        vec(s.j.s_local), linear->k, s.free_length);
         else if (std::get<Curve>(s.law).known_outside)
             Force::Custom(forces, new CurvedSpring(on(s.i), on(s.j), s));  // theirs from now on
         else
@@ -198,8 +211,11 @@ struct Mechanism {
                 refuse("no curves");
             }
         }
-        const auto frame = [](const Marker& m) { return Transform(rotation(m.A_local), vec(m.s_local)); };
-        Force::LinearBushing(forces, body(b.i.body), frame(b.i), body(b.j.body), frame(b.j), k, Vec6(0));
+        const auto frame = [](const Marker& m) {
+            return Transform(rotation(m.A_local), vec(m.s_local));
+        };
+        Force::LinearBushing(forces, body(b.i.body), frame(b.i), body(b.j.body), frame(b.j), k,
+                             Vec6(0));
     }
 
     void add(const std::string&, const DeadForce& l) {
@@ -228,10 +244,10 @@ class Equations : public SimTK::Differentiator::JacobianFunction {
         at_.state.updQ() = x(0, n);
         at_.system.realize(at_.state, SimTK::Stage::Dynamics);
         SimTK::Vector lambda = unit_of_stiffness * x(n, m), unbalanced;
-        at_.matter.calcResidualForce(at_.state,
-                                     at_.system.getMobilityForces(at_.state, SimTK::Stage::Dynamics),
-                                     at_.system.getRigidBodyForces(at_.state, SimTK::Stage::Dynamics),
-                                     SimTK::Vector(), lambda, unbalanced);
+        at_.matter.calcResidualForce(
+            at_.state, at_.system.getMobilityForces(at_.state, SimTK::Stage::Dynamics),
+            at_.system.getRigidBodyForces(at_.state, SimTK::Stage::Dynamics), SimTK::Vector(),
+            lambda, unbalanced);
         E(0, n) = unbalanced / unit_of_stiffness;
         E(n, m) = at_.state.getQErr();
         return 0;
@@ -302,8 +318,10 @@ Equilibrium state_at(double a, const Model& model, const Branch& branch, const S
     Mechanism mechanism(standing_at(a, model, branch));
     mechanism.state.updQ() = x(0, mechanism.state.getNQ());
     mechanism.system.realize(mechanism.state, SimTK::Stage::Position);
-    Equilibrium found{
-        .load = a, .poses = {}, .reactions = {}, .constraint_error = mechanism.state.getQErr().normInf()};
+    Equilibrium found{.load = a,
+                      .poses = {},
+                      .reactions = {},
+                      .constraint_error = mechanism.state.getQErr().normInf()};
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
         const Transform& X = mechanism.body(b).getBodyTransform(mechanism.state);
         const SimTK::Quaternion p = X.R().convertRotationToQuaternion();
@@ -325,7 +343,8 @@ EquilibriumPath simbody(const Model& model, const Branch& branch, std::span<cons
             path.outcome = advance(model, branch, from + (a - from) * k / steps,
                                    from + (a - from) * (k + 1) / steps, most_halvings, x);
         if (path.outcome != Outcome::converged) {
-            path.detail = branch.name + ", on the way to " + std::to_string(a) + ": " + name(path.outcome);
+            path.detail =
+                branch.name + ", on the way to " + std::to_string(a) + ": " + name(path.outcome);
             break;
         }
         path.points.push_back(state_at(a, model, branch, x));

@@ -4,8 +4,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "models/equilibrium_path.hpp"
-#include "models/model.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
 
 namespace elastocheck::engines {
 
@@ -17,7 +17,7 @@ struct NotRepresented : std::runtime_error {
 // The equilibria at `values` of the branch's parameter, poses alone, each from the one before it; the first from the
 // design position. They have settled when Newton's step is below 1e-11 m and rad; else iteration_limit or not_finite.
 //
-// Bushings are Simbody's own, whose law is U = ½ dᵀ K_T d + ½ θᵀ K_R θ as in models/mechanism.hpp, with Cardan angles θ
+// Bushings are Simbody's own, whose law is U = ½ dᵀ K_T d + ½ θᵀ K_R θ as in include/elastocheck/mechanism.hpp, with Cardan angles θ
 // (Formulation::Angles::cardan) also where the model has rotation vectors: the known difference.
 //
 // Pre: the model stands on the branch (on_branch, ways). Throws NotRepresented.

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
-#include "models/reduce/parts.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "models/compile/parts.hpp"
 #include "tests/engines/simbody/engine.hpp"
 #include "tests/support/command.hpp"
 #include "tests/support/folder.hpp"
@@ -29,7 +29,8 @@ using Angles = Formulation::Angles;
 
 Scene with(Angles angles, Scene scene) {
     for (auto& elastic : scene.elastics)
-        if (auto* bushing = std::get_if<Bushing>(&elastic.kind)) bushing->formulation.angles = angles;
+        if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
+            bushing->formulation.angles = angles;
     return compare::trim(scene).scene;
 }
 
@@ -55,7 +56,8 @@ std::vector<Point> points_of(Scene scene, const Model& model) {
 }
 
 // The largest distance of a point between two paths of one way [mm]; NaN where either is not whole.
-double apart(const std::vector<Point>& points, const EquilibriumPath& here, const EquilibriumPath& there) {
+double apart(const std::vector<Point>& points, const EquilibriumPath& here,
+             const EquilibriumPath& there) {
     if (here.outcome != Outcome::converged || there.outcome != Outcome::converged ||
         here.points.size() != there.points.size())
         return NAN;
@@ -66,26 +68,29 @@ double apart(const std::vector<Point>& points, const EquilibriumPath& here, cons
     double worst = 0;
     for (std::size_t k = 0; k < here.points.size(); ++k)
         for (const Point& p : points) {
-            const double distance = 1e3 * (position(here.points[k], p) - position(there.points[k], p)).norm();
+            const double distance =
+                1e3 * (position(here.points[k], p) - position(there.points[k], p)).norm();
             if (!(distance <= worst)) worst = distance;
         }
     return worst;
 }
 
-EquilibriumPath by_simbody(const compare::Way& way) {
+EquilibriumPath by_simbody(const compare::BranchSide& way) {
     std::vector<double> values;
-    for (int k = 0; k <= way.branch.steps; ++k) values.push_back(way.branch.to * k / way.branch.steps);
+    for (int k = 0; k <= way.branch.steps; ++k)
+        values.push_back(way.branch.to * k / way.branch.steps);
     return simbody(way.model, way.branch, values);
 }
 
 // The largest distance between Simbody and the legs, branch by branch.
-std::map<std::string, double> distances(const Scene& scene, int steps, const std::vector<Leg>& legs) {
+std::map<std::string, double> distances(const Scene& scene, int steps,
+                                        const std::vector<Leg>& legs) {
     const Model model = compile(scene);
     const auto points = points_of(scene, model);
     EXPECT_GE(points.size(), model.bodies.size());
     std::map<std::string, double> worst;
     for (const Branch& branch : model.branches)
-        for (const auto& way : compare::ways_of(model, branch, steps)) {
+        for (const auto& way : compare::sides_of(model, branch, steps)) {
             const EquilibriumPath found = by_simbody(way);
             for (const Leg leg : legs) {
                 const double distance = apart(points, found, compare::walk(way, {.leg = leg}));
@@ -107,7 +112,8 @@ TEST(Simbody, StandsWhereTheReferencesStandWithItsLawOfABushing) {
     for (const auto& name : support::scene_names()) try {
             const Scene scene = with(Angles::cardan, support::scene(name));
             for (const auto& [branch, distance] : distances(scene, 4, {Leg::equilibrium})) {
-                EXPECT_TRUE(distance <= same) << name << ", " << branch << ": " << distance << " mm";
+                EXPECT_TRUE(distance <= same)
+                    << name << ", " << branch << ": " << distance << " mm";
                 largest = std::max(largest, distance);
                 ++branches_compared;
             }
@@ -115,7 +121,8 @@ TEST(Simbody, StandsWhereTheReferencesStandWithItsLawOfABushing) {
         } catch (const NotRepresented&) {
         }
     EXPECT_GE(branches_compared, 80);
-    fmt::print("{} scenes, {} branches: at most {:.1e} mm\n", scenes_compared, branches_compared, largest);
+    fmt::print("{} scenes, {} branches: at most {:.1e} mm\n", scenes_compared, branches_compared,
+               largest);
 }
 
 class Suspension : public testing::TestWithParam<const char*> {};
@@ -145,7 +152,7 @@ TEST_P(Suspension, IsTheSameByBothReferencesAsWrittenButForTheKnownDifference) {
 
 TEST(Simbody, AMicrometreOfATieRodIsSeen) {
     const Model model = compile(support::scene("mcpherson"));
-    auto way = compare::ways_of(model, model.branches[0], 2).front();
+    auto way = compare::sides_of(model, model.branches[0], 2).front();
     const auto points = points_of(support::scene("mcpherson"), model);
     const EquilibriumPath reference = compare::walk(way, {.leg = Leg::equilibrium});
     EXPECT_TRUE(apart(points, by_simbody(way), reference) <= known);
@@ -158,7 +165,7 @@ TEST(Simbody, WhatALoadPushesAndNothingResistsDoesNotSettle) {
     Scene scene = support::scene("two_spring_arch");
     scene.elastics.clear();
     const Model model = compile(scene);
-    const EquilibriumPath path = by_simbody(compare::ways_of(model, model.branches[0], 2).front());
+    const EquilibriumPath path = by_simbody(compare::sides_of(model, model.branches[0], 2).front());
     EXPECT_EQ(path.outcome, Outcome::iteration_limit);
     EXPECT_EQ(path.points.size(), 1u);  // without load it stands
     EXPECT_TRUE(contains(path.detail, "on the way to -")) << path.detail;
@@ -171,14 +178,15 @@ TEST(Simbody, ACrankTurnsAsFarAsItIsDrivenWhateverTheSteps) {
     const Model model = compile(scene);
     for (const int steps : {1, 2, 3, 4})
         for (const auto& [branch, distance] : distances(scene, steps, {Leg::equilibrium}))
-            EXPECT_TRUE(distance <= same) << branch << " in " << steps << " steps: " << distance << " mm";
+            EXPECT_TRUE(distance <= same)
+                << branch << " in " << steps << " steps: " << distance << " mm";
 }
 
 // What it refuses, by name.
 std::string refused(const Scene& scene) {
     const Model model = compile(scene);
     try {
-        by_simbody(compare::ways_of(model, model.branches[0], 1).front());
+        by_simbody(compare::sides_of(model, model.branches[0], 1).front());
     } catch (const NotRepresented& error) {
         return error.what();
     }
@@ -235,7 +243,10 @@ TEST(Simbody, TheSameRatesAxisByAxisAreTheSameBushing) {
     const auto rates = std::get<LinearStiffness>(bushing(scene).law).K.diagonal().eval();
     const auto at_end = [](const Scene& told) {
         const Model model = compile(told);
-        return by_simbody(compare::ways_of(model, model.branches[0], 1).front()).points.back().poses[0].r;
+        return by_simbody(compare::sides_of(model, model.branches[0], 1).front())
+            .points.back()
+            .poses[0]
+            .r;
     };
     const Eigen::Vector3d as_matrix = at_end(scene);
     PerAxis law;
@@ -252,8 +263,8 @@ const std::string scenes = ELASTOCHECK_SCENES;
 TEST(SimbodyCandidate, TellsEveryBodyAtEveryStepFromEndToEnd) {
     const support::Folder folder;
     const std::string file = (folder.path / "states.jsonl").string();
-    const auto said =
-        says(candidate + " " + scenes + "/chrono_mcpherson_travel.yaml 4 " + file + " travel braking");
+    const auto said = says(candidate + " " + scenes + "/chrono_mcpherson_travel.yaml 4 " + file +
+                           " travel braking");
     ASSERT_EQ(said.code, 0) << said.err;
     const Model model = compile(compare::trim(support::scene("chrono_mcpherson_travel")).scene);
     std::istringstream lines(text_of(file));
@@ -273,14 +284,15 @@ TEST(SimbodyCandidate, TellsEveryBodyAtEveryStepFromEndToEnd) {
     ASSERT_EQ(loads.size(), 2u);
     for (const auto& [name, told] : loads) {
         const auto branch = std::ranges::find(model.branches, name, &Branch::name);
-        const auto asked = compare::asked_for(compare::ways_of(model, *branch, 4), 1);
+        const auto asked = compare::asked_for(compare::sides_of(model, *branch, 4), 1);
         EXPECT_EQ(told, asked) << name;
     }
 }
 
 TEST(SimbodyCandidate, SaysWhatIsWrongAndWritesNothing) {
     const support::Folder folder;
-    const std::string file = (folder.path / "states.jsonl").string(), mcpherson = scenes + "/mcpherson.yaml";
+    const std::string file = (folder.path / "states.jsonl").string(),
+                      mcpherson = scenes + "/mcpherson.yaml";
     const auto fails = [&](const std::string& arguments, int code, const std::string& why) {
         const auto said = says(candidate + " " + arguments);
         EXPECT_EQ(said.code, code) << arguments << ": " << said.err;

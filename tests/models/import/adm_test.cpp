@@ -9,15 +9,15 @@
 #include <numbers>
 #include <utility>
 
-#include "compare/formulations.hpp"
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/studies/formulations.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/curve.hpp"
 #include "models/import/adm/expression.hpp"
-#include "models/import/export_adm.hpp"
+#include "models/import/export/export_adm.hpp"
 #include "models/import/import.hpp"
-#include "models/reader/scene_file.hpp"
 #include "tests/models/import/imports.hpp"
 
 namespace elastocheck {
@@ -90,7 +90,8 @@ std::string entries(const std::string& yaml) {
 
 // Adds END to a dataset without one.
 std::string ended(const std::string& text) {
-    return text.find("\nEND") == text.npos && text.find("\rEND") == text.npos ? text + "\nEND\n" : text;
+    return text.find("\nEND") == text.npos && text.find("\rEND") == text.npos ? text + "\nEND\n"
+                                                                              : text;
 }
 
 std::string scene_of(const std::string& text, const Options& options = {}) {
@@ -124,9 +125,10 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
         {"lines end in CRLF", everywhere(linkage, "\n", "\r\n")},
         {"lines end in CR", everywhere(linkage, "\n", "\r")},
         {"cut off words",
-         everywhere(everywhere(everywhere(linkage, "REVOLUTE", "rev"), "SPRINGDAMPER", "SPR"), "MARKER/",
-                    "mark/")},
-        {"small letters", replaced(replaced(linkage, ", TRANSLATIONAL", ", translation"), "KGRAV", "kgrav")},
+         everywhere(everywhere(everywhere(linkage, "REVOLUTE", "rev"), "SPRINGDAMPER", "SPR"),
+                    "MARKER/", "mark/")},
+        {"small letters",
+         replaced(replaced(linkage, ", TRANSLATIONAL", ", translation"), "KGRAV", "kgrav")},
         {"commas at the ends of lines", replaced(linkage, ", I = 4\n, J = 5", ", I = 4,\n, J = 5")},
         {"all on one line", replaced(linkage, "\n, I = 3\n, J = 1", ", I=3,J=1")},
         {"a list over lines", replaced(linkage, "QG = 10, 20, 30", "QG = 10,\n, 20\n, 30")},
@@ -134,17 +136,21 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
          replaced(linkage, "QG = 10, 20, 30", "QG = \n, 10, 20, 30")},
         {"the sign of continuation at the end",
          replaced(linkage, "SPRINGDAMPER/1\n, TRANSLATIONAL", "SPRINGDAMPER/1, &\n TRANSLATIONAL")},
-        {"leading zeros", everywhere(everywhere(linkage, "PART = 1", "PART = 001"), "JOINT/1", "JOINT/0001")},
-        {"radians", everywhere(linkage, "90D, 90D, 0D", "1.5707963267948966, 1.5707963267948966, 0")},
+        {"leading zeros",
+         everywhere(everywhere(linkage, "PART = 1", "PART = 001"), "JOINT/1", "JOINT/0001")},
+        {"radians",
+         everywhere(linkage, "90D, 90D, 0D", "1.5707963267948966, 1.5707963267948966, 0")},
         {"exponents of old", replaced(linkage, "K = 12.5", "K = 1.25D+01")},
-        {"bytes of Latin-1 in comments", replaced(linkage, "ACCGRAV/", "! f\xFCr Gewicht\nACCGRAV/")},
-        {"comments within a statement", replaced(linkage, ", J = 5\n", "! between\n, J = 5   ! behind\n")},
-        {"units last",
-         replaced(linkage.substr(0, linkage.find("UNITS")) +
-                      linkage.substr(linkage.find("!    adams_view_name='ground'")),
-                  "END\n",
-                  linkage.substr(linkage.find("UNITS"), linkage.find("!    adams") - linkage.find("UNITS")) +
-                      "END\n")},
+        {"bytes of Latin-1 in comments",
+         replaced(linkage, "ACCGRAV/", "! f\xFCr Gewicht\nACCGRAV/")},
+        {"comments within a statement",
+         replaced(linkage, ", J = 5\n", "! between\n, J = 5   ! behind\n")},
+        {"units last", replaced(linkage.substr(0, linkage.find("UNITS")) +
+                                    linkage.substr(linkage.find("!    adams_view_name='ground'")),
+                                "END\n",
+                                linkage.substr(linkage.find("UNITS"),
+                                               linkage.find("!    adams") - linkage.find("UNITS")) +
+                                    "END\n")},
         {"more behind the end", linkage + "nonsense\n"},
     };
     for (const auto& [what, text] : others) EXPECT_EQ(entries(scene_of(text)), expected) << what;
@@ -152,13 +158,17 @@ TEST(Adm, IsTheSameModelHoweverItIsWritten) {
 
 TEST(Adm, KeepsNamesAndSaysWhereEachElementComesFrom) {
     const std::string yaml = scene_of(linkage);
-    EXPECT_NE(yaml.find("crank: {origin: crank_cm, mass: 2}  # line 15, PART/2 'crank'"), yaml.npos) << yaml;
-    EXPECT_NE(yaml.find("joint_1: {type: revolute, bodies: [crank, ground], at: marker_3, axis: x}"),
-              yaml.npos)
+    EXPECT_NE(yaml.find("crank: {origin: crank_cm, mass: 2}  # line 15, PART/2 'crank'"), yaml.npos)
         << yaml;
-    EXPECT_NE(yaml.find("springdamper_1: {bodies: [crank, ground], from: crank_cm, to: marker_5, rate: 12.5, "
-                        "free_length: 210}"),
-              yaml.npos)
+    EXPECT_NE(
+        yaml.find("joint_1: {type: revolute, bodies: [crank, ground], at: marker_3, axis: x}"),
+        yaml.npos)
+        << yaml;
+    EXPECT_NE(
+        yaml.find(
+            "springdamper_1: {bodies: [crank, ground], from: crank_cm, to: marker_5, rate: 12.5, "
+            "free_length: 210}"),
+        yaml.npos)
         << yaml;
     EXPECT_NE(yaml.find("damping of SPRINGDAMPER/1"), yaml.npos) << yaml;
 }
@@ -173,51 +183,58 @@ TEST(Adm, UnitsAreConvertedEachByItsOwn) {
     const auto spring_of = [](const Scene& scene) {
         return std::get<AxialSpring>(scene.elastics.at(0).kind);
     };
-    for (const Units& u : {Units{"NEWTON", "KILOGRAM", "MILLIMETER", 1, 1, 1e-3},
-                           Units{"KNEWTON", "KILOGRAM", "METER", 1e3, 1, 1},
-                           Units{"POUND_FORCE", "SLUG", "FOOT", pound * g, pound * g / 0.3048, 0.3048},
-                           Units{"POUND_FORCE", "POUND_MASS", "INCH", pound * g, pound, 0.0254},
-                           Units{"DYNE", "GRAM", "CENTIMETER", 1e-5, 1e-3, 1e-2}}) {
+    for (const Units& u :
+         {Units{"NEWTON", "KILOGRAM", "MILLIMETER", 1, 1, 1e-3},
+          Units{"KNEWTON", "KILOGRAM", "METER", 1e3, 1, 1},
+          Units{"POUND_FORCE", "SLUG", "FOOT", pound * g, pound * g / 0.3048, 0.3048},
+          Units{"POUND_FORCE", "POUND_MASS", "INCH", pound * g, pound, 0.0254},
+          Units{"DYNE", "GRAM", "CENTIMETER", 1e-5, 1e-3, 1e-2}}) {
         std::string text = replaced(linkage, "NEWTON", u.force);
         text = replaced(replaced(text, "KILOGRAM", u.mass), "MILLIMETER", u.length);
         const Scene scene = parse_scene(scene_of(text), "scene");
-        EXPECT_NEAR(std::get<LinearRate>(spring_of(scene).law).k / (12.5 * u.newton / u.metre), 1, 1e-11)
+        EXPECT_NEAR(std::get<LinearRate>(spring_of(scene).law).k / (12.5 * u.newton / u.metre), 1,
+                    1e-11)
             << u.force;
         EXPECT_NEAR(spring_of(scene).free_length / (210 * u.metre), 1, 1e-11) << u.length;
-        EXPECT_NEAR(
-            std::get<DeadForce>(scene.static_loads.at(0).kind).f.z() / (-2 * u.kilogram * 9806.65 * u.metre),
-            1, 1e-11)
+        EXPECT_NEAR(std::get<DeadForce>(scene.static_loads.at(0).kind).f.z() /
+                        (-2 * u.kilogram * 9806.65 * u.metre),
+                    1, 1e-11)
             << u.mass;
     }
-    EXPECT_EQ(entries(scene_of(replaced(
-                  linkage, ", FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND",
-                  ", SYSTEM = MKS"))),
-              entries(scene_of(replaced(linkage, "MILLIMETER", "METER"))));
+    EXPECT_EQ(
+        entries(scene_of(replaced(
+            linkage, ", FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND",
+            ", SYSTEM = MKS"))),
+        entries(scene_of(replaced(linkage, "MILLIMETER", "METER"))));
 }
 
 // ZP and XP are points: REULER, two points, and a marker relative to a marker define the same
 // frame.
 TEST(Adm, FramesAreTheSameByAnglesByPointsAndInAnotherMarker) {
-    const std::string bushing = replaced(linkage, "ACCGRAV/",
-                                         "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
-                                         "MARKER/7, PART = 1, QP = 11, 22, 33, REULER = 30D, 40D, 50D\n"
-                                         "BUSHING/9, I = 6, J = 7, K = 1, 2, 3, KT = 4, 5, 6\nACCGRAV/");
+    const std::string bushing =
+        replaced(linkage, "ACCGRAV/",
+                 "MARKER/6, PART = 2, QP = 1, 2, 3, REULER = 30D, 40D, 50D\n"
+                 "MARKER/7, PART = 1, QP = 11, 22, 33, REULER = 30D, 40D, 50D\n"
+                 "BUSHING/9, I = 6, J = 7, K = 1, 2, 3, KT = 4, 5, 6\nACCGRAV/");
     const Matrix3d A = (Eigen::AngleAxisd(std::numbers::pi / 6, Vector3d::UnitZ()) *
                         Eigen::AngleAxisd(std::numbers::pi * 2 / 9, Vector3d::UnitX()) *
                         Eigen::AngleAxisd(std::numbers::pi * 5 / 18, Vector3d::UnitZ()))
                            .toRotationMatrix();
     const Vector3d q(11, 22, 33), z = q + 7 * A.col(2), x = q + 3 * A.col(0) + 2 * A.col(2);
-    const auto list = [](const Vector3d& v) { return fmt::format("{}, {}, {}", v.x(), v.y(), v.z()); };
+    const auto list = [](const Vector3d& v) {
+        return fmt::format("{}, {}, {}", v.x(), v.y(), v.z());
+    };
     const std::string at = "QP = 11, 22, 33, REULER = 30D, 40D, 50D";
     const std::string by_points =
         replaced(bushing, at, fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}", list(z), list(x)));
     const std::string use_x =
         replaced(bushing, at,
-                 fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}, USEXP", list(q + 7 * A.col(2) + A.col(0)),
-                             list(q + 5 * A.col(0))));
-    const std::string nested = replaced(bushing, at,
-                                        "QP = 0, 0, 33, REULER = 0, 40D, 50D, RM = 8\nMARKER/8, PART = 1, QP "
-                                        "= 11, 22, 0, REULER = 30D, 0, 0");
+                 fmt::format("QP = 11, 22, 33, ZP = {}, XP = {}, USEXP",
+                             list(q + 7 * A.col(2) + A.col(0)), list(q + 5 * A.col(0))));
+    const std::string nested =
+        replaced(bushing, at,
+                 "QP = 0, 0, 33, REULER = 0, 40D, 50D, RM = 8\nMARKER/8, PART = 1, QP "
+                 "= 11, 22, 0, REULER = 30D, 0, 0");
     const auto frame = [](const std::string& text) {
         const Scene scene = parse_scene(scene_of(text), "scene");
         for (const Elastic& elastic : scene.elastics)
@@ -253,14 +270,18 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"no comma", "t\nPART/1 GROUND\n", "expected a comma"},
         {"no units",
          replaced(linkage,
-                  "UNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = SECOND\n",
+                  "UNITS/\n, FORCE = NEWTON\n, MASS = KILOGRAM\n, LENGTH = MILLIMETER\n, TIME = "
+                  "SECOND\n",
                   ""),
          "UNITS: missing"},
-        {"two units", linkage.substr(0, linkage.find("END")) + "UNITS/, SYSTEM = MKS\n", "a second UNITS"},
+        {"two units", linkage.substr(0, linkage.find("END")) + "UNITS/, SYSTEM = MKS\n",
+         "a second UNITS"},
         {"a unit", replaced(linkage, "MILLIMETER", "CUBIT"), "'CUBIT' is no unit"},
-        {"a system", replaced(linkage, ", FORCE = NEWTON", ", SYSTEM = NONE"), "is no system of units"},
+        {"a system", replaced(linkage, ", FORCE = NEWTON", ", SYSTEM = NONE"),
+         "is no system of units"},
         {"half the units", replaced(linkage, ", FORCE = NEWTON\n", ""), "FORCE is missing"},
-        {"no ground", replaced(linkage, "PART/1\n, GROUND", "PART/1, MASS = 1"), "none of them is GROUND"},
+        {"no ground", replaced(linkage, "PART/1\n, GROUND", "PART/1, MASS = 1"),
+         "none of them is GROUND"},
         {"two grounds", with("PART/7, GROUND"), "a second ground"},
         {"twice", with("MARKER/1, PART = 1"), "there is one with this id already"},
         {"no part", with("MARKER/8, PART = 77"), "there is no PART/77"},
@@ -285,25 +306,31 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"degrees of stiffness", replaced(linkage, "K = 12.5", "K = 12D"), "this is no angle"},
         {"two numbers", replaced(linkage, "QG = 10, 20, 30", "QG = 10, 20"),
          "2 numbers, where 3 are asked for"},
-        {"an argument", replaced(linkage, "K = 12.5", "STIFFNESS = 12.5"), "'STIFFNESS' is no argument"},
+        {"an argument", replaced(linkage, "K = 12.5", "STIFFNESS = 12.5"),
+         "'STIFFNESS' is no argument"},
         {"a flag", replaced(linkage, ", REVOLUTE", ", HINGE"), "'HINGE' is no flag"},
         {"twice given", replaced(linkage, ", K = 12.5", ", K = 12.5, K = 1"), "K is given twice"},
         {"two ids", replaced(linkage, ", I = 3", ", I = 3, 4"), "2 ids, where one"},
         {"no id", replaced(linkage, ", I = 3", ", I = 3.5"), "is no id"},
-        {"two kinds", replaced(linkage, ", REVOLUTE", ", REVOLUTE, SPHERICAL"), "is REVOLUTE and SPHERICAL"},
+        {"two kinds", replaced(linkage, ", REVOLUTE", ", REVOLUTE, SPHERICAL"),
+         "is REVOLUTE and SPHERICAL"},
         {"no kind", replaced(linkage, ", REVOLUTE\n", ""), "does not say of what kind"},
-        {"apart", replaced(linkage, "QP = -10, -20, -30", "QP = -10, -20, 0"), "I and J are apart by 30 mm"},
+        {"apart", replaced(linkage, "QP = -10, -20, -30", "QP = -10, -20, 0"),
+         "I and J are apart by 30 mm"},
         {"two gravities", with("ACCGRAV/, KGRAV = 1"), "a second one"},
         {"floating", with("MARKER/8, PART = 1, FLOATING\nBUSHING/8, I = 4, J = 8"),
          "floats, and so is nowhere"},
         {"a bracket open", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -3*(DM(4,5)"),
          "a bracket is left open"},
-        {"a bracket shut", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3)"), "a bracket closes"},
+        {"a bracket shut", with("SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3)"),
+         "a bracket closes"},
         {"no function", with("SFORCE/1, TRANS, I = 4, J = 5"), "FUNCTION is missing"},
         {"a field without", with("FIELD/1, I = 4, J = 5"), "KMATRIX is missing"},
         {"a beam without", with("BEAM/1, I = 4, J = 5, LENGTH = 1"), "AREA is missing"},
-        {"a motion of", with("MOTION/1, ROTATIONAL, JOINT = 5, FUNCTION = 0"), "there is no JOINT/5"},
-        {"a motion along", with("MOTION/1, TRANS, JOINT = 1, FUNCTION = 0"), "has no such coordinate"},
+        {"a motion of", with("MOTION/1, ROTATIONAL, JOINT = 5, FUNCTION = 0"),
+         "there is no JOINT/5"},
+        {"a motion along", with("MOTION/1, TRANS, JOINT = 1, FUNCTION = 0"),
+         "has no such coordinate"},
         {"a table", with("SPLINE/1, X = 1, 2, 2, Y = 1, 2, 3"), "is not above the one before"},
         {"no id", with("SPRINGDAMPER/, TRANS, I = 4, J = 5, K = 1"), "SPRINGDAMPER/: has no id"},
         {"an id twice", with("SPRINGDAMPER/1, TRANS, I = 4, J = 5, K = 1"),
@@ -316,7 +343,8 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         EXPECT_TRUE(said.starts_with("model.adm:")) << what << ": " << said;
         EXPECT_NE(said.find(message), said.npos) << what << ": " << said;
     }
-    EXPECT_NE(refusal(linkage, {"crnk", false, false}).find("did you mean 'crank'"), std::string::npos);
+    EXPECT_NE(refusal(linkage, {"crnk", false, false}).find("did you mean 'crank'"),
+              std::string::npos);
     EXPECT_NE(refusal(linkage, {"pivot", false, false}).find("is not on a part that moves"),
               std::string::npos);
     EXPECT_NE(refusal(linkage, {}, "model.txt").find("'.txt' is no ending"), std::string::npos);
@@ -334,20 +362,25 @@ TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
         {"FRICTION/1, JOINT = 1", "--drop dynamics"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = USER(1)", "USER(...)"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DM(4,5)**2", "a power of a displacement"},
-        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -SIGN(10,VR(4,5))", "SIGN of a velocity: friction"},
-        {"JOINT/2, SPHERICAL, I = 4, J = 6, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, MAXIMUM_DEFORMATION = 0.01\n"
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -SIGN(10,VR(4,5))",
+         "SIGN of a velocity: friction"},
+        {"JOINT/2, SPHERICAL, I = 4, J = 6, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, "
+         "MAXIMUM_DEFORMATION = 0.01\n"
          "MARKER/6, PART = 1, QP = 100, 0, 0",
          "MU_DYN_ROT, MAX_FRIC_ROT, MAXIMUM_DEFORMATION: its friction holds"},
         {"SPRINGDAMPER/2, TRANS, I = 4, J = 5, K = 3, KT = 4", "KT: given, but not used"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = STEP(TIME,0,0,1,5) + STEP(TIME,1,0,2,-5)",
          "changes with time, 0 to 5"},
-        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -(1+STEP(TIME,0,0,1,5)+STEP(TIME,1,0,2,-5))*DM(4,5)",
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = "
+         "-(1+STEP(TIME,0,0,1,5)+STEP(TIME,1,0,2,-5))*DM(4,5)",
          "a force of displacements that changes with time"},
         {"MOTION/1, ROT, JOINT = 1, VELOCITY, FUNCTION = SIN(2*PI*TIME)",
          "a velocity or an acceleration that changes"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = 3*DM(4,5)", "a negative rate"},
-        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DX(4,5,5)", "other than between its own markers"},
-        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = VARVAL(3)\nVARIABLE/3, FUNCTION = VARVAL(4)\nVARIABLE/4, "
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = -DX(4,5,5)",
+         "other than between its own markers"},
+        {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = VARVAL(3)\nVARIABLE/3, FUNCTION = "
+         "VARVAL(4)\nVARIABLE/4, "
          "FUNCTION = VARVAL(3)",
          "it depends on itself"},
         {"FIELD/1, I = 4, J = 5, FUNCTION = USER(1)", "a function of the user's"},
@@ -366,7 +399,8 @@ TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
         const std::string yaml = scene_of(with(statement), {"", false, true});
         EXPECT_NE(yaml.find("# MISSING: line 41"), yaml.npos) << statement << yaml;
         EXPECT_NE(yaml.find("NOT the model of the file"), yaml.npos) << statement;
-        EXPECT_EQ(entries(yaml).substr(0, 100), entries(scene_of(linkage)).substr(0, 100)) << statement;
+        EXPECT_EQ(entries(yaml).substr(0, 100), entries(scene_of(linkage)).substr(0, 100))
+            << statement;
     }
     EXPECT_EQ(refusal(with("FRICTION/1, JOINT = 1"), {"", true, false}), "");
 }
@@ -398,8 +432,9 @@ TEST(Adm, ExpressionsAreSumsOfConstantsDisplacementsAndCurves) {
     EXPECT_DOUBLE_EQ(law.curves[0].scale, 2);
     EXPECT_DOUBLE_EQ(law.curves[0].offset, -1);
     for (const char* text :
-         {"", "1 +", "1 2", "(1", "SIN(DX(1,2))", "1/0", "1/DM(1,2)", "DX(1)*DX(2)", "nothing", "SQRT(-1)",
-          "DX(1.5)", "IF(DX(1,2): 1, 2, 3)", "IMPACT(1, 2, 3)", "AKISPL(3, 0, 1)", "VARVAL(1)"})
+         {"", "1 +", "1 2", "(1", "SIN(DX(1,2))", "1/0", "1/DM(1,2)", "DX(1)*DX(2)", "nothing",
+          "SQRT(-1)", "DX(1.5)", "IF(DX(1,2): 1, 2, 3)", "IMPACT(1, 2, 3)", "AKISPL(3, 0, 1)",
+          "VARVAL(1)"})
         EXPECT_FALSE(evaluate(text, context).is_known()) << text;
     EXPECT_FALSE(evaluate(std::string(100'000, '('), context).is_known());
     EXPECT_FALSE(evaluate(std::string(100'000, '-') + "1", context).linear.size());
@@ -421,10 +456,12 @@ BUSHING/1, I = 1, J = 2, K = 1000, 2000, 500, KT = 3E5, 2E5, 1E5, FORCE = 300, -
     const Scene scene = parse_scene(scene_of(text), "scene");
     const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
     // The markers as drawn, moved with the part.
-    const Matrix3d A_part = euler(10, 20, 30), A_I = A_part * euler(24, 5, 0), A_J = euler(10, 20, 66);
+    const Matrix3d A_part = euler(10, 20, 30), A_I = A_part * euler(24, 5, 0),
+                   A_J = euler(10, 20, 66);
     const Vector3d I = Vector3d(5, 6, 7) + A_part * Vector3d(20, 10, 0), J(30, 20, 15);
     const Matrix3d turn = rest.poses.at(0).p.toRotationMatrix();
-    const Vector3d now = 1000 * rest.poses.at(0).r + turn * (I - 1000 * scene.bodies.at(0).design.r);
+    const Vector3d now =
+        1000 * rest.poses.at(0).r + turn * (I - 1000 * scene.bodies.at(0).design.r);
     const Vector3d delta = A_J.transpose() * (now - J);
     EXPECT_LE((delta - Vector3d(0.3, -0.1, 0.2)).norm(), 1e-6) << delta;
     const Matrix3d B = A_J.transpose() * turn * A_I;
@@ -437,14 +474,15 @@ BUSHING/1, I = 1, J = 2, K = 1000, 2000, 500, KT = 3E5, 2E5, 1E5, FORCE = 300, -
 // reaction carries its weight.
 TEST(Adm, JointSamplesBearTheWeightAtRest) {
     const double weight = 9.80665;  // of 1 kg
-    for (const auto& [file, axis, g] : {std::tuple{"Revolute_Case01", "IGRAV", Vector3d(weight, 0, 0)},
-                                        {"Spherical_Case01", "IGRAV", Vector3d(weight, 0, 0)},
-                                        {"Universal_Case01", "JGRAV", Vector3d(0, weight, 0)},
-                                        {"Distance_Case01", "JGRAV", Vector3d(0, weight, 0)},
-                                        {"Prismatic_Case01", "IGRAV", Vector3d(weight, 0, 0)},
-                                        {"Cylindrical_Case01", "IGRAV", Vector3d(weight, 0, 0)}}) {
-        const std::string text = replaced(sample(fmt::format("chrono_{}.adm", file)), "KGRAV = -9.80665",
-                                          fmt::format("{} = {}", axis, weight));
+    for (const auto& [file, axis, g] :
+         {std::tuple{"Revolute_Case01", "IGRAV", Vector3d(weight, 0, 0)},
+          {"Spherical_Case01", "IGRAV", Vector3d(weight, 0, 0)},
+          {"Universal_Case01", "JGRAV", Vector3d(0, weight, 0)},
+          {"Distance_Case01", "JGRAV", Vector3d(0, weight, 0)},
+          {"Prismatic_Case01", "IGRAV", Vector3d(weight, 0, 0)},
+          {"Cylindrical_Case01", "IGRAV", Vector3d(weight, 0, 0)}}) {
+        const std::string text = replaced(sample(fmt::format("chrono_{}.adm", file)),
+                                          "KGRAV = -9.80665", fmt::format("{} = {}", axis, weight));
         const Scene scene = parse_scene(scene_of(text), "scene");
         const Model model = compile(scene);
         ASSERT_EQ(model.joints.size(), 1u) << file;
@@ -460,7 +498,8 @@ TEST(Adm, ThePendulumOnATorsionSpringHangsWhereItsSpringLetsIt) {
     const Scene scene = parse_scene(scene_of(sample("chrono_RotSpring_Case01.adm")), "scene");
     const double k = 180 / std::numbers::pi, m_g = 9.80665;
     double phi = 0.3;
-    for (int n = 0; n < 50; ++n) phi -= (2 * m_g * std::cos(phi) - k * phi) / (-2 * m_g * std::sin(phi) - k);
+    for (int n = 0; n < 50; ++n)
+        phi -= (2 * m_g * std::cos(phi) - k * phi) / (-2 * m_g * std::sin(phi) - k);
     const Equilibrium rest = at_rest(scene, compare::Leg::equilibrium);
     EXPECT_NEAR(rest.poses.at(0).r.x(), 2 * std::cos(phi), 1e-9);
     EXPECT_NEAR(rest.poses.at(0).r.z(), -2 * std::sin(phi), 1e-9);
@@ -478,16 +517,18 @@ MARKER/2, PART = 1, QP = 0.1, 0.2, 0.25
 MARKER/3, PART = 1, FLOATING
 )";
     const auto bushing_of = [&](const std::string& statement) {
-        return std::get<Bushing>(parse_scene(scene_of(base + statement), "scene").elastics.at(0).kind);
+        return std::get<Bushing>(
+            parse_scene(scene_of(base + statement), "scene").elastics.at(0).kind);
     };
     const Bushing expected =
         bushing_of("BUSHING/1, I=1, J=2, K=10,20,30, KT=4,5,6, FORCE=1,2,3, TORQUE=0,0,7\n");
-    for (const char* statement :
-         {"GFORCE/1, I=1, JFLOAT=3, RM=2\n, FX = 1-10*DX(1,2,2)\\\n, FY = 2-20*DY(1,2,2) - 3*VY(1,2,2)\\\n, "
-          "FZ = 3 - 15*DZ(1,2,2)\n, -15*DZ(1,2,2)\\\n"
-          ", TX = -4*AX(1,2)\\ TY = -5*AY(1,2)\\ TZ = 7-6*AZ(1,2)\n",
-          "FIELD/1, I=1, J=2, FORCE=1,2,3,0,0,7, KMATRIX=10,0,0,0,0,0\n, 0,20,0,0,0,0, 0,0,30,0,0,0, "
-          "0,0,0,4,0,0\n, 0,0,0,0,5,0,0,0,0,0,0,6\n"}) {
+    for (const char* statement : {"GFORCE/1, I=1, JFLOAT=3, RM=2\n, FX = 1-10*DX(1,2,2)\\\n, FY = "
+                                  "2-20*DY(1,2,2) - 3*VY(1,2,2)\\\n, "
+                                  "FZ = 3 - 15*DZ(1,2,2)\n, -15*DZ(1,2,2)\\\n"
+                                  ", TX = -4*AX(1,2)\\ TY = -5*AY(1,2)\\ TZ = 7-6*AZ(1,2)\n",
+                                  "FIELD/1, I=1, J=2, FORCE=1,2,3,0,0,7, KMATRIX=10,0,0,0,0,0\n, "
+                                  "0,20,0,0,0,0, 0,0,30,0,0,0, "
+                                  "0,0,0,4,0,0\n, 0,0,0,0,5,0,0,0,0,0,0,6\n"}) {
         const Bushing found = bushing_of(statement);
         EXPECT_EQ(std::get<LinearStiffness>(found.law).K, std::get<LinearStiffness>(expected.law).K)
             << statement;
@@ -518,7 +559,8 @@ ACCGRAV/, KGRAV = -10
          {Plane{"KGRAV", 2, 1, 4e-7, 1.5, +1}, Plane{"JGRAV", 1, 2, 5e-7, 1.2, -1}}) {
         const Scene scene = parse_scene(scene_of(replaced(text, "KGRAV", gravity)), "scene");
         const Pose end = at_rest(scene, compare::Leg::equilibrium).poses.at(0);
-        EXPECT_NEAR(end.r[down] / (-0.1 * (8 / (3 * 2e11 * I) + 2 * shear / (8e10 * 1e-3))), 1, 1e-6);
+        EXPECT_NEAR(end.r[down] / (-0.1 * (8 / (3 * 2e11 * I) + 2 * shear / (8e10 * 1e-3))), 1,
+                    1e-6);
         EXPECT_NEAR(2 * end.p.vec()[about] / (turn * 0.1 * 4 / (2 * 2e11 * I)), 1, 1e-5) << gravity;
     }
 }
@@ -528,11 +570,12 @@ ACCGRAV/, KGRAV = -10
 TEST(Adm, ASplineOfAPenetrationIsAStopWithACurve) {
     const auto with = [](const std::string& function, const std::string& points) {
         return replaced(linkage, "ACCGRAV/",
-                        "SPLINE/4, X = " + points +
-                            "\nSFORCE/7, TRANS, I = 4, J = 5, FUNCTION = " + function + "\nACCGRAV/");
+                        "SPLINE/4, X = " + points + "\nSFORCE/7, TRANS, I = 4, J = 5, FUNCTION = " +
+                            function + "\nACCGRAV/");
     };
     const std::string rows = "0, 10, 20, Y = 0, 500, 2000";
-    const Scene scene = parse_scene(scene_of(with("2 * AKISPL(DIM(180, DM(4,5)), 0, 4)", rows)), "scene");
+    const Scene scene =
+        parse_scene(scene_of(with("2 * AKISPL(DIM(180, DM(4,5)), 0, 4)", rows)), "scene");
     const auto& stop = std::get<AxialSpring>(scene.elastics.at(1).kind);
     EXPECT_NEAR(force(stop.law, 0.170 - stop.free_length), -1000, 1e-9);
     EXPECT_EQ(force(stop.law, 0.181 - stop.free_length), 0);
@@ -549,10 +592,10 @@ TEST(Adm, ASplineOfAPenetrationIsAStopWithACurve) {
 }
 
 TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
-    const std::string text =
-        replaced(linkage, "ACCGRAV/",
-                 "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
-                 "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
+    const std::string text = replaced(
+        linkage, "ACCGRAV/",
+        "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
+        "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
     const std::string yaml = scene_of(text);
     const auto told = importer::told(importer::import_text(text, "model.adm", {}).notes);
     EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& line) {
@@ -575,7 +618,9 @@ TEST(Adm, AContactAlongALineIsAStop) {
                  ", FUNCTION = BISTOP(DM(4,5), VR(4,5), 180, 230, 1000, 1, 5, 0.1)\nACCGRAV/");
     const Scene scene = parse_scene(scene_of(text), "scene");
     ASSERT_EQ(scene.elastics.size(), 3u);
-    const auto stop = [&](std::size_t k) { return std::get<AxialSpring>(scene.elastics.at(k).kind); };
+    const auto stop = [&](std::size_t k) {
+        return std::get<AxialSpring>(scene.elastics.at(k).kind);
+    };
     const auto touches = [&](std::size_t k) {
         return stop(k).free_length + std::get<Curve>(stop(k).law).knots.at(0);
     };
@@ -592,11 +637,11 @@ TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
     ASSERT_EQ(generic.branches.size(), 1u);
     EXPECT_EQ(generic.branches[0].unit, ParameterUnit::radian);
     EXPECT_NEAR(generic.branches[0].to, std::numbers::pi / 6, 1e-12);
-    const std::string text =
-        replaced(linkage, "ACCGRAV/",
-                 "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
-                 "MOTION/1, ROT, JOINT = 1, FUNCTION = 30D*TIME\n"
-                 "COUPLER/1, JOINTS = 1, 2, TYPE = R:R, SCALES = 1, 2\nACCGRAV/");
+    const std::string text = replaced(
+        linkage, "ACCGRAV/",
+        "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
+        "MOTION/1, ROT, JOINT = 1, FUNCTION = 30D*TIME\n"
+        "COUPLER/1, JOINTS = 1, 2, TYPE = R:R, SCALES = 1, 2\nACCGRAV/");
     const Scene coupled = parse_scene(scene_of(text), "scene");
     const auto& drivers = coupled.branches.at(0).drivers;
     ASSERT_EQ(drivers.size(), 2u);
@@ -609,8 +654,8 @@ TEST(Adm, AMotionDrivesAndACouplerDrivesInProportion) {
 // letter, is an error.
 TEST(Adm, AMisspeltArgumentIsNeverSilent) {
     int changed = 0;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::filesystem::path(ELASTOCHECK_IMPORT) / "samples")) {
+    for (const auto& entry : std::filesystem::directory_iterator(
+             std::filesystem::path(ELASTOCHECK_IMPORT) / "samples")) {
         const std::string name = entry.path().filename().string();
         if (entry.path().extension() != ".adm" || !refusal(sample(name)).empty()) continue;
         const std::string text = sample(name);
@@ -633,9 +678,11 @@ TEST(Adm, AMisspeltArgumentIsNeverSilent) {
                     (k > 0 && line[k - 1] != ' ' && line[k - 1] != ','))
                     continue;
                 std::size_t n = k;
-                while (n < line.size() && ((line[n] >= 'A' && line[n] <= 'Z') || line[n] == '_')) ++n;
+                while (n < line.size() && ((line[n] >= 'A' && line[n] <= 'Z') || line[n] == '_'))
+                    ++n;
                 const auto next = line.find_first_not_of(" \t\r", n);
-                if (n - k < 1 || (next != line.npos && line[next] != '=' && line[next] != ',')) continue;
+                if (n - k < 1 || (next != line.npos && line[next] != '=' && line[next] != ','))
+                    continue;
                 if (line.find('=') < k) continue;  // a value
                 std::string other = text;
                 other[at + k] = line[k] == 'Q' ? 'K' : 'Q';
@@ -651,7 +698,8 @@ TEST(Adm, ADatasetThatWasCutOffIsRefused) {
     const std::string whole = sample("chrono_RotSpring_Case01.adm");
     EXPECT_EQ(refusal(whole), "");
     for (const double share : {0.5, 0.7, 0.9, 0.99}) {
-        const std::string half = whole.substr(0, static_cast<std::size_t>(share * whole.rfind("END")));
+        const std::string half =
+            whole.substr(0, static_cast<std::size_t>(share * whole.rfind("END")));
         std::string said;
         try {
             importer::import_text(half, "model.adm", {});
@@ -665,12 +713,13 @@ TEST(Adm, ADatasetThatWasCutOffIsRefused) {
         importer::import_text(without, "model.adm", {});
         ADD_FAILURE() << "imported";
     } catch (const SceneError& error) {
-        EXPECT_NE(std::string(error.what()).find("END: the dataset does not end with END"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("END: the dataset does not end with END"),
+                  std::string::npos)
             << error.what();
     }
-    EXPECT_NE(
-        importer::import_text(without, "model.adm", {"", false, true}).yaml.find("# MISSING: line 42, END"),
-        std::string::npos);
+    EXPECT_NE(importer::import_text(without, "model.adm", {"", false, true})
+                  .yaml.find("# MISSING: line 42, END"),
+              std::string::npos);
 }
 
 // Friction arguments of a joint, named as in the documentation, are left out by --drop dynamics
@@ -680,9 +729,11 @@ TEST(Adm, FrictionOfAJointIsLeftOutByName) {
                                       ", REVOLUTE, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, "
                                       "MAXIMUM_DEFORMATION = 0.01, INNER_RADIUS = 4\n");
     EXPECT_NE(
-        refusal(text).find("MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its friction holds"),
+        refusal(text).find(
+            "MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its friction holds"),
         std::string::npos);
-    const auto told = importer::told(importer::import_text(text, "model.adm", {"", true, false}).notes);
+    const auto told =
+        importer::told(importer::import_text(text, "model.adm", {"", true, false}).notes);
     EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& line) {
         return line.starts_with("Left out, by --drop dynamics: line 30, MU_DYN_ROT, MAX_FRIC_ROT");
     }));
@@ -701,15 +752,17 @@ TEST(Adm, WarningsOfOneKindAreOneLineWithTheLargest) {
     for (const auto& line : importer::told(imported.notes))
         if (line.starts_with("Warning")) warnings.push_back(line);
     ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_EQ(warnings[0],
-              "Warning: line 47, JOINT/3: I and J are apart by 0.02 mm in the file; here they meet (2 of "
-              "this kind, this "
-              "the largest; also line 46, JOINT/2).");
+    EXPECT_EQ(
+        warnings[0],
+        "Warning: line 47, JOINT/3: I and J are apart by 0.02 mm in the file; here they meet (2 of "
+        "this kind, this "
+        "the largest; also line 46, JOINT/2).");
 }
 
 TEST(Adm, InitialConditionsAreLeftOutEachWithItsLine) {
-    const std::string yaml = scene_of(replaced(
-        linkage, "ACCGRAV/", "MOTION/1, ROT, JOINT = 1, VELOCITY, FUNCTION = 1, ICDISP = 0.1\nACCGRAV/"));
+    const std::string yaml = scene_of(
+        replaced(linkage, "ACCGRAV/",
+                 "MOTION/1, ROT, JOINT = 1, VELOCITY, FUNCTION = 1, ICDISP = 0.1\nACCGRAV/"));
     EXPECT_NE(yaml.find("line 41, ICDISP of MOTION/1"), yaml.npos) << yaml;
 }
 
@@ -730,8 +783,9 @@ TEST(Adm, AProgrammeInTimeCoversItsWholeRange) {
     };
     for (const auto& [function, from, to] : cases) {
         const Scene scene = parse_scene(
-            scene_of(replaced(linkage, "ACCGRAV/",
-                              fmt::format("MOTION/1, ROT, JOINT = 1, FUNCTION = {}\nACCGRAV/", function))),
+            scene_of(replaced(
+                linkage, "ACCGRAV/",
+                fmt::format("MOTION/1, ROT, JOINT = 1, FUNCTION = {}\nACCGRAV/", function))),
             "scene");
         ASSERT_EQ(scene.branches.size(), 1u) << function;
         const Branch& branch = scene.branches[0];
@@ -744,14 +798,17 @@ TEST(Adm, AProgrammeInTimeCoversItsWholeRange) {
 TEST(Adm, MotionsThatDoNotGoInProportionHaveABranchEach) {
     const std::string two =
         "PART/3, MASS = 1\nMARKER/6, PART = 3\nMARKER/7, PART = 1\nJOINT/2, REV, I = 6, J = 7\n"
-        "MOTION/1, ROT, JOINT = 1, FUNCTION = STEP(TIME,0,0D,1,10D)\nMOTION/2, ROT, JOINT = 2, FUNCTION = ";
+        "MOTION/1, ROT, JOINT = 1, FUNCTION = STEP(TIME,0,0D,1,10D)\nMOTION/2, ROT, JOINT = 2, "
+        "FUNCTION = ";
     const auto scene = [&](const char* second) {
-        return parse_scene(scene_of(replaced(linkage, "ACCGRAV/", two + second + "\nACCGRAV/")), "scene");
+        return parse_scene(scene_of(replaced(linkage, "ACCGRAV/", two + second + "\nACCGRAV/")),
+                           "scene");
     };
     const Scene together = scene("-2*STEP(TIME,0,0D,1,10D)"), apart = scene("10D*TIME");
     ASSERT_EQ(together.branches.size(), 1u);
     ASSERT_EQ(together.branches[0].drivers.size(), 2u);
-    EXPECT_NEAR(together.branches[0].drivers[1].rate / together.branches[0].drivers[0].rate, -2, 1e-9);
+    EXPECT_NEAR(together.branches[0].drivers[1].rate / together.branches[0].drivers[0].rate, -2,
+                1e-9);
     ASSERT_EQ(apart.branches.size(), 2u);
     EXPECT_EQ(apart.branches[1].name, "motion_2");
 }
@@ -759,18 +816,20 @@ TEST(Adm, MotionsThatDoNotGoInProportionHaveABranchEach) {
 // The value at time 0 is a static load and the change is a branch, which drives all proportional
 // components together.
 TEST(Adm, ALoadInTimeIsABranchOverWhatItChangesBy) {
-    const std::string yaml = scene_of(replaced(
-        linkage, "ACCGRAV/",
-        "MARKER/9, PART = 1, FLOATING\nVFORCE/1, I = 4, JFLOAT = 9, RM = 5, FX = 100*SIN(2*PI*TIME)\\ "
-        "FY = 10 + 50*SIN(2*PI*TIME)\\ FZ = 5\nACCGRAV/"));
-    EXPECT_NE(yaml.find("vforce_1: {on: crank, at: crank_cm, force: [0, 10, 5]}"), yaml.npos) << yaml;
-    EXPECT_NE(yaml.find("load: {load: {vforce_1.change: 1, vforce_1.change_2: 0.5}, from: -100, to: 100"),
-              yaml.npos)
+    const std::string yaml = scene_of(replaced(linkage, "ACCGRAV/",
+                                               "MARKER/9, PART = 1, FLOATING\nVFORCE/1, I = 4, "
+                                               "JFLOAT = 9, RM = 5, FX = 100*SIN(2*PI*TIME)\\ "
+                                               "FY = 10 + 50*SIN(2*PI*TIME)\\ FZ = 5\nACCGRAV/"));
+    EXPECT_NE(yaml.find("vforce_1: {on: crank, at: crank_cm, force: [0, 10, 5]}"), yaml.npos)
         << yaml;
-    const std::string spike =
-        scene_of(replaced(linkage, "ACCGRAV/",
-                          "SFORCE/7, TRANS, ACTIONONLY, I = 4, J = 5, FUNCTION = STEP(TIME,0.1,0,0.11,500) + "
-                          "STEP(TIME,0.11,0,0.12,-500)\nACCGRAV/"));
+    EXPECT_NE(
+        yaml.find("load: {load: {vforce_1.change: 1, vforce_1.change_2: 0.5}, from: -100, to: 100"),
+        yaml.npos)
+        << yaml;
+    const std::string spike = scene_of(replaced(
+        linkage, "ACCGRAV/",
+        "SFORCE/7, TRANS, ACTIONONLY, I = 4, J = 5, FUNCTION = STEP(TIME,0.1,0,0.11,500) + "
+        "STEP(TIME,0.11,0,0.12,-500)\nACCGRAV/"));
     EXPECT_NE(spike.find("load: {load: {sforce_7.change: 1}, to: 500"), spike.npos) << spike;
     EXPECT_EQ(spike.find("exerting nothing"), spike.npos);
 }
@@ -799,8 +858,10 @@ SPRINGDAMPER/1, TRANS, I = 4, J = 3, K = 4, LENGTH = 90
 ACCGRAV/, KGRAV = -9806.65
 )";
     // Position of the ball on the rotated part.
-    const Vector3d ball = euler(10, 20, 30).transpose() * (Vector3d(160, 210, 310) - Vector3d(100, 200, 300));
-    const std::string met = replaced(with_all, "@", fmt::format("{}, {}, {}", ball.x(), ball.y(), ball.z()));
+    const Vector3d ball =
+        euler(10, 20, 30).transpose() * (Vector3d(160, 210, 310) - Vector3d(100, 200, 300));
+    const std::string met =
+        replaced(with_all, "@", fmt::format("{}, {}, {}", ball.x(), ball.y(), ball.z()));
     const Scene first = parse_scene(scene_of(met), "scene");
     const importer::Exported exported = importer::export_adm(first, false);
     const Scene second = parse_scene(scene_of(exported.text), "scene");
@@ -851,9 +912,11 @@ probes: {tip: {on: arm, at: p}}
 )",
                            "scene");
     };
-    const std::string table = "curve: {table: [[0, 0], [10, 250], [20, 800], [30, 2000], [45, 5000]]";
+    const std::string table =
+        "curve: {table: [[0, 0], [10, 250], [20, 800], [30, 2000], [45, 5000]]";
     for (const std::string& fields : std::vector<std::string>{
-             "bump_stop: {clearance: 45, " + table + "}}", "rebound_stop: {clearance: 45, " + table + "}}",
+             "bump_stop: {clearance: 45, " + table + "}}",
+             "rebound_stop: {clearance: 45, " + table + "}}",
              "bump_stop: {clearance: 20, rate: 300}, rebound_stop: {clearance: 30, " + table +
                  ", outside: unknown}}",
              "bump_stop: {clearance: -5, " + table +
@@ -873,15 +936,16 @@ probes: {tip: {on: arm, at: p}}
 
 TEST(Adm, ATorsionSpringWithACurveIsExportedAndImportedAgainAsItWas) {
     std::string text = linkage;
-    const Scene first =
-        parse_scene(scene_of(replaced(
-                        text, "ACCGRAV/",
-                        "SPLINE/4, LINEAR_EXTRAPOLATE, X = -1, -0.5, 0, 0.5, 1, Y = -900, -300, 0, 100, 150\n"
-                        "SFORCE/7, ROT, I = 3, J = 1, FUNCTION = 25 - AKISPL(AZ(3,1), 0, 4)\nACCGRAV/")),
-                    "scene");
+    const Scene first = parse_scene(
+        scene_of(replaced(
+            text, "ACCGRAV/",
+            "SPLINE/4, LINEAR_EXTRAPOLATE, X = -1, -0.5, 0, 0.5, 1, Y = -900, -300, 0, 100, 150\n"
+            "SFORCE/7, ROT, I = 3, J = 1, FUNCTION = 25 - AKISPL(AZ(3,1), 0, 4)\nACCGRAV/")),
+        "scene");
     const Scene second = parse_scene(scene_of(importer::export_adm(first, false).text), "scene");
     const auto torsion = [](const Scene& scene) {
-        const auto found = std::ranges::find(scene.elastics, WrittenAs::torsion_spring, &Elastic::written_as);
+        const auto found =
+            std::ranges::find(scene.elastics, WrittenAs::torsion_spring, &Elastic::written_as);
         EXPECT_NE(found, scene.elastics.end());
         return std::get<Bushing>(found->kind);
     };
@@ -902,11 +966,13 @@ TEST(Adm, EveryBuiltInSceneIsExportedAndImportedAgainWithTheElementsItHad) {
         if (file.path().extension() != ".yaml") continue;
         SCOPED_TRACE(file.path().filename());
         ++scenes;
-        const Scene first =
-            compare::converted(compare::trim(read_scene(file.path())).scene, importer::adams_bushing).scene;
-        const Scene second = parse_scene(scene_of(importer::export_adm(first, false).text), "scene");
+        const Scene first = compare::converted(compare::trim(read_scene(file.path())).scene,
+                                               importer::adams_bushing)
+                                .scene;
+        const Scene second =
+            parse_scene(scene_of(importer::export_adm(first, false).text), "scene");
         for (const Elastic& elastic : first.elastics) {
-            if (elastic.only_where_driven) continue;
+            if (elastic.active_only_where_driven) continue;
             if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
                 for (double x = -0.1; x <= 0.1; x += 0.01) {
                     const double length = spring->free_length + x,
@@ -914,7 +980,8 @@ TEST(Adm, EveryBuiltInSceneIsExportedAndImportedAgainWithTheElementsItHad) {
                     // Lengths are imported with twelve digits.
                     const double largest =
                         std::abs(force_between(first, elastic.name, spring->free_length - 0.1));
-                    EXPECT_NEAR(force_between(second, elastic.name, length), f, 1e-9 * (1 + largest))
+                    EXPECT_NEAR(force_between(second, elastic.name, length), f,
+                                1e-9 * (1 + largest))
                         << elastic.name << " " << x;
                 }
                 continue;
@@ -922,11 +989,13 @@ TEST(Adm, EveryBuiltInSceneIsExportedAndImportedAgainWithTheElementsItHad) {
             const auto same = std::ranges::find(second.elastics, elastic.name, &Elastic::name);
             ASSERT_NE(same, second.elastics.end()) << elastic.name;
             const auto &a = std::get<Bushing>(elastic.kind), &b = std::get<Bushing>(same->kind);
-            const auto *K = std::get_if<LinearStiffness>(&a.law), *L = std::get_if<LinearStiffness>(&b.law);
+            const auto *K = std::get_if<LinearStiffness>(&a.law),
+                       *L = std::get_if<LinearStiffness>(&b.law);
             if (elastic.written_as == WrittenAs::torsion_spring || K == nullptr) continue;
             ASSERT_NE(L, nullptr) << elastic.name;
             EXPECT_LE((K->K - L->K).norm(), 1e-9 * K->K.norm()) << elastic.name;
-            EXPECT_LE((a.preload - b.preload).norm(), 1e-9 * (1 + a.preload.norm())) << elastic.name;
+            EXPECT_LE((a.preload - b.preload).norm(), 1e-9 * (1 + a.preload.norm()))
+                << elastic.name;
             ++bushings;
         }
     }

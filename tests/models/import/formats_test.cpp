@@ -7,13 +7,13 @@
 #include <cstring>
 #include <filesystem>
 
-#include "compare/characteristics.hpp"
-#include "compare/legs.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/legs.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/curve.hpp"
-#include "models/import/export_chrono.hpp"
+#include "models/import/export/export_chrono.hpp"
 #include "models/import/import.hpp"
-#include "models/reader/scene_file.hpp"
 #include "tests/models/import/imports.hpp"
 #include "tests/support/pipe.hpp"
 
@@ -75,8 +75,9 @@ TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
 // out.
 TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
     std::string text = sample("generic__DoubleWishbone.json");
-    text = replaced(replaced(text, "\"Toe Angle (deg)\":                  0", "\"Toe Angle (deg)\": 0.5"),
-                    "\"Camber Angle (deg)\":               0", "\"Camber Angle (deg)\": -1");
+    text = replaced(
+        replaced(text, "\"Toe Angle (deg)\":                  0", "\"Toe Angle (deg)\": 0.5"),
+        "\"Camber Angle (deg)\":               0", "\"Camber Angle (deg)\": -1");
     const Scene scene = parse_scene(chrono_scene(text), "scene");
     const Vector3d e = scene.wheels.at(0).spin_axis_local, f = scene.wheels.at(1).spin_axis_local;
     EXPECT_NEAR(std::atan2(e.x(), e.y()) * 180 / M_PI, 0.5, 1e-9);
@@ -90,7 +91,7 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
     for (const char* file : {"generic__DoubleWishbone.json", "generic__ThreeLinkIRS.json"}) {
         const Scene scene = parse_scene(chrono_scene(sample(file)), "scene");
         const Model model = compile(scene);
-        const auto ways = compare::ways_of(model, model.branches.front(), 6);
+        const auto ways = compare::sides_of(model, model.branches.front(), 6);
         const auto a = compare::walk(ways, {.leg = compare::Leg::equilibrium}),
                    b = compare::walk(ways, {.leg = compare::Leg::series});
         ASSERT_EQ(a.outcome, Outcome::converged) << file << a.detail;
@@ -119,22 +120,26 @@ TEST(Chrono, BushingsStandWhereChronoPutsThem) {
         }
     EXPECT_EQ(bushings, 4);
     // The tie rod has mass: a body between a ball joint and a universal joint.
-    EXPECT_NE(yaml.find("tierod_left.inner: {type: universal, bodies: [ground, tierod_left]"), yaml.npos);
+    EXPECT_NE(yaml.find("tierod_left.inner: {type: universal, bodies: [ground, tierod_left]"),
+              yaml.npos);
     const std::string light = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json"));
-    EXPECT_NE(light.find("tierod_left: {type: distance, bodies: [ground, upright_left]"), light.npos)
+    EXPECT_NE(light.find("tierod_left: {type: distance, bodies: [ground, upright_left]"),
+              light.npos)
         << light;
 }
 
 // A template and the generic suspension with the same numbers are the same mechanism.
 TEST(Chrono, TheReplicaMovesAsItsTemplate) {
-    const Scene a = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene"),
-                b = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")),
-                                "scene");
+    const Scene a = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")),
+                                "scene"),
+                b = parse_scene(
+                    chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")), "scene");
     const auto travelled = [](const Scene& scene) {
         const Model model = compile(scene);
         Branch branch = model.branches.front();
         branch.from = 0;
-        return compare::walk(compare::ways_of(model, branch, 2), {.leg = compare::Leg::equilibrium});
+        return compare::walk(compare::sides_of(model, branch, 2),
+                             {.leg = compare::Leg::equilibrium});
     };
     const auto p = travelled(a), q = travelled(b);
     ASSERT_EQ(p.points.size(), q.points.size());
@@ -153,13 +158,13 @@ TEST(Chrono, TheReplicaMovesAsItsTemplate) {
 
 TEST(Chrono, FaultsOfTheDataAreKeptAndTold) {
     const std::string yaml = chrono_scene(sample("generic__DeDionAxle.json"));
-    EXPECT_NE(
-        yaml.find("its minimum length 0.28 is above its maximum length 0.12: both stops are always closed"),
-        yaml.npos)
+    EXPECT_NE(yaml.find("its minimum length 0.28 is above its maximum length 0.12: both stops are "
+                        "always closed"),
+              yaml.npos)
         << yaml;
-    EXPECT_NE(
-        chrono_scene(sample("generic__MacPhersonStrut.json")).find("in tension at the design position: 1.2"),
-        std::string::npos);
+    EXPECT_NE(chrono_scene(sample("generic__MacPhersonStrut.json"))
+                  .find("in tension at the design position: 1.2"),
+              std::string::npos);
 }
 
 // Each key of every sample, misspelt in its last letter, is an error.
@@ -176,7 +181,8 @@ TEST(Chrono, AMisspeltKeyIsNeverSilent) {
         const std::string name = entry.path().filename().string();
         if (entry.path().extension() != ".json" || !refusal(sample(name), name).empty()) continue;
         const std::string text = sample(name);
-        for (std::size_t colon = text.find(':'); colon != text.npos; colon = text.find(':', colon + 1)) {
+        for (std::size_t colon = text.find(':'); colon != text.npos;
+             colon = text.find(':', colon + 1)) {
             const std::size_t line = text.rfind('\n', colon) + 1;
             const std::size_t close = text.find_last_not_of(" \t", colon - 1);
             if (text[close] != '"' || text.substr(line, colon - line).find("//") != text.npos ||
@@ -203,7 +209,9 @@ TEST(Chrono, AMisspeltKeyIsNeverSilent) {
 // A // comment ends at the end of its line for all line endings, and messages count those lines.
 TEST(Chrono, LinesMayEndInCarriageReturnsAlone) {
     std::string text = sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json");
-    const auto entries = [](const std::string& yaml) { return yaml.substr(yaml.find("\nelastocheck:")); };
+    const auto entries = [](const std::string& yaml) {
+        return yaml.substr(yaml.find("\nelastocheck:"));
+    };
     const std::string expected = entries(chrono_scene(text));
     std::erase(text, '\r');
     std::ranges::replace(text, '\n', '\r');
@@ -211,14 +219,15 @@ TEST(Chrono, LinesMayEndInCarriageReturnsAlone) {
 }
 
 TEST(Chrono, AMisspeltSpringIsAnErrorThatNamesTheRightKey) {
-    const std::string said = refusal(
-        replaced(sample("generic__DoubleWishbone.json"), "\"Spring Coefficient\"", "\"Spring Coefficent\""),
-        "model.json");
-    EXPECT_NE(
-        said.find("Spring/Spring Coefficent: not known of this template, did you mean 'Spring Coefficient'?"),
-        said.npos)
+    const std::string said = refusal(replaced(sample("generic__DoubleWishbone.json"),
+                                              "\"Spring Coefficient\"", "\"Spring Coefficent\""),
+                                     "model.json");
+    EXPECT_NE(said.find("Spring/Spring Coefficent: not known of this template, did you mean "
+                        "'Spring Coefficient'?"),
+              said.npos)
         << said;
-    EXPECT_NE(refusal(replaced(sample("generic__DoubleWishbone.json"), "14.705", "\"14.705\""), "model.json")
+    EXPECT_NE(refusal(replaced(sample("generic__DoubleWishbone.json"), "14.705", "\"14.705\""),
+                      "model.json")
                   .find("expected a number, found the string \"14.705\""),
               std::string::npos);
 }
@@ -260,7 +269,8 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
     says(one_stop, "Minimum Length: not used: Chrono makes stops where both");
 
     // At speed zero -30 N at 0.25 m and 70 N at 0.35 m.
-    const std::string map = with("\"Map Data\": [[-1, -40, 60], [3, 0, 100]], \"Deformation\": [0.25, 0.35]");
+    const std::string map =
+        with("\"Map Data\": [[-1, -40, 60], [3, 0, 100]], \"Deformation\": [0.25, 0.35]");
     const AxialSpring of_map = law(chrono_scene(map));
     const auto& curve = std::get<Curve>(of_map.law);
     EXPECT_NEAR(of_map.free_length + curve.knots.at(0), 0.25, 1e-9);
@@ -269,34 +279,37 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
     EXPECT_TRUE(curve.known_outside);
     says(map, "Free Length: not used: Chrono counts the deformation of a map from length zero");
 
-    says(double_wishbone(
-             "\"Tierod\":\n  {",
-             "\"Tierod\":\n  {\"Bushing Data\": {\"Stiffness Linear\": 7e7, \"Stiffness Rotational\": 1},"),
+    says(double_wishbone("\"Tierod\":\n  {",
+                         "\"Tierod\":\n  {\"Bushing Data\": {\"Stiffness Linear\": 7e7, "
+                         "\"Stiffness Rotational\": 1},"),
          "Tierod.Bushing Data: not used: Chrono makes a tie rod without Mass");
 }
 
 // ChLinkRSDA: the torque on body 2 about the axis is P - k (angle - free).
 TEST(Chrono, ARotationalSpringHasItsPreloadAndItsFreeAngle) {
     const auto torsion = [](const std::string& law) {
-        const std::string text = replaced(
-            sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json"), "\"TSDAs\"",
-            "\"RSDAs\": [{\"Name\": \"twist\", \"Mirrored\": false, \"Body1\": \"Chassis\", \"Body2\": "
-            "[\"LCA\", \"Left\"], \"Position\": [0, 0.3, 0], \"Axis\": [1, 0, 0], " +
-                law + "}], \"TSDAs\"");
+        const std::string text =
+            replaced(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json"), "\"TSDAs\"",
+                     "\"RSDAs\": [{\"Name\": \"twist\", \"Mirrored\": false, \"Body1\": "
+                     "\"Chassis\", \"Body2\": "
+                     "[\"LCA\", \"Left\"], \"Position\": [0, 0.3, 0], \"Axis\": [1, 0, 0], " +
+                         law + "}], \"TSDAs\"");
         return chrono_scene(text);
     };
     const std::string linear = torsion(
-        "\"Spring Coefficient\": 100, \"Free Angle\": 0.2, \"Preload\": 5, \"Damping Coefficient\": 3");
+        "\"Spring Coefficient\": 100, \"Free Angle\": 0.2, \"Preload\": 5, \"Damping "
+        "Coefficient\": 3");
     EXPECT_NE(linear.find("rate: 100, preload_moment: -25}"), linear.npos) << linear;
-    const std::string curve =
-        torsion("\"Spring Curve Data\": [[-1, -10], [1, 10]], \"Free Angle\": 0.25, \"Preload\": 2");
+    const std::string curve = torsion(
+        "\"Spring Curve Data\": [[-1, -10], [1, 10]], \"Free Angle\": 0.25, \"Preload\": 2");
     EXPECT_NE(curve.find("curve: {table: [[-0.75, -12], [1.25, 8]]"), curve.npos) << curve;
 }
 
 // Each point of the file is a hardpoint with its own source line; the midpoint of an arm's axis is
 // marked as computed.
 TEST(Chrono, HardpointsOfTheFileStayWithTheirLines) {
-    const std::string text = sample("hmmwv__HMMWV_DoubleWishboneFront.json"), yaml = chrono_scene(text);
+    const std::string text = sample("hmmwv__HMMWV_DoubleWishboneFront.json"),
+                      yaml = chrono_scene(text);
     const auto line_of = [&](const char* part, const char* key) {
         const auto at = text.find(key, text.find(part));
         return std::ranges::count(std::string_view(text).substr(0, at), '\n') + 1;
@@ -309,9 +322,10 @@ TEST(Chrono, HardpointsOfTheFileStayWithTheirLines) {
         const auto at = yaml.find(fmt::format("  {}: [", name));
         ASSERT_NE(at, yaml.npos) << name;
         const std::string line = yaml.substr(at, yaml.find('\n', at) - at);
-        EXPECT_NE(line.find(fmt::format("# line {}, {}/{}", line_of(fmt::format("\"{}\"", part).c_str(), key),
-                                        part, key)),
-                  line.npos)
+        EXPECT_NE(
+            line.find(fmt::format("# line {}, {}/{}",
+                                  line_of(fmt::format("\"{}\"", part).c_str(), key), part, key)),
+            line.npos)
             << line;
     }
     EXPECT_NE(yaml.find("# midpoint of Upper Control Arm/Location Chassis Front and"), yaml.npos);
@@ -338,7 +352,7 @@ probes: {o: {on: block, at: o}}
 )",
                                     "block");
     const Model model = compile(scene);
-    const auto ways = compare::ways_of(model, model.branches.front(), 40);
+    const auto ways = compare::sides_of(model, model.branches.front(), 40);
     for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series}) {
         const auto path = compare::walk(ways, {.leg = leg});
         ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
@@ -347,7 +361,8 @@ probes: {o: {on: block, at: o}}
             const double F = point.load;
             std::size_t k = 0;
             while (k + 2 < rows.size() && rows[k + 1].second < F) ++k;
-            const double z = rows[k].first + (F - rows[k].second) * (rows[k + 1].first - rows[k].first) /
+            const double z = rows[k].first + (F - rows[k].second) *
+                                                 (rows[k + 1].first - rows[k].first) /
                                                  (rows[k + 1].second - rows[k].second);
             EXPECT_NEAR(point.poses.at(0).r.z(), z, 1e-12) << name(leg) << " " << F;
         }
@@ -358,16 +373,18 @@ probes: {o: {on: block, at: o}}
 // the wheel rate is undefined, since rounding would select the side; the legs agree on these
 // points.
 TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
-    const Scene scene = parse_scene(chrono_scene(sample("ultra_tow__UT_LeafspringAxle.json")), "scene");
+    const Scene scene =
+        parse_scene(chrono_scene(sample("ultra_tow__UT_LeafspringAxle.json")), "scene");
     const Model model = compile(scene);
     const auto channels = compare::characteristics(model);
-    const auto ways = compare::ways_of(model, model.branches.front(), 12);  // 10 mm each
+    const auto ways = compare::sides_of(model, model.branches.front(), 12);  // 10 mm each
     const auto rate = static_cast<std::size_t>(
         std::ranges::find(channels, "left.wheel_rate", &compare::Channel::name) - channels.begin());
     ASSERT_LT(rate, channels.size());
     int without = 0;
     for (const auto leg : {compare::Leg::equilibrium, compare::Leg::series}) {
-        const auto walked = compare::walk(model, channels, model.branches.front(), ways, {.leg = leg});
+        const auto walked =
+            compare::walk(model, channels, model.branches.front(), ways, {.leg = leg});
         for (const auto& values : walked.curve.values)
             without += values.at(rate) == compare::undefined ? 1 : 0;
     }
@@ -377,12 +394,14 @@ TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
 
 // Chrono interpolates linearly between the rows; the scene does the same to the last digit.
 TEST(Chrono, ATableIsStraightBetweenItsRows) {
-    const Scene scene = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene");
+    const Scene scene =
+        parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene");
     const auto& curve = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
     ASSERT_GT(curve.knots.size(), 10u);
     for (std::size_t k = 0; k + 1 < curve.knots.size(); ++k) {
         const double h = curve.knots[k + 1] - curve.knots[k];
-        EXPECT_NEAR(curve.pieces[k + 1][0] + h * curve.pieces[k + 1][1], curve.pieces[k + 2][0], 1e-9);
+        EXPECT_NEAR(curve.pieces[k + 1][0] + h * curve.pieces[k + 1][1], curve.pieces[k + 2][0],
+                    1e-9);
         EXPECT_EQ(curve.pieces[k + 1][2], 0);
         EXPECT_EQ(curve.pieces[k + 1][3], 0);
     }
@@ -403,21 +422,25 @@ TEST(Chrono, SaysWhatIsWrongAndWhere) {
         {"an open comment", "{ /* \"a\": 1}", "a comment /* is left open"},
         {"more", sound + "{}", "more behind the end"},
         {"NaN", replaced(sound, "14.705", "NaN"), "expected a value"},
-        {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"), "'Vehicle' is no suspension"},
+        {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"),
+         "'Vehicle' is no suspension"},
         {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""),
          "did you mean 'DoubleWishbone'"},
         {"no spring", sample("generic__RigidPinnedAxle.json"), "no spring at all"},
         {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"),
          "model.json:12: Spindle.COM: expected a list of 3"},
-        {"a key", replaced(sound, "\"Location Arm\"", "\"Location Am\""), "Spring.Location Arm: missing"},
-        {"no such part", replaced(sound, "\"Axle\"", "\"Wing\""), "Wing: not known of this template"},
+        {"a key", replaced(sound, "\"Location Arm\"", "\"Location Am\""),
+         "Spring.Location Arm: missing"},
+        {"no such part", replaced(sound, "\"Axle\"", "\"Wing\""),
+         "Wing: not known of this template"},
     };
     for (const auto& [what, text, message] : cases) {
         const std::string said = refusal(text, "model.json");
         EXPECT_TRUE(said.starts_with("model.json:")) << what << ": " << said;
         EXPECT_NE(said.find(message), said.npos) << what << ": " << said;
     }
-    EXPECT_EQ(refusal(replaced(sound, "\"Axle\"", "/* here */ // and here\n\"Axle\""), "model.json"), "");
+    EXPECT_EQ(
+        refusal(replaced(sound, "\"Axle\"", "/* here */ // and here\n\"Axle\""), "model.json"), "");
 }
 
 // ---- Property files
@@ -432,12 +455,13 @@ bodies: {block: {origin: o}}
 
 Scene beside_fixtures(const std::string& elements) {
     support::Folder here;
-    for (const auto& entry : fs::directory_iterator(folder / "fixtures")) fs::copy(entry.path(), here.path);
-    return read_scene(
-        here.write("scene.yaml",
-                   block_on + elements +
-                       "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
-                       "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
+    for (const auto& entry : fs::directory_iterator(folder / "fixtures"))
+        fs::copy(entry.path(), here.path);
+    return read_scene(here.write(
+        "scene.yaml",
+        block_on + elements +
+            "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
+            "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
 }
 
 TEST(PropertyFile, ABushingTakesAllSixCurvesInTheUnitsOfTheFile) {
@@ -462,7 +486,8 @@ TEST(PropertyFile, LinesMayEndInCarriageReturnsAlone) {
 
 TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     const Scene scene = beside_fixtures(
-        "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: coil.spr}, free_length: "
+        "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: coil.spr}, "
+        "free_length: "
         "0.6,\n"
         "  bump_stop: {clearance: 0.05, curve: {file: rubber.bum}}}}\n");
     const auto& coil = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
@@ -475,14 +500,16 @@ TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
 // In a spring file compression and pushing force are positive: 3000 N at 100 mm of jounce.
 TEST(PropertyFile, ASpringPushesBackByTheSideOfItsCurveThatIsCompression) {
     const support::Folder here;
-    here.write("p.spr",
-               "[MDI_HEADER]\nFILE_TYPE = 'spr'\n[UNITS]\nLENGTH = 'mm'\nANGLE = 'deg'\nFORCE = 'newton'\n"
-               "[SPRING_DATA]\nFREE_LENGTH = 500\n[CURVE]\n{disp force}\n-100 -1000\n0 0\n100 3000\n");
+    here.write(
+        "p.spr",
+        "[MDI_HEADER]\nFILE_TYPE = 'spr'\n[UNITS]\nLENGTH = 'mm'\nANGLE = 'deg'\nFORCE = 'newton'\n"
+        "[SPRING_DATA]\nFREE_LENGTH = 500\n[CURVE]\n{disp force}\n-100 -1000\n0 0\n100 3000\n");
     const Scene scene = read_scene(here.write(
         "scene.yaml",
-        block_on + "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: p.spr}}}\n"
-                   "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
-                   "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
+        block_on +
+            "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: p.spr}}}\n"
+            "loads: {push: {on: block, at: o, force: [0, 0, 1]}}\n"
+            "branches: {push: {load: push, to: 1, steps: 1}}\nprobes: {o: {on: block, at: o}}\n"));
     const auto& law = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
     ASSERT_EQ(law.knots.size(), 3u);
     EXPECT_NEAR(law.knots.front(), -0.1, 1e-15);  // 100 mm shorter ...
@@ -497,9 +524,9 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
         support::Folder here;
         here.write("mount.bus", text);
         try {
-            read_scene(here.write(
-                "scene.yaml",
-                block_on + "bushings: {mount: {bodies: [ground, block], at: o, " + element + "}}\n"));
+            read_scene(here.write("scene.yaml",
+                                  block_on + "bushings: {mount: {bodies: [ground, block], at: o, " +
+                                      element + "}}\n"));
         } catch (const SceneError& error) {
             return error.what();
         }
@@ -518,22 +545,26 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
              {"falling", replaced(sound, "1   4000\n", "1 -5000\n"), "it may stay, but not fall"},
              {"back", replaced(sound, "1   4000\n", "-2 4000\n"), "is not above the one before"},
              {"alone", replaced(sound, "-1  -4000\n1   4000\n", "1 4000\n"), "fewer than two rows"},
-             {"no columns", replaced(sound, "{ y  fy }\n", ""), "expected NAME = value, or columns"},
+             {"no columns", replaced(sound, "{ y  fy }\n", ""),
+              "expected NAME = value, or columns"},
          }) {
         const std::string error = said(text);
         EXPECT_NE(error.find("mount.bus"), error.npos) << what << ": " << error;
         EXPECT_NE(error.find(message), error.npos) << what << ": " << error;
     }
-    EXPECT_NE(said(sound, "rates: mount.txt").find("or the name of a property file"), std::string::npos);
-    EXPECT_NE(
-        said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]").find("the file has all six curves"),
-        std::string::npos);
-    EXPECT_NE(said(sound, "rates: ../mount.bus").find("leads out of the scene's folder"), std::string::npos);
+    EXPECT_NE(said(sound, "rates: mount.txt").find("or the name of a property file"),
+              std::string::npos);
+    EXPECT_NE(said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]")
+                  .find("the file has all six curves"),
+              std::string::npos);
+    EXPECT_NE(said(sound, "rates: ../mount.bus").find("leads out of the scene's folder"),
+              std::string::npos);
 }
 
 TEST(PropertyFile, HardpointsOfASubsystemAreHalfATurnAway) {
     const std::string yaml =
-        importer::import_text(support::text_of(folder / "fixtures" / "front.sub"), "front.sub", {}).yaml;
+        importer::import_text(support::text_of(folder / "fixtures" / "front.sub"), "front.sub", {})
+            .yaml;
     EXPECT_NE(yaml.find("lca_front_left: [200, 400, 150]"), yaml.npos) << yaml;
     EXPECT_NE(yaml.find("rack_mount: [-180, 0, 210]"), yaml.npos);
     EXPECT_NE(yaml.find("mirror: left -> right"), yaml.npos);
@@ -543,11 +574,12 @@ TEST(PropertyFile, HardpointsOfASubsystemAreHalfATurnAway) {
 // Two hardpoints at the same position both remain: the template may have a part on each.
 TEST(PropertyFile, HardpointsOfOnePlaceBothStay) {
     const std::string sub = support::text_of(folder / "fixtures" / "front.sub");
-    const std::string twice =
-        replaced(sub, "'wheel_center'     'left/right'",
-                 "'tierod_outer'  'left/right'  0.0  -760.0  330.0\n'wheel_center'     'left/right'");
+    const std::string twice = replaced(
+        sub, "'wheel_center'     'left/right'",
+        "'tierod_outer'  'left/right'  0.0  -760.0  330.0\n'wheel_center'     'left/right'");
     const auto imported = importer::import_text(twice, "front.sub", {});
-    EXPECT_NE(imported.yaml.find("tierod_outer_left: [0, 760, 330]"), imported.yaml.npos) << imported.yaml;
+    EXPECT_NE(imported.yaml.find("tierod_outer_left: [0, 760, 330]"), imported.yaml.npos)
+        << imported.yaml;
     EXPECT_NE(imported.yaml.find("wheel_center_left: [0, 760, 330]"), imported.yaml.npos);
     EXPECT_EQ(imported.notes.understood.at("HARDPOINT"), 4);
 }
@@ -560,8 +592,10 @@ TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
         return importer::import_text(sub, "front.sub", options).yaml;
     };
     EXPECT_EQ(front("x-rearward,y-right"), front(""));
-    EXPECT_NE(front("x-forward,y-left").find("lca_front_left: [-200, -400, 150]"), std::string::npos);
-    EXPECT_NE(front("x-forward,y-right").find("lca_front_left: [-200, 400, -150]"), std::string::npos);
+    EXPECT_NE(front("x-forward,y-left").find("lca_front_left: [-200, -400, 150]"),
+              std::string::npos);
+    EXPECT_NE(front("x-forward,y-right").find("lca_front_left: [-200, 400, -150]"),
+              std::string::npos);
     EXPECT_NE(front("x-rearward,y-right")
                   .find("# Axes turned from x-rearward,y-right, z up to x forward, y left, z up "
                         "(ISO 8855)."),
@@ -569,8 +603,9 @@ TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
     EXPECT_THROW(front("x-up,y-left"), SceneError);
     Options options;
     options.axes = "x-forward,y-left";
-    EXPECT_THROW(importer::import_text(sample("generic__DoubleWishbone.json"), "model.json", options),
-                 SceneError);
+    EXPECT_THROW(
+        importer::import_text(sample("generic__DoubleWishbone.json"), "model.json", options),
+        SceneError);
 }
 
 // ---- A second frame of a bushing, for markers that are not parallel as drawn.
@@ -578,8 +613,9 @@ TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
 TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
     const auto bushing = [](const std::string& more) {
         return std::get<Bushing>(
-            beside_fixtures("bushings: {mount: {bodies: [ground, block], at: o, frame: {x: x, y: y}, " +
-                            more + "rates: [1, 2, 3], rotational_rates: [4, 5, 6]}}\n")
+            beside_fixtures(
+                "bushings: {mount: {bodies: [ground, block], at: o, frame: {x: x, y: y}, " + more +
+                "rates: [1, 2, 3], rotational_rates: [4, 5, 6]}}\n")
                 .elastics.at(0)
                 .kind);
     };
@@ -594,10 +630,10 @@ TEST(Bushing, AFrameOfTheSecondBodyIsItsOwn) {
 
 // The Chrono export of any imported scene can be re-imported and gives the same motion.
 TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
-    for (const char* name :
-         {"generic__MultiLink.json", "generic__DoubleWishbone.json", "generic__SemiTrailingArm.json",
-          "generic__ThreeLinkIRS.json", "hmmwv__HMMWV_DoubleWishboneFront_bushings.json",
-          "generic__HendricksonPRIMAXX.json", "generic__DeDionAxle.json"}) {
+    for (const char* name : {"generic__MultiLink.json", "generic__DoubleWishbone.json",
+                             "generic__SemiTrailingArm.json", "generic__ThreeLinkIRS.json",
+                             "hmmwv__HMMWV_DoubleWishboneFront_bushings.json",
+                             "generic__HendricksonPRIMAXX.json", "generic__DeDionAxle.json"}) {
         SCOPED_TRACE(name);
         const auto imported = [](std::string_view text) {
             return parse_scene(importer::import_text(text, "model.json", {}).yaml, "scene");
@@ -613,7 +649,7 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
         const Scene second = imported(importer::export_chrono(first, false).text);
         const auto end_of = [](const Scene& scene) {
             const Model model = compile(scene);
-            const auto path = compare::walk(compare::ways_of(model, model.branches.front(), 4),
+            const auto path = compare::walk(compare::sides_of(model, model.branches.front(), 4),
                                             {.leg = compare::Leg::equilibrium});
             std::vector<Vector3d> centres;
             for (const auto& point : path.points)
@@ -635,27 +671,32 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
 // Stops with Chrono's curve are exported as Chrono's own, both or one of the two; stops with other
 // curves are errors.
 TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
-    const Scene first =
-        parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json")), "scene");
+    const Scene first = parse_scene(
+        chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json")), "scene");
     const auto stops = [](const Scene& scene) {
         std::vector<const AxialSpring*> list;
         for (const Elastic& elastic : scene.elastics)
-            if (elastic.written_as == WrittenAs::stop) list.push_back(&std::get<AxialSpring>(elastic.kind));
+            if (elastic.written_as == WrittenAs::stop)
+                list.push_back(&std::get<AxialSpring>(elastic.kind));
         return list;
     };
     ASSERT_EQ(stops(first).size(), 4u);
     for (const bool both : {true, false}) {
         Scene some = first;
         if (!both)
-            std::erase_if(some.elastics, [](const Elastic& e) { return e.name.ends_with(".rebound_stop"); });
-        const Scene second = parse_scene(chrono_scene(importer::export_chrono(some, false).text), "scene");
+            std::erase_if(some.elastics,
+                          [](const Elastic& e) { return e.name.ends_with(".rebound_stop"); });
+        const Scene second =
+            parse_scene(chrono_scene(importer::export_chrono(some, false).text), "scene");
         const auto force_of_stops = [&](const Scene& scene, double length) {
             double sum = 0;
-            for (const AxialSpring* stop : stops(scene)) sum += force(stop->law, length - stop->free_length);
+            for (const AxialSpring* stop : stops(scene))
+                sum += force(stop->law, length - stop->free_length);
             return sum;
         };
         for (double length = 0.2; length < 0.8; length += 0.01)
-            EXPECT_NEAR(force_of_stops(second, length), force_of_stops(some, length), 1e-3) << length;
+            EXPECT_NEAR(force_of_stops(second, length), force_of_stops(some, length), 1e-3)
+                << length;
     }
     Scene other = first;
     for (Elastic& elastic : other.elastics)  // changes the force at one row
@@ -686,7 +727,8 @@ TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
 TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
     const Scene strut = read_scene(fs::path(ELASTOCHECK_SCENES) / "mcpherson_strut.yaml");
     EXPECT_THROW(importer::export_chrono(strut, false), SceneError);
-    EXPECT_NE(importer::export_chrono(strut, true).text.find("// MISSING: element"), std::string::npos);
+    EXPECT_NE(importer::export_chrono(strut, true).text.find("// MISSING: element"),
+              std::string::npos);
     const Scene arch = read_scene(fs::path(ELASTOCHECK_SCENES) / "two_spring_arch.yaml");
     EXPECT_THROW(importer::export_chrono(arch, true), SceneError);  // no wheel
 }

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "compare/legs.hpp"
-#include "models/compile.hpp"
+#include "compare/comparison/legs.hpp"
+#include "elastocheck/compile.hpp"
 #include "tests/support/folder.hpp"
 
 namespace elastocheck::tests {
@@ -29,8 +29,10 @@ inline Eigen::Matrix3d euler(double a, double b, double c) {
 // The start of the first branch, settled under the start values.
 inline Equilibrium at_rest(const Scene& scene, compare::Leg leg) {
     const Model model = compile(scene);
-    const auto path = compare::walk(compare::ways_of(model, model.branches.front(), 1), {.leg = leg});
-    if (path.points.empty()) throw std::runtime_error(std::string(name(path.outcome)) + ": " + path.detail);
+    const auto path =
+        compare::walk(compare::sides_of(model, model.branches.front(), 1), {.leg = leg});
+    if (path.points.empty())
+        throw std::runtime_error(std::string(name(path.outcome)) + ": " + path.detail);
     return path.points.front();
 }
 

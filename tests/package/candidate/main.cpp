@@ -16,7 +16,7 @@ int main(int, char** arguments) {
     const auto legs = compare::compare(model);
     const auto mine = judge_candidate(model, legs, candidate_of(model, legs, "mine", my_solver));
     for (const auto& off : mine.worst)
-        std::cout << off.channel << ": " << off.max << " " << symbol(off.unit) << " off on " << off.branch
-                  << "\n";
+        std::cout << off.channel << ": " << off.max << " " << symbol(off.unit) << " off on "
+                  << off.branch << "\n";
     std::cout << name(mine.verdict) << ", " << mine.compared << " numbers compared\n";
 }

@@ -9,6 +9,8 @@ int main(int, char** arguments) {
     const Model model = compile(compare::trim(read_scene(arguments[1])).scene);
     const auto outputs = compare::channels(model);
     const auto toe = static_cast<std::size_t>(compare::find_channel(outputs, "toe"));
-    for (const auto& point : compare::walk(compare::ways_of(model, model.branches.front()), {}).points)
-        std::cout << 1e3 * point.load << " mm: " << compare::evaluate(model, outputs, point)[toe] << " deg\n";
+    for (const auto& point :
+         compare::walk(compare::sides_of(model, model.branches.front()), {}).points)
+        std::cout << 1e3 * point.load << " mm: " << compare::evaluate(model, outputs, point)[toe]
+                  << " deg\n";
 }

@@ -4,7 +4,7 @@
 #include <elastocheck/recursive/solve.hpp>
 #include <iostream>
 
-#if __has_include(<models/compile.hpp>) || __has_include(<recursive/solve.hpp>)
+#if __has_include(<include/elastocheck/compile.hpp>) || __has_include(<include/elastocheck/recursive.hpp>)
 #error "headers of the house are on the path without elastocheck/"
 #endif
 
@@ -14,16 +14,18 @@ int main() {
     const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
     Scene scene;
     scene.bodies = {{.name = "block"}};
-    scene.joints = {
-        {.name = "slide",
-         .kind = Translational{.i = {0}, .j = {ground}, .axis_i = {0, up}, .axis_j = {ground, up}}}};
+    scene.joints = {{.name = "slide",
+                     .kind = Translational{
+                         .i = {0}, .j = {ground}, .axis_i = {0, up}, .axis_j = {ground, up}}}};
     scene.elastics = {
         {.name = "spring",
-         .kind = AxialSpring{.i = {ground}, .j = {0, up}, .law = LinearRate{1000}, .free_length = 1}}};
-    scene.branches = {{.name = "down",
-                       .to = 10,
-                       .steps = 10,
-                       .drivers = {{.what = Load{"weight", DeadForce{.at = {0}, .f = -up}}, .rate = 1}}}};
+         .kind =
+             AxialSpring{.i = {ground}, .j = {0, up}, .law = LinearRate{1000}, .free_length = 1}}};
+    scene.branches = {
+        {.name = "down",
+         .to = 10,
+         .steps = 10,
+         .drivers = {{.what = Load{"weight", DeadForce{.at = {0}, .f = -up}}, .rate = 1}}}};
     scene.probes = {{.name = "block", .at = {0}}};
     const Model model = compile(scene);
     const EquilibriumPath path = recursive::solve(model, model.branches.front());

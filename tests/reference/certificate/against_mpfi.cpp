@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "reference/certificate/rotations.hpp"
+#include "reference/certificate/interval/rotations.hpp"
 
 namespace {
 
@@ -43,20 +43,23 @@ void note(bool fine, const char* what, const Interval& a, const Interval& b, con
     if (fine) return;
     ++violations;
     if (++said <= 20)
-        std::printf("%s of [%a, %a] [%a, %a] is not in [%a, %a]\n", what, a.lo, a.hi, b.lo, b.hi, got.lo,
-                    got.hi);
+        std::printf("%s of [%a, %a] [%a, %a] is not in [%a, %a]\n", what, a.lo, a.hi, b.lo, b.hi,
+                    got.lo, got.hi);
 }
 
 // The enclosure contains the whole exact result. A NaN in the exact result means undefined: then
 // the enclosure must be unbounded.
-void holds(const char* what, const Interval& a, const Interval& b, const Interval& got, const Exact& exact) {
+void holds(const char* what, const Interval& a, const Interval& b, const Interval& got,
+           const Exact& exact) {
     if (mpfi_nan_p(exact.x)) return note(!bounded(got), what, a, b, got);
-    note(mpfr_cmp_d(&exact.x->left, got.lo) >= 0 && mpfr_cmp_d(&exact.x->right, got.hi) <= 0, what, a, b,
-         got);
+    note(mpfr_cmp_d(&exact.x->left, got.lo) >= 0 && mpfr_cmp_d(&exact.x->right, got.hi) <= 0, what,
+         a, b, got);
 }
 // The rounding of MPFR at 400 bits is far below that of a double.
-void holds(const char* what, const Interval& a, const Interval& b, const Interval& got, const Real& exact) {
-    note(mpfr_nan_p(exact.x) == 0 && mpfr_cmp_d(exact.x, got.lo) >= 0 && mpfr_cmp_d(exact.x, got.hi) <= 0,
+void holds(const char* what, const Interval& a, const Interval& b, const Interval& got,
+           const Real& exact) {
+    note(mpfr_nan_p(exact.x) == 0 && mpfr_cmp_d(exact.x, got.lo) >= 0 &&
+             mpfr_cmp_d(exact.x, got.hi) <= 0,
          what, a, b, got);
 }
 
@@ -162,7 +165,8 @@ void logarithms(const Eigen::Quaterniond& stored) {
     const auto [theta, c] = logarithm(direction_of<Interval>(stored));
     if (!bounded(c)) return;
     const double sign = stored.w() < 0 ? -1 : 1;
-    const Real w(sign * stored.w()), x(sign * stored.x()), y(sign * stored.y()), z(sign * stored.z());
+    const Real w(sign * stored.w()), x(sign * stored.x()), y(sign * stored.y()),
+        z(sign * stored.z());
     Real size, half, s, t;
     mpfr_sqr(size.x, x.x, MPFR_RNDN);
     for (const Real* part : {&y, &z}) {
@@ -197,7 +201,8 @@ int main(int count, char** arguments) {
         return 1;
     }
     const double least = std::numeric_limits<double>::denorm_min(),
-                 normal = std::numeric_limits<double>::min(), most = std::numeric_limits<double>::max(),
+                 normal = std::numeric_limits<double>::min(),
+                 most = std::numeric_limits<double>::max(),
                  infinite = std::numeric_limits<double>::infinity();
     std::vector<double> special{
         0.,       1.,       3.,     0.1,   least, normal, normal - least, 1.5 * normal, most,
@@ -212,7 +217,8 @@ int main(int count, char** arguments) {
         }
 
     std::mt19937_64 random(20240607);
-    std::uniform_real_distribution<double> unit(-1, 1), exponent(-300, 300), small(-20, 20), depth(-30, 0);
+    std::uniform_real_distribution<double> unit(-1, 1), exponent(-300, 300), small(-20, 20),
+        depth(-30, 0);
     const auto number = [&](auto& range) { return unit(random) * std::pow(10., range(random)); };
     for (long n = 0; n < pairs; ++n) {
         const auto interval = [&]() -> Interval {
@@ -235,9 +241,9 @@ int main(int count, char** arguments) {
         series(std::abs(unit(random)) * (n % 20 == 0 ? 0.9 : std::pow(10., depth(random))));
         angles(7 * unit(random), unit(random));
         const double turn = n % 20 == 0 ? 1 : std::pow(10., depth(random) / 2);
-        logarithms(
-            Eigen::Quaterniond(unit(random), turn * unit(random), turn * unit(random), turn * unit(random))
-                .normalized());
+        logarithms(Eigen::Quaterniond(unit(random), turn * unit(random), turn * unit(random),
+                                      turn * unit(random))
+                       .normalized());
     }
     std::printf("%ld results, %ld violations\n", checked, violations);
     return violations == 0 ? 0 : 1;

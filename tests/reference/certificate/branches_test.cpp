@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
 #include "reference/certificate/certificate.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -24,10 +24,10 @@ std::vector<Walked> walked(const std::string& scene, int points) {
     const Model model = compile(compare::trim(support::scene(scene)).scene);
     std::vector<Walked> all;
     for (const auto& branch : model.branches)
-        for (const auto& way : compare::ways_of(model, branch, points)) {
-            compare::Gait gait;
-            gait.leg = compare::Leg::equilibrium;
-            const EquilibriumPath path = compare::walk(way, gait);
+        for (const auto& way : compare::sides_of(model, branch, points)) {
+            compare::SolverSettings solver;
+            solver.leg = compare::Leg::equilibrium;
+            const EquilibriumPath path = compare::walk(way, solver);
             EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
             all.push_back({way.model, way.branch, path.points});
         }
@@ -60,8 +60,10 @@ TEST(CertifyBranch, StatesThatAreOffOrAtOtherLoadsHaveNoTube) {
     EXPECT_EQ(certify_branch(walk.model, walk.branch, loads).answer, Answer::open);
     auto back = points;
     std::swap(back[7], back[8]);
-    EXPECT_NE(certify_branch(walk.model, walk.branch, back).detail.find("turn back"), std::string::npos);
-    EXPECT_EQ(certify_branch(walk.model, walk.branch, std::span(points).first(1)).answer, Answer::open);
+    EXPECT_NE(certify_branch(walk.model, walk.branch, back).detail.find("turn back"),
+              std::string::npos);
+    EXPECT_EQ(certify_branch(walk.model, walk.branch, std::span(points).first(1)).answer,
+              Answer::open);
 }
 
 // Force at the apex height z: F(z) = 2 k (ℓ - ℓ₀) z / ℓ, ℓ² = b² + z²; largest where ℓ³ = ℓ₀ b².
@@ -98,14 +100,15 @@ TEST(CertifyLimitPoint, TheArchsLimitIsEnclosedToTheLastDigits) {
     const double z = Arch::limit_height(), limit = Arch::force(z);
     EXPECT_NEAR(limit, -211.516594, 1e-6);
     for (const double off : {0., 1e-4, -1e-3, 3e-3}) {
-        const LimitPoint found =
-            certify_limit_point(on.model, on.branch, on.at(z + off, Arch::force(z + off)), {.length = 1e-2});
+        const LimitPoint found = certify_limit_point(
+            on.model, on.branch, on.at(z + off, Arch::force(z + off)), {.length = 1e-2});
         EXPECT_EQ(found.answer, Answer::proved) << found.detail;
         EXPECT_LE(found.from, limit + 1e-10);
         EXPECT_GE(found.to, limit - 1e-10);
         EXPECT_LT(found.to - found.from, 1e-9);
     }
-    const LimitPoint far = certify_limit_point(on.model, on.branch, on.at(z + 1e-4, Arch::force(z + 1e-4)));
+    const LimitPoint far =
+        certify_limit_point(on.model, on.branch, on.at(z + 1e-4, Arch::force(z + 1e-4)));
     EXPECT_EQ(far.answer, Answer::open);
     EXPECT_NE(far.detail.find("from the state"), std::string::npos) << far.detail;
 }
@@ -119,7 +122,8 @@ TEST(CertifyLimitPoint, ABranchThatDoesNotTurnHasNone) {
 
 // Height at a load slightly below the limit, on the stable and on the unstable side.
 double height(double load, bool standing) {
-    double low = standing ? Arch::limit_height() : 0, high = standing ? Arch::h : Arch::limit_height();
+    double low = standing ? Arch::limit_height() : 0,
+           high = standing ? Arch::h : Arch::limit_height();
     for (int k = 0; k < 200; ++k) {
         const double z = (low + high) / 2;
         ((Arch::force(z) < load) == standing ? low : high) = z;
@@ -142,7 +146,8 @@ TEST(Certificate, PointsOfTheArchAreProvedUpToTheirLimit) {
         }
     }
     // No equilibrium beyond the limit.
-    const Certificate past = certify(on.model, on.branch, on.at(Arch::limit_height(), limit * (1 + 1e-6)));
+    const Certificate past =
+        certify(on.model, on.branch, on.at(Arch::limit_height(), limit * (1 + 1e-6)));
     EXPECT_EQ(past.answer, Answer::excluded) << past.detail;
 }
 
@@ -152,7 +157,8 @@ TEST(Certificate, OfTheArchNoneIsSaidToBeAloneFartherThanItIs) {
     const double limit = Arch::force(Arch::limit_height());
     double share = 0.1;
     for (int k = 0; k < 60; ++k, share *= 0.75) {
-        const double load = limit * (1 - share), high = height(load, true), low = height(load, false);
+        const double load = limit * (1 - share), high = height(load, true),
+                     low = height(load, false);
         for (const double z : {high, low}) {
             const Certificate c = certify(on.model, on.branch, on.at(z, load), {.length = 1e-7});
             ASSERT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
@@ -166,7 +172,8 @@ TEST(Certificate, AllThreeEquilibriaOfTheArchAreProvedEachByItself) {
     const OnArch on = arch();
     const double load = -120, below = [&] {
         double low = -2, high = -Arch::h;
-        for (int k = 0; k < 200; ++k) (Arch::force((low + high) / 2) < load ? low : high) = (low + high) / 2;
+        for (int k = 0; k < 200; ++k)
+            (Arch::force((low + high) / 2) < load ? low : high) = (low + high) / 2;
         return low;
     }();
     const double heights[] = {height(load, true), height(load, false), below};

@@ -2,14 +2,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/state.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -24,8 +24,10 @@ struct Slider {
         return fmt::format(
             "elastocheck: 1\nname: slider\nunits: {{length: mm, angle: rad, force: N}}\n"
             "points: {{seat: [0, 0, 0], top: [0, 0, 300]}}\nbodies: {{slider: {{origin: seat}}}}\n"
-            "joints: {{guide: {{type: translational, bodies: [slider, ground], at: seat, axis: z}}}}\n"
-            "springs: {{coil: {{bodies: [slider, ground], from: seat, to: top, rate: {}, bump_stop: "
+            "joints: {{guide: {{type: translational, bodies: [slider, ground], at: seat, axis: "
+            "z}}}}\n"
+            "springs: {{coil: {{bodies: [slider, ground], from: seat, to: top, rate: {}, "
+            "bump_stop: "
             "{{clearance: {}, rate: {}}}}}}}\n"
             "loads: {{lift: {{on: slider, at: seat, force: [0, 0, 1]}}}}\n"
             "branches: {{lift: {{load: lift, to: 100, steps: 10}}}}\n"
@@ -135,7 +137,8 @@ On cornered(const Formulation& formulation) {
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
         "points: {o: [0, 0, 0], p: [300, 100, 0]}\nbodies: {arm: {origin: p}}\n"
-        "bushings: {b: {bodies: [arm, ground], at: o, rates: [100, 200, 300], rotational_rates: [7e5, 5e5, "
+        "bushings: {b: {bodies: [arm, ground], at: o, rates: [100, 200, 300], rotational_rates: "
+        "[7e5, 5e5, "
         "4e5]}}\nloads: {push: {on: arm, at: p, force: [0.3, 0.2, 1]}}\n"
         "branches: {up: {load: push, to: 600, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n",
         "test.yaml"));
@@ -150,8 +153,8 @@ On cornered(const Formulation& formulation) {
         const auto stiffer = [&](double by, double from) {
             return std::array<double, 4>{soft * from, soft * by, 0, 0};
         };
-        law.axis[static_cast<std::size_t>(k)] =
-            Curve{{-corner, corner}, {stiffer(40, -corner), stiffer(1, -corner), stiffer(30, corner)}};
+        law.axis[static_cast<std::size_t>(k)] = Curve{
+            {-corner, corner}, {stiffer(40, -corner), stiffer(1, -corner), stiffer(30, corner)}};
     }
     bushing.law = law;
     return at;
@@ -176,8 +179,8 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
                                            0.3, Eigen::Vector3d(1, -2, 0.02).normalized())) *
                                        state.poses[0].p;
                     const auto of = [&](const System& system) {
-                        return evaluate(system, thin(state_at(system, state).z), Interval(state.load),
-                                        Slopes::no)
+                        return evaluate(system, thin(state_at(system, state).z),
+                                        Interval(state.load), Slopes::no)
                             .E;
                     };
                     const auto E = of(plain), E_apart = of(apart);
@@ -186,7 +189,8 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
                         EXPECT_LT(mag(E[row] - E_apart[row]), 1e-7 * (1 + mag(E[row]))) << row;
                         EXPECT_GT(mag(E[row]), 1e-3) << row;
                     }
-                    for (std::size_t row = 6; row < 18; ++row) EXPECT_LT(mag(E_apart[row]), 1e-7) << row;
+                    for (std::size_t row = 6; row < 18; ++row)
+                        EXPECT_LT(mag(E_apart[row]), 1e-7) << row;
                 }
 }
 
@@ -237,7 +241,8 @@ probes:
     const auto path = equilibrium::solve(there, way, std::vector<double>{0, 100, 200, 300});
     ASSERT_EQ(path.outcome, Outcome::converged);
     const Tube tube = certify_branch(there, way, path.points);
-    EXPECT_TRUE(tube.answer == Answer::proved || tube.detail.find("stays on a knot") != tube.detail.npos)
+    EXPECT_TRUE(tube.answer == Answer::proved ||
+                tube.detail.find("stays on a knot") != tube.detail.npos)
         << tube.detail;
 }
 
@@ -246,15 +251,17 @@ TEST(CertifyBranch, EveryWayOfEveryBuiltInSceneIsOneCurve) {
     for (const auto& scene : support::scene_names()) {
         const Model model = compile(compare::trim(support::scene(scene)).scene);
         for (const auto& branch : model.branches)
-            for (const auto& way : compare::ways_of(model, branch, 4)) {
-                compare::Gait gait;
-                gait.leg = compare::Leg::equilibrium;
-                const EquilibriumPath path = compare::walk(way, gait);
-                ASSERT_EQ(path.outcome, Outcome::converged) << scene << " " << way.name << path.detail;
+            for (const auto& way : compare::sides_of(model, branch, 4)) {
+                compare::SolverSettings solver;
+                solver.leg = compare::Leg::equilibrium;
+                const EquilibriumPath path = compare::walk(way, solver);
+                ASSERT_EQ(path.outcome, Outcome::converged)
+                    << scene << " " << way.name << path.detail;
                 const Tube tube = certify_branch(way.model, way.branch, path.points);
                 EXPECT_LE(tube.width.length, 1e-9) << scene << " " << way.name;
                 ++ways;
-                EXPECT_EQ(tube.answer, Answer::proved) << scene << " '" << way.name << "': " << tube.detail;
+                EXPECT_EQ(tube.answer, Answer::proved)
+                    << scene << " '" << way.name << "': " << tube.detail;
                 with_corners += static_cast<int>(tube.corners > 0);
             }
     }

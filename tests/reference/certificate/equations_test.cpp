@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
-#include "compare/legs.hpp"
+#include "compare/comparison/legs.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/stability.hpp"
 #include "reference/certificate/state.hpp"
-#include "reference/equilibrium/solve.hpp"
 
 namespace elastocheck::reference::certificate {
 namespace {
@@ -81,7 +81,8 @@ TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradict
     // position is no equilibrium.
     for (auto& constraint : way.model.constraints)
         if (auto* points = std::get_if<CoincidentPoints>(&constraint.kind))
-            if (points->j.s_local[1] > 0.1 || points->i.s_local[1] > 0.05) points->j.s_local[1] += 1e-6;
+            if (points->j.s_local[1] > 0.1 || points->i.s_local[1] > 0.05)
+                points->j.s_local[1] += 1e-6;
     const Certificate apart = certify(way.model, way.branch, state);
     EXPECT_EQ(apart.answer, Answer::excluded) << apart.detail;
 }
@@ -89,18 +90,21 @@ TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradict
 // A rod on a ball joint, held by two springs at its other end, is free to spin about the line
 // between. Its origin lies beside that line.
 TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExcluded) {
-    On way = on(
-        "elastocheck: 1\nname: rod\nunits: {length: mm, angle: deg, force: N}\n"
-        "points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, -400, 100]}\n"
-        "bodies: {rod: {origin: q}}\njoints: {ball: {type: spherical, bodies: [rod, ground], at: o}}\n"
-        "springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},\n"
-        "          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}\n"
-        "loads: {push: {on: rod, at: p, force: [0, 0, 1]}}\n"
-        "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: rod, at: p}}\n");
+    On way =
+        on("elastocheck: 1\nname: rod\nunits: {length: mm, angle: deg, force: N}\n"
+           "points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, "
+           "-400, 100]}\n"
+           "bodies: {rod: {origin: q}}\njoints: {ball: {type: spherical, bodies: [rod, ground], "
+           "at: o}}\n"
+           "springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},\n"
+           "          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}\n"
+           "loads: {push: {on: rod, at: p, force: [0, 0, 1]}}\n"
+           "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: rod, at: p}}\n");
     const Equilibrium state = way.solved(300);
     const Certificate c = certify(way.model, way.branch, state);
     ASSERT_EQ(c.answer, Answer::proved) << c.detail;
-    EXPECT_NE(c.detail.find("idle motion of 'rod' stands as in the state"), std::string::npos) << c.detail;
+    EXPECT_NE(c.detail.find("idle motion of 'rod' stands as in the state"), std::string::npos)
+        << c.detail;
     const Pose& design = way.model.bodies[0].design;
     const Pose& rod = state.poses[0];
     const Vector3d to_p = rod.p * (design.p.conjugate() * (Vector3d(0.3, 0, 0) - design.r));
@@ -126,9 +130,9 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
             // A straight displacement of 1e-3 rad is 4e-5 mm off the circle; far off the circle the
             // idle motion is not identified.
             const bool near = std::abs(angle) < 2e-3 && origin_too;
-            EXPECT_NE(
-                off.detail.find(near ? "with the idle motion of 'rod' where the state has it" : "found"),
-                std::string::npos)
+            EXPECT_NE(off.detail.find(near ? "with the idle motion of 'rod' where the state has it"
+                                           : "found"),
+                      std::string::npos)
                 << angle << origin_too << off.detail;
         }
 }
@@ -136,11 +140,12 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
 // A stop that the load just closes: at its knot, where the slopes jump, and on both sides.
 TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     const auto stopped = [](double rate) {
-        return on(swing(hinge,
-                        fmt::format("springs: {{coil: {{bodies: [arm, ground], from: p, to: t, rate: 30}}}}\n"
-                                    "stops: {{s: {{bodies: [arm, ground], from: p, to: t, bump: {{clearance: "
-                                    "10, rate: {}}}}}}}",
-                                    rate)));
+        return on(swing(
+            hinge,
+            fmt::format("springs: {{coil: {{bodies: [arm, ground], from: p, to: t, rate: 30}}}}\n"
+                        "stops: {{s: {{bodies: [arm, ground], from: p, to: t, bump: {{clearance: "
+                        "10, rate: {}}}}}}}",
+                        rate)));
     };
     On way = stopped(500);
     // Load at which the spring is 10 mm shorter, by bisection.
@@ -152,7 +157,8 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
         const Vector3d moving = pose.r + pose.p * (from_arm ? spring.i : spring.j).s_local;
         return (moving - (from_arm ? spring.j : spring.i).s_local).norm() - 0.39;
     };
-    for (int k = 0; k < 60; ++k) (gap(way.solved((low + high) / 2)) > 0 ? low : high) = (low + high) / 2;
+    for (int k = 0; k < 60; ++k)
+        (gap(way.solved((low + high) / 2)) > 0 ? low : high) = (low + high) / 2;
     bool said = false;
     for (const double by : {0., 1e-13, -1e-13, 1e-10, -1e-10, 1e-3, -1e-3}) {
         const Certificate c = certify(way.model, way.branch, way.solved(low * (1 + by)));
@@ -180,10 +186,10 @@ TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) 
             for (const bool conjugate : {true, false})
                 for (const bool offset : {true, false}) {
                     if (frame == F::Frame::middle && !conjugate) continue;
-                    On way =
-                        on(swing("",
-                                 "bushings: {b: {bodies: [arm, ground], at: o, rates: [1000, 2000, 3000], "
-                                 "rotational_rates: [7e5, 5e5, 4e5]}}"));
+                    On way = on(swing(
+                        "",
+                        "bushings: {b: {bodies: [arm, ground], at: o, rates: [1000, 2000, 3000], "
+                        "rotational_rates: [7e5, 5e5, 4e5]}}"));
                     auto& bushing = std::get<Bushing>(way.model.elastics[0].kind);
                     bushing.formulation = {frame, angles, conjugate, offset};
                     bushing.i.A_local = Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized();
@@ -203,8 +209,8 @@ TEST(CertificateEquations, WhereATableEndsNothingIsProved) {
     auto& spring = std::get<AxialSpring>(way.model.elastics[0].kind);
     const Equilibrium state = way.solved(500);
     ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
-    spring.law =
-        Curve{{-1e-6, 1e-6}, {{0., 30e3, 0., 0.}, {-0.03, 30e3, 0., 0.}, {0.03, 30e3, 0., 0.}}, false};
+    spring.law = Curve{
+        {-1e-6, 1e-6}, {{0., 30e3, 0., 0.}, {-0.03, 30e3, 0., 0.}, {0.03, 30e3, 0., 0.}}, false};
     const Certificate c = certify(way.model, way.branch, state);
     EXPECT_EQ(c.answer, Answer::open);
     EXPECT_NE(c.detail.find("ends here"), std::string::npos) << c.detail;

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
 #include "reference/certificate/certificate.hpp"
-#include "reference/certificate/system.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "reference/certificate/statement/system.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -36,8 +36,10 @@ Equilibrium solved(const On& way, double a) {
 const Vector3d along = Vector3d(1, 2, 3).normalized();
 On hung(double stiff, double soft, double load) {
     return on(fmt::format(
-        "elastocheck: 1\nname: soft\nunits: {{length: m, angle: rad, force: N}}\npoints: {{o: [0, 0, 0]}}\n"
-        "bodies: {{b: {{origin: o}}}}\nbushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: [1, 2, 3], "
+        "elastocheck: 1\nname: soft\nunits: {{length: m, angle: rad, force: N}}\npoints: {{o: [0, "
+        "0, 0]}}\n"
+        "bodies: {{b: {{origin: o}}}}\nbushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: "
+        "[1, 2, 3], "
         "x: "
         "[3, 0, -1]}}, rates: [{}, {}, {}], rotational_rates: [50, 50, 50]}}}}\n"
         "loads: {{f: {{on: b, at: o, force: [0.2672612419124244, 0.5345224838248488, "
@@ -99,10 +101,11 @@ TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
     for (const double tilt : {0., 1e-8, 1e-6}) {
         Equilibrium state;
         state.load = 1;
-        state.poses = {
-            {Vector3d(0, 0, -1e-9), Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vector3d::UnitX()))}};
+        state.poses = {{Vector3d(0, 0, -1e-9),
+                        Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vector3d::UnitX()))}};
         const Certificate c = certify(way.model, way.branch, state);
-        EXPECT_EQ(c.answer, tilt > 1e-7 ? Answer::excluded : Answer::proved) << tilt << ": " << c.detail;
+        EXPECT_EQ(c.answer, tilt > 1e-7 ? Answer::excluded : Answer::proved)
+            << tilt << ": " << c.detail;
         EXPECT_GE(c.error.angle, 0.99 * tilt);  // the distance from the vertical
     }
 }
@@ -112,10 +115,12 @@ TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
 TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGivesIt) {
     const On way =
         on("elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n"
-           "points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}\nbodies: {b: {origin: "
+           "points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}\nbodies: {b: "
+           "{origin: "
            "middle}}\n"
            "joints: {j: {type: spherical, bodies: [b, ground], at: foot}}\n"
-           "bushings: {k: {bodies: [b, ground], at: foot, rates: [0, 0, 0], rotational_rates: [1000, 1000, "
+           "bushings: {k: {bodies: [b, ground], at: foot, rates: [0, 0, 0], rotational_rates: "
+           "[1000, 1000, "
            "1000]}}\n"
            "loads: {f: {on: b, at: head, force: [0, 0, -1]}}\n"
            "branches: {press: {load: f, to: 6000, steps: 20}}\nprobes: {tip: {on: b, at: head}}\n");
@@ -126,7 +131,8 @@ TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGiv
         Equilibrium turned = state;
         const Eigen::Quaterniond by(Eigen::AngleAxisd(turn, Vector3d::UnitZ()));
         turned.poses[0] = {by * state.poses[0].r, by * state.poses[0].p * by.conjugate()};
-        for (auto& reaction : turned.reactions) reaction = {by * reaction.force, by * reaction.moment};
+        for (auto& reaction : turned.reactions)
+            reaction = {by * reaction.force, by * reaction.moment};
         EXPECT_NE(certify(way.model, way.branch, turned).answer, Answer::proved) << turn;
     }
 }
@@ -138,7 +144,8 @@ TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly)
         Model model = compile(support::scene("mcpherson"));
         for (auto& elastic : model.elastics)
             if (auto* bushing = std::get_if<Bushing>(&elastic.kind))
-                if (auto* law = std::get_if<LinearStiffness>(&bushing->law); law && law->K(3, 3) == 0)
+                if (auto* law = std::get_if<LinearStiffness>(&bushing->law);
+                    law && law->K(3, 3) == 0)
                     law->K(0, 0) *= 1 + more;
         const Branch way = ways(model.branches.front()).front();
         const On of{on_branch(model, way), way};
@@ -147,7 +154,8 @@ TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly)
         Model round = compile(support::scene("mcpherson"));
         const Equilibrium state = solved({on_branch(round, way), way}, 1000);
         const Certificate c = certify(of.model, of.branch, state, {1e-3, 1e-3, 1e3, 1e3});
-        EXPECT_EQ(c.detail.find("idle motion") != std::string::npos, more == 0) << more << ": " << c.detail;
+        EXPECT_EQ(c.detail.find("idle motion") != std::string::npos, more == 0)
+            << more << ": " << c.detail;
         EXPECT_EQ(c.answer == Answer::proved && c.held > 0, more == 0) << more << ": " << c.detail;
     }
 }
@@ -166,7 +174,8 @@ TEST(CertificateIdle, RowsThatAreNearlyTheSameAreNotRedundant) {
     const Equilibrium state = solved(way, 500);
     ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
     for (auto& constraint : way.model.constraints)
-        if (auto* row = std::get_if<PerpendicularDirections>(&constraint.kind); row && constraint.joint == 1)
+        if (auto* row = std::get_if<PerpendicularDirections>(&constraint.kind);
+            row && constraint.joint == 1)
             row->i.u_local += 1e-10 * Vector3d(1, 0, 0.5);
     const Certificate locked = certify(way.model, way.branch, state);
     EXPECT_NE(locked.answer, Answer::proved) << locked.detail;
@@ -183,14 +192,14 @@ TEST(CertificateIdle, AModelThatIsTooLargeIsNotTriedAndSaysSo) {
             "rotational_rates: [1e5, 1e5, 1e5]}}\n",
             k, k == 0 ? "ground" : fmt::format("b{}", k - 1), k, k);
     }
-    const On way =
-        on("elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
-           "0]" +
-           points + "}\nbodies:\n" + bodies + "bushings:\n" + bushings +
-           fmt::format(
-               "loads: {{f: {{on: b{0}, at: p{0}, force: [0, 0, 1]}}}}\n"
-               "branches: {{up: {{load: f, to: 1, steps: 1}}}}\nprobes: {{tip: {{on: b{0}, at: p{0}}}}}\n",
-               n - 1));
+    const On way = on(
+        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
+        "0]" +
+        points + "}\nbodies:\n" + bodies + "bushings:\n" + bushings +
+        fmt::format("loads: {{f: {{on: b{0}, at: p{0}, force: [0, 0, 1]}}}}\n"
+                    "branches: {{up: {{load: f, to: 1, steps: 1}}}}\nprobes: {{tip: {{on: b{0}, "
+                    "at: p{0}}}}}\n",
+                    n - 1));
     Equilibrium drawn, next;
     for (const auto& body : way.model.bodies) drawn.poses.push_back(body.design);
     next = drawn;

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "compare/legs.hpp"
-#include "compare/trim.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
 #include "reference/certificate/certificate.hpp"
-#include "reference/energy/solve.hpp"
-#include "reference/equilibrium/solve.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -19,21 +19,23 @@ using Eigen::Vector3d;
 
 // A model, one side of its branch, and the result of a leg.
 struct Walked {
-    compare::Way way;
+    compare::BranchSide way;
     compare::Leg leg;
     std::vector<Equilibrium> points;
 };
-std::vector<Walked> walked(const std::string& scene, int points, const std::vector<compare::Leg>& legs) {
+std::vector<Walked> walked(const std::string& scene, int points,
+                           const std::vector<compare::Leg>& legs) {
     const Model model = compile(compare::trim(support::scene(scene)).scene);
     std::vector<Walked> all;
     for (const auto& branch : model.branches)
-        for (const auto& way : compare::ways_of(model, branch, points))
+        for (const auto& way : compare::sides_of(model, branch, points))
             for (const auto leg : legs) {
-                compare::Gait gait;
-                gait.leg = leg;
-                const EquilibriumPath path = compare::walk(way, gait);
+                compare::SolverSettings solver;
+                solver.leg = leg;
+                const EquilibriumPath path = compare::walk(way, solver);
                 if (compare::is_not_asked(path.outcome)) continue;
-                EXPECT_EQ(path.outcome, Outcome::converged) << scene << " " << way.name << " " << path.detail;
+                EXPECT_EQ(path.outcome, Outcome::converged)
+                    << scene << " " << way.name << " " << path.detail;
                 all.push_back({way, leg, path.points});
             }
     return all;
@@ -41,7 +43,8 @@ std::vector<Walked> walked(const std::string& scene, int points, const std::vect
 const std::vector<compare::Leg> exact_legs{compare::Leg::equilibrium, compare::Leg::energy,
                                            compare::Leg::series};
 
-std::string at(const std::string& scene, const Walked& walk, const Equilibrium& state, const Certificate& c) {
+std::string at(const std::string& scene, const Walked& walk, const Equilibrium& state,
+               const Certificate& c) {
     return fmt::format("{} '{}' by {} at {}: {}: {}", scene, walk.way.name, compare::name(walk.leg),
                        state.load, name(c.answer), c.detail);
 }
@@ -79,9 +82,11 @@ TEST(Certificate, TheOtherLegsEquationsHoldAtTheCentreOfTheBox) {
                 const auto where = at(scene, walk, state, c);
                 ASSERT_EQ(c.centre.poses.size(), state.poses.size()) << where;
                 // Rounding of the stiffest element: about 1e10 N/m times an ulp of a metre.
-                expect_met(equilibrium::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1, where);
+                expect_met(equilibrium::residuals(walk.way.model, walk.way.branch, c.centre), 1e4,
+                           1, where);
                 if (!support::has_potential(support::scene(scene))) continue;
-                expect_met(energy::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1, where);
+                expect_met(energy::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1,
+                           where);
             }
 }
 
@@ -114,17 +119,20 @@ TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
     for (std::size_t body = 0; body < 3; ++body) {
         for (int axis = 0; axis < 3; ++axis) {
             for (const double by : {1e-3, 1e-6, 1e-8}) {
-                const auto c = excluded(fmt::format("body {} moved by {} m along {}", body, by, axis),
-                                        [&](Equilibrium& s) { s.poses[body].r[axis] += by; });
+                const auto c =
+                    excluded(fmt::format("body {} moved by {} m along {}", body, by, axis),
+                             [&](Equilibrium& s) { s.poses[body].r[axis] += by; });
                 if (by < 1e-3) {
                     EXPECT_NE(c.detail.find("away"), std::string::npos) << c.detail;
                 }
             }
             if (body != 2)  // the strut's own spin is idle
-                excluded(fmt::format("body {} turned by 1e-3 about {}", body, axis), [&](Equilibrium& s) {
-                    s.poses[body].p =
-                        Eigen::Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::Unit(axis))) * s.poses[body].p;
-                });
+                excluded(fmt::format("body {} turned by 1e-3 about {}", body, axis),
+                         [&](Equilibrium& s) {
+                             s.poses[body].p =
+                                 Eigen::Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::Unit(axis))) *
+                                 s.poses[body].p;
+                         });
         }
     }
     for (std::size_t joint = 0; joint < p.state.reactions.size(); ++joint)
@@ -155,8 +163,8 @@ TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
             // The axis is the cross product of two directions on the strut that are normal to it.
             across.push_back((row->i.body == 2 ? row->i : row->j).u_local);
             if (across.size() < 2) continue;
-            strut.p =
-                strut.p * Eigen::Quaterniond(Eigen::AngleAxisd(0.3, across[0].cross(across[1]).normalized()));
+            strut.p = strut.p * Eigen::Quaterniond(Eigen::AngleAxisd(
+                                    0.3, across[0].cross(across[1]).normalized()));
         }
     EXPECT_GT(strut.p.angularDistance(p.state.poses[2].p), 0.29);
     const Certificate after = certify(p.model, p.branch, spun);

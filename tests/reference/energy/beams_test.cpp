@@ -19,7 +19,8 @@ struct Beam {
     Matrix6 stiffness() const {
         const double l = segment();
         Matrix6 K = Matrix6::Zero();
-        K.diagonal() << EA / l, 12 * EI_z / (l * l * l), 12 * EI_y / (l * l * l), GJ / l, EI_y / l, EI_z / l;
+        K.diagonal() << EA / l, 12 * EI_z / (l * l * l), 12 * EI_y / (l * l * l), GJ / l, EI_y / l,
+            EI_z / l;
         return K;
     }
     // A body at every node except the first; `at` is the tip.
@@ -103,7 +104,8 @@ Tip elastica(double F, double EI, double L) {
     const auto curvature_at_the_tip = [&](double kappa) {
         std::array<double, 4> y{0, kappa, 0, 0};  // θ, θ', x, z
         const auto rate = [&](const std::array<double, 4>& v) {
-            return std::array<double, 4>{v[1], -F / EI * std::cos(v[0]), std::cos(v[0]), std::sin(v[0])};
+            return std::array<double, 4>{v[1], -F / EI * std::cos(v[0]), std::cos(v[0]),
+                                         std::sin(v[0])};
         };
         const double h = L / steps;
         for (int k = 0; k < steps; ++k) {
@@ -154,7 +156,8 @@ double critical_load(double EI, double L, int n) {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(2 * n + 2, 2 * n + 2), G = K;
     for (int i = 0; i < 2 * n; i += 2) {
         Eigen::Vector4d d(-1, -l / 2, 1, -l / 2), bend(0, -1, 0, 1), mean(0, 0.5, 0, 0.5);
-        K.block<4, 4>(i, i) += 12 * EI / (l * l * l) * d * d.transpose() + EI / l * bend * bend.transpose();
+        K.block<4, 4>(i, i) +=
+            12 * EI / (l * l * l) * d * d.transpose() + EI / l * bend * bend.transpose();
         G.block<4, 4>(i, i) += d * mean.transpose() + mean * d.transpose();
         G(i + 1, i + 1) += l / 2;
         G(i + 3, i + 3) += l / 2;
@@ -172,16 +175,17 @@ TEST(Beams, AColumnIsLostAtEulersLoad) {
         const Beam beam{.EA = 1e10, .EI_y = 3000, .n = n};  // buckles about z
         const double P = critical_load(beam.EI_z, beam.length, n);
         errors.push_back(P / (pi * pi * beam.EI_z / (4 * beam.length * beam.length)) - 1);
-        const Branch branch =
-            load_branch("press", {{"load", DeadForce{{beam.tip()}, -Vector3d::UnitX()}}}, 1.2 * P, 1);
+        const Branch branch = load_branch(
+            "press", {{"load", DeadForce{{beam.tip()}, -Vector3d::UnitX()}}}, 1.2 * P, 1);
         const double loads[] = {P * (1 - 1e-5), P * (1 + 1e-5)};
         const auto path = solve(beam.model(), branch, loads);
-        EXPECT_EQ(path.outcome, Outcome::dividing_point) << n << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << n << path.detail;
         EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << path.detail;
         EXPECT_EQ(path.points.size(), 1u) << path.detail;
     }
     for (std::size_t i = 1; i < errors.size(); ++i)
-        EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 2, 0.2) << errors[i - 1] << " " << errors[i];
+        EXPECT_NEAR(std::log2(errors[i - 1] / errors[i]), 2, 0.2)
+            << errors[i - 1] << " " << errors[i];
 }
 
 }  // namespace

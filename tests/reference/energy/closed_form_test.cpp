@@ -39,7 +39,8 @@ void expect_closed_form(const std::string& name, F displacements) {
         }
         EXPECT_GT(travel, 1e-3);
         EXPECT_LE(worst, 1e-8 * travel) << name << " " << branch.name << " at " << worst_load;
-        testing::Test::RecordProperty(branch.name, fmt::format("{:.1e} m of {:.3f} m", worst, travel));
+        testing::Test::RecordProperty(branch.name,
+                                      fmt::format("{:.1e} m of {:.3f} m", worst, travel));
     }
 }
 
@@ -62,14 +63,17 @@ TEST(ClosedForm, SingleBushing) {
 
 TEST(ClosedForm, ParallelSprings) {
     expect_closed_form("parallel_springs", [](const Scene& scene, const Equilibrium& s) -> Pair {
-        return {position(s, scene.probes[0].at) - Vector3d(0, 0, 0.4), s.load / 75e3 * Vector3d::UnitZ()};
+        return {position(s, scene.probes[0].at) - Vector3d(0, 0, 0.4),
+                s.load / 75e3 * Vector3d::UnitZ()};
     });
 }
 
 TEST(ClosedForm, TwoSpringArch) {
     expect_closed_form("two_spring_arch", [](const Scene& scene, const Equilibrium& s) -> Pair {
         const double b = 0.3, h = 0.08, k = 1e5, l_0 = std::hypot(b, h);
-        const auto excess = [&](double z) { return 2 * k * (1 - l_0 / std::hypot(b, z)) * z - s.load; };
+        const auto excess = [&](double z) {
+            return 2 * k * (1 - l_0 / std::hypot(b, z)) * z - s.load;
+        };
         const double limit = std::sqrt(std::cbrt(l_0 * l_0 * b * b * b * b) - b * b);  // ℓ³ = ℓ₀ b²
         return {position(s, scene.probes[0].at) - Vector3d(0, 0, h),
                 (root(excess, limit, 1) - h) * Vector3d::UnitZ()};
@@ -80,7 +84,9 @@ TEST(ClosedForm, BushingPair) {
     expect_closed_form("bushing_pair", [](const Scene& scene, const Equilibrium& s) -> Pair {
         const double k = 2e5, k_R = 500, a = 0.15, e = 0.25;
         const double theta = root(
-            [&](double t) { return 2 * k * a * a * std::sin(t) + 2 * k_R * t - s.load * e * std::cos(t); },
+            [&](double t) {
+                return 2 * k * a * a * std::sin(t) + 2 * k_R * t - s.load * e * std::cos(t);
+            },
             -1.5, 1.5);
         return {position(s, scene.probes[0].at) - Vector3d(e, 0, 0),
                 Vector3d(e * (std::cos(theta) - 1), 0, s.load / (2 * k) + e * std::sin(theta))};
@@ -90,10 +96,12 @@ TEST(ClosedForm, BushingPair) {
 TEST(ClosedForm, Pendulum) {
     expect_closed_form("pendulum", [](const Scene& scene, const Equilibrium& s) -> Pair {
         const double k_R = 600, L = 0.4;
-        const double theta = root([&](double t) { return k_R * t - s.load * L * std::cos(t); }, -1.5, 1.5);
-        return {position(s, scene.probes[0].at) - Vector3d(0.32, 0.24, 0),
-                L * (std::cos(theta) * Vector3d(0.8, 0.6, 0) + std::sin(theta) * Vector3d::UnitZ()) -
-                    Vector3d(0.32, 0.24, 0)};
+        const double theta =
+            root([&](double t) { return k_R * t - s.load * L * std::cos(t); }, -1.5, 1.5);
+        return {
+            position(s, scene.probes[0].at) - Vector3d(0.32, 0.24, 0),
+            L * (std::cos(theta) * Vector3d(0.8, 0.6, 0) + std::sin(theta) * Vector3d::UnitZ()) -
+                Vector3d(0.32, 0.24, 0)};
     });
 }
 
@@ -104,7 +112,8 @@ TEST(ClosedForm, PreloadSettlesBeforeTheBranchStarts) {
     const auto path = solve(scene, 0, sweep(scene.branches[0]));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points)
-        EXPECT_NEAR(position(state, scene.probes[0].at).z() - 0.4, (600 + state.load) / 75e3, 1e-13);
+        EXPECT_NEAR(position(state, scene.probes[0].at).z() - 0.4, (600 + state.load) / 75e3,
+                    1e-13);
 }
 
 // A dead moment m has no potential for finite rotations, but re-centred charts find its

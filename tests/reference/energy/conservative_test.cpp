@@ -8,14 +8,16 @@ using Eigen::Vector3d;
 
 constexpr const char* scenes[] = {"single_bushing", "mcpherson"};
 
-void expect_named(const Model& model, const Branch& branch, const std::string& name, bool conservative) {
+void expect_named(const Model& model, const Branch& branch, const std::string& name,
+                  bool conservative) {
     const double values[] = {0, branch.to};
     const auto path = solve(model, branch, values);
     const Equilibrium as_drawn{.load = 0,
                                .poses =
                                    [&] {
                                        std::vector<Pose> poses;
-                                       for (const auto& body : model.bodies) poses.push_back(body.design);
+                                       for (const auto& body : model.bodies)
+                                           poses.push_back(body.design);
                                        return poses;
                                    }(),
                                .reactions = {}};

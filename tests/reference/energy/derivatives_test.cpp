@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "reference/energy/balance.hpp"
+#include "reference/energy/constraints/balance.hpp"
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -51,7 +51,8 @@ std::vector<Case> potentials(Random& random) {
     for (const auto& [i, j] : pairs) {
         const std::string ends = fmt::format(" {}-{}", i, j);
         Model spring = two_bodies(random), bushing = two_bodies(random);
-        spring.elastics = {{"", AxialSpring{point(random, i), point(random, j), LinearRate{3}, 0.7}}};
+        spring.elastics = {
+            {"", AxialSpring{point(random, i), point(random, j), LinearRate{3}, 0.7}}};
         bushing.elastics = {{"", Bushing{{i, random.vector(), random.rotation()},
                                          {j, random.vector(), random.rotation()},
                                          LinearStiffness{coupled_stiffness(random)},
@@ -92,7 +93,8 @@ std::vector<Case> constraint_cases(Random& random) {
         add("coincident points" + ends, CoincidentPoints{point(random, i), point(random, j)});
         add("point in plane" + ends,
             PointInPlane{point(random, i), point(random, j), direction(random, j), 0.2});
-        add("perpendicular" + ends, PerpendicularDirections{direction(random, i), direction(random, j)});
+        add("perpendicular" + ends,
+            PerpendicularDirections{direction(random, i), direction(random, j)});
         add("distance" + ends, DistanceBetween{point(random, i), point(random, j), 0.9});
         const Direction x = direction(random, j);
         const Direction y{j, x.u_local.unitOrthogonal()};
@@ -109,7 +111,8 @@ struct Values {
 // Remainders of the first-order expansion in several directions, at h and h/2. Returns the observed
 // order; 2 when there is no remainder at all.
 template <class F>
-double observed_order(Random& random, int n, const VectorXd& x, F values_at, double roundoff = 1e-14) {
+double observed_order(Random& random, int n, const VectorXd& x, F values_at,
+                      double roundoff = 1e-14) {
     const Values at = values_at(x);
     double remainder[2] = {0, 0};
     for (int k = 0; k < 8; ++k) {
@@ -133,7 +136,8 @@ TEST(Derivatives, GradientOfEveryPotentialIsFirstOrderExact) {
                 const Potential V = potential(one.model, one.prescribed, chart);
                 return {VectorXd::Constant(1, V.change), V.gradient.transpose()};
             };
-            EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1) << one.name;
+            EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1)
+                << one.name;
         }
     }
 }
@@ -148,7 +152,8 @@ TEST(Derivatives, JacobianOfEveryConstraintIsFirstOrderExact) {
                 const ConstraintValues c = constraints(one.model, one.prescribed, chart);
                 return {c.Phi, matrix(c.Phi_q)};
             };
-            EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1) << one.name;
+            EXPECT_NEAR(observed_order(random, 12, random.many(12, 0.8), values), 2, 0.1)
+                << one.name;
         }
     }
 }
@@ -175,14 +180,17 @@ TEST(Derivatives, RateOfEveryGradientIsFirstOrderExact) {
         for (const auto& one : potentials(random)) {
             Chart chart = chart_about({random.pose(), random.pose()});
             move_to(chart, random.many(12, 0.8));
-            const Prescribed rates[] = {random_rate(one.model, random), random_rate(one.model, random)};
+            const Prescribed rates[] = {random_rate(one.model, random),
+                                        random_rate(one.model, random)};
             const auto values = [&](const VectorXd& a) -> Values {
                 const Prescribed now = sum(sum(one.prescribed, a[0], rates[0]), a[1], rates[1]);
                 MatrixXd g_a(12, 2);
-                for (const int k : {0, 1}) g_a.col(k) = gradient_rate(one.model, now, rates[k], chart);
+                for (const int k : {0, 1})
+                    g_a.col(k) = gradient_rate(one.model, now, rates[k], chart);
                 return {potential(one.model, now, chart).gradient, g_a};
             };
-            EXPECT_NEAR(observed_order(random, 2, random.many(2), values, 1e-12), 2, 0.1) << one.name;
+            EXPECT_NEAR(observed_order(random, 2, random.many(2), values, 1e-12), 2, 0.1)
+                << one.name;
         }
     }
 }
@@ -194,7 +202,8 @@ TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
         for (const auto& one : constraint_cases(random)) {
             Chart chart = chart_about({random.pose(), random.pose()});
             move_to(chart, random.many(12, 0.8));
-            const Prescribed rates[] = {random_rate(one.model, random), random_rate(one.model, random)};
+            const Prescribed rates[] = {random_rate(one.model, random),
+                                        random_rate(one.model, random)};
             const auto values = [&](const VectorXd& a) -> Values {
                 const Prescribed now = sum(sum(one.prescribed, a[0], rates[0]), a[1], rates[1]);
                 const ConstraintValues c = constraints(one.model, now, chart);
@@ -208,7 +217,8 @@ TEST(Derivatives, RateOfEveryConstraintIsFirstOrderExact) {
                 }
                 return {f, f_a};
             };
-            EXPECT_NEAR(observed_order(random, 2, random.many(2, 0.1), values, 1e-12), 2, 0.1) << one.name;
+            EXPECT_NEAR(observed_order(random, 2, random.many(2, 0.1), values, 1e-12), 2, 0.1)
+                << one.name;
         }
     }
 }
@@ -225,7 +235,8 @@ TEST(Constraints, AnAngleKnowsItsOwnDirectionFromTheOpposite) {
                 Eigen::AngleAxisd(angle + (opposite ? std::numbers::pi : 0), Vector3d::UnitZ()));
             const Chart chart = chart_about({{Vector3d::Zero(), turn}});
             EXPECT_EQ(points_backwards(kind, angle, chart), opposite) << angle;
-            const double apart = std::remainder(*measured_offset(kind, chart) - angle, 2 * std::numbers::pi);
+            const double apart =
+                std::remainder(*measured_offset(kind, chart) - angle, 2 * std::numbers::pi);
             EXPECT_NEAR(std::abs(apart), opposite ? std::numbers::pi : 0, 1e-12) << angle;
         }
     }
@@ -237,8 +248,8 @@ TEST(Derivatives, BushingAtRestIsRegular) {
     Model model = two_bodies(random);
     const Pose& a = model.bodies[0].design;
     model.bodies[1].design = a;
-    model.elastics = {
-        {"", Bushing{Marker{0}, Marker{1}, LinearStiffness{coupled_stiffness(random)}, random.many(6)}}};
+    model.elastics = {{"", Bushing{Marker{0}, Marker{1}, LinearStiffness{coupled_stiffness(random)},
+                                   random.many(6)}}};
     Chart chart = chart_about({a, a});
     const auto values = [&](const VectorXd& x) -> Values {
         move_to(chart, x);
@@ -286,20 +297,24 @@ TEST(Derivatives, HessianAgreesWithDifferencesOfTheGradient) {
     }
 }
 
-// The laws of models/mechanism.hpp, implemented independently from the poses.
+// The laws of include/elastocheck/mechanism.hpp, implemented independently from the poses.
 double energy(const Model& model, const std::vector<Pose>& poses) {
     const auto at = [&](BodyId body) {
         return body == ground ? Pose{} : poses[static_cast<std::size_t>(body)];
     };
-    const auto place = [&](const auto& p) -> Vector3d { return at(p.body).r + at(p.body).p * p.s_local; };
+    const auto place = [&](const auto& p) -> Vector3d {
+        return at(p.body).r + at(p.body).p * p.s_local;
+    };
     double U = 0;
     for (const auto& elastic : model.elastics) {
         if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
-            const double stretch = (place(spring->j) - place(spring->i)).norm() - spring->free_length;
+            const double stretch =
+                (place(spring->j) - place(spring->i)).norm() - spring->free_length;
             U += 0.5 * rate_of(*spring) * stretch * stretch;
         } else {
             const auto& b = std::get<Bushing>(elastic.kind);
-            const Eigen::Quaterniond A_i = at(b.i.body).p * b.i.A_local, A_j = at(b.j.body).p * b.j.A_local;
+            const Eigen::Quaterniond A_i = at(b.i.body).p * b.i.A_local,
+                                     A_j = at(b.j.body).p * b.j.A_local;
             const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
             Vector6 e;
             e << A_i.conjugate() * (place(b.j) - place(b.i)), turn.angle() * turn.axis();
@@ -314,14 +329,16 @@ TEST(Potential, IsTheLawsOfTheElements) {
     double worst = 0;
     for (int repeat = 0; repeat < 20; ++repeat) {
         for (const auto& one : potentials(random)) {
-            if (one.name.starts_with("driven") || one.name == "force" || one.name == "moment") continue;
+            if (one.name.starts_with("driven") || one.name == "force" || one.name == "moment")
+                continue;
             const std::vector<Pose> centre{random.pose(), random.pose()};
             Chart chart = chart_about(centre);
             // Small enough for the logarithm to stay on its sheet in most cases; the others are
             // skipped.
             move_to(chart, random.many(12, 0.1));
             const double expected = energy(one.model, poses(chart)) - energy(one.model, centre);
-            if (rotations(one.model, turning_bushings(one.model, {one.prescribed, one.prescribed}), centre)
+            if (rotations(one.model, turning_bushings(one.model, {one.prescribed, one.prescribed}),
+                          centre)
                     .norm() > 2.8)
                 continue;
             double change = potential(one.model, one.prescribed, chart).change;
@@ -353,9 +370,11 @@ TEST(Potential, IsUnchangedByARigidMotionOfEverything) {
         const VectorXd g = potential(model, nothing_prescribed(model), chart).gradient;
         move_to(chart, x);
         worst_change = std::max(
-            worst_change, std::abs(potential(model, nothing_prescribed(model), chart).change) / g.norm());
+            worst_change,
+            std::abs(potential(model, nothing_prescribed(model), chart).change) / g.norm());
         const Vector3d force = g.segment<3>(0) + g.segment<3>(6);
-        const Vector3d moment = g.segment<3>(3) + g.segment<3>(9) + centre[0].r.cross(g.segment<3>(0)) +
+        const Vector3d moment = g.segment<3>(3) + g.segment<3>(9) +
+                                centre[0].r.cross(g.segment<3>(0)) +
                                 centre[1].r.cross(g.segment<3>(6));
         worst_force = std::max(worst_force, std::max(force.norm(), moment.norm()) / g.norm());
     }
@@ -397,8 +416,8 @@ TEST(Constraints, ChangesAgreeWithValuesAndKeepTheirRelativeAccuracy) {
             move_to(chart, x);
             const ConstraintValues near = constraints(one.model, one.prescribed, chart);
             const VectorXd expected = 0.5 * (matrix(c.Phi_q) + matrix(near.Phi_q)) * x;
-            worst_small =
-                std::max(worst_small, (near.dPhi - expected).norm() / (matrix(c.Phi_q).norm() * x.norm()));
+            worst_small = std::max(
+                worst_small, (near.dPhi - expected).norm() / (matrix(c.Phi_q).norm() * x.norm()));
         }
     }
     EXPECT_LE(worst, 2e-14);

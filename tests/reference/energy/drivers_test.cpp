@@ -57,7 +57,8 @@ std::size_t joint_named(const Model& model, const std::string& name) {
 BodyId add_crank(Scene& scene, const std::string& name, const Vector3d& pivot) {
     const auto body = static_cast<BodyId>(scene.bodies.size());
     scene.bodies.push_back({name, {pivot, Quaterniond::Identity()}});
-    scene.joints.push_back({name + "_pivot", Revolute{{body}, {ground, pivot}, {body, Z}, {ground, Z}}});
+    scene.joints.push_back(
+        {name + "_pivot", Revolute{{body}, {ground, pivot}, {body, Z}, {ground, Z}}});
     return body;
 }
 
@@ -73,7 +74,8 @@ TEST(Drivers, SliderCrankTurnsFullyAsItsGeometrySays) {
     const BodyId crank = add_crank(scene, "crank", Vector3d::Zero());
     const BodyId slider = 1;
     scene.bodies.push_back({"slider", {{x_0, h, 0}, Quaterniond::Identity()}});
-    scene.joints.push_back({"guide", Translational{{slider}, {ground, {0, h, 0}}, {slider, X}, {ground, X}}});
+    scene.joints.push_back(
+        {"guide", Translational{{slider}, {ground, {0, h, 0}}, {slider, X}, {ground, X}}});
     scene.joints.push_back({"rod", Distance{{crank, r * X}, {slider}, l}});
     add_angle_drive(scene, crank);
     scene.probes = {{"slider", {slider}}};
@@ -87,8 +89,8 @@ TEST(Drivers, SliderCrankTurnsFullyAsItsGeometrySays) {
             const double y = r * std::sin(state.load) - h;
             const Vector3d expected(r * std::cos(state.load) + std::sqrt(l * l - y * y), h, 0);
             worst = std::max(worst, (state.poses[1].r - expected).norm());
-            worst = std::max(worst,
-                             state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(state.load, Z))));
+            worst = std::max(worst, state.poses[0].p.angularDistance(
+                                        Quaterniond(Eigen::AngleAxisd(state.load, Z))));
         }
         EXPECT_LE(worst, 1e-12) << direction;
         RecordProperty(direction > 0 ? "worst" : "worst_back", fmt::format("{:.1e}", worst));
@@ -105,7 +107,8 @@ TEST(Drivers, FourBarTurnsFullyAsItsGeometrySays) {
         const double s = d.norm();
         const double along = (coupler * coupler - rocker_radius * rocker_radius + s * s) / (2 * s);
         const Vector2d p =
-            a + along * d / s + std::sqrt(coupler * coupler - along * along) * Vector2d(-d.y(), d.x()) / s;
+            a + along * d / s +
+            std::sqrt(coupler * coupler - along * along) * Vector2d(-d.y(), d.x()) / s;
         return Vector3d(p.x(), p.y(), 0);
     };
     for (const bool body_coupler : {false, true}) {
@@ -117,7 +120,8 @@ TEST(Drivers, FourBarTurnsFullyAsItsGeometrySays) {
             const BodyId rod = 2;
             scene.bodies.push_back({"coupler", {crank_radius * X, Quaterniond::Identity()}});
             scene.joints.push_back({"big_end", Revolute{{rod}, crank_pin, {rod, Z}, {crank, Z}}});
-            scene.joints.push_back({"small_end", Spherical{{rod, pin(0) - crank_radius * X}, rocker_pin}});
+            scene.joints.push_back(
+                {"small_end", Spherical{{rod, pin(0) - crank_radius * X}, rocker_pin}});
         } else {
             scene.joints.push_back({"coupler", Distance{crank_pin, rocker_pin, coupler}});
         }
@@ -131,7 +135,8 @@ TEST(Drivers, FourBarTurnsFullyAsItsGeometrySays) {
         for (const auto& state : path.points)
             worst = std::max(worst, (position(state, rocker_pin) - pin(state.load)).norm());
         EXPECT_LE(worst, 1e-12) << body_coupler;
-        RecordProperty(body_coupler ? "worst_body" : "worst_distance", fmt::format("{:.1e} m", worst));
+        RecordProperty(body_coupler ? "worst_body" : "worst_distance",
+                       fmt::format("{:.1e} m", worst));
     }
 }
 
@@ -156,7 +161,8 @@ struct Quadrature {
     Quadrature(double to, int panels) {
         const double x_1 = std::sqrt(5 - 2 * std::sqrt(10.0 / 7)) / 3,
                      x_2 = std::sqrt(5 + 2 * std::sqrt(10.0 / 7)) / 3;
-        const double w_1 = (322 + 13 * std::sqrt(70.0)) / 900, w_2 = (322 - 13 * std::sqrt(70.0)) / 900;
+        const double w_1 = (322 + 13 * std::sqrt(70.0)) / 900,
+                     w_2 = (322 - 13 * std::sqrt(70.0)) / 900;
         const double x[] = {-x_2, -x_1, 0, x_1, x_2}, w[] = {w_2, w_1, 128.0 / 225, w_1, w_2};
         for (int k = 0; k < panels; ++k)
             for (int i = 0; i < 5; ++i) {
@@ -220,12 +226,15 @@ Scene jacked_strut() {
     const Point centre{wheel.body, wheel.centre_local};
     const Pose& design = scene.bodies[static_cast<std::size_t>(wheel.body)].design;
     scene.joints.push_back(
-        {"jack", InPlane{centre, {ground, design.r + design.p * wheel.centre_local}, {ground, Z}, 0}, true});
+        {"jack",
+         InPlane{centre, {ground, design.r + design.p * wheel.centre_local}, {ground, Z}, 0},
+         true});
     return scene;
 }
 
 Driver force_on_wheel(const Scene& scene, const Vector3d& f, double rate, double start = 0) {
-    return {Load{"force", DeadForce{{scene.wheels[0].body, scene.wheels[0].centre_local}, f}}, start, rate};
+    return {Load{"force", DeadForce{{scene.wheels[0].body, scene.wheels[0].centre_local}, f}},
+            start, rate};
 }
 
 // Energy of the linear elements, implemented independently.
@@ -233,19 +242,20 @@ double stored(const Scene& scene, const Equilibrium& state) {
     double U = 0;
     for (const auto& elastic : scene.elastics) {
         if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
-            const double x =
-                (position(state, spring->j) - position(state, spring->i)).norm() - spring->free_length;
+            const double x = (position(state, spring->j) - position(state, spring->i)).norm() -
+                             spring->free_length;
             U += 0.5 * rate_of(*spring) * x * x;
             continue;
         }
         const auto& b = std::get<Bushing>(elastic.kind);
         const auto axes = [&](const Marker& m) {
-            return m.body == ground ? m.A_local : state.poses[static_cast<std::size_t>(m.body)].p * m.A_local;
+            return m.body == ground ? m.A_local
+                                    : state.poses[static_cast<std::size_t>(m.body)].p * m.A_local;
         };
         const Eigen::AngleAxisd turn(axes(b.i).conjugate() * axes(b.j));
         Vector6 e;
-        e << axes(b.i).conjugate() *
-                 (position(state, {b.j.body, b.j.s_local}) - position(state, {b.i.body, b.i.s_local})),
+        e << axes(b.i).conjugate() * (position(state, {b.j.body, b.j.s_local}) -
+                                      position(state, {b.i.body, b.i.s_local})),
             turn.angle() * turn.axis();
         U += 0.5 * e.dot(stiffness_of(b) * e) + b.preload.dot(e);
     }
@@ -278,9 +288,9 @@ TEST(Drivers, TravelAndLoadMeetAtTheSameStates) {
         for (std::size_t k = 0; k < forces.size(); ++k) {
             worst = std::max(worst, furthest(up.points[k], pushed.points[k]));
             for (std::size_t j = 0; j < jack; ++j)
-                worst_force =
-                    std::max(worst_force,
-                             (up.points[k].reactions[j].force - pushed.points[k].reactions[j].force).norm());
+                worst_force = std::max(
+                    worst_force,
+                    (up.points[k].reactions[j].force - pushed.points[k].reactions[j].force).norm());
             // no jack where no branch drives it
             EXPECT_EQ(pushed.points[k].reactions.size(), jack);
         }
@@ -288,7 +298,8 @@ TEST(Drivers, TravelAndLoadMeetAtTheSameStates) {
         EXPECT_LE(worst, 1e-9);
         EXPECT_LE(worst_force, 1e-9 * std::abs(forces.back()));
         EXPECT_NEAR(work, stored(scene, up.points.back()), 1e-9 * work);
-        RecordProperty(to > 0 ? "jounce" : "rebound", fmt::format("{:.1e} m, {:.1e} N", worst, worst_force));
+        RecordProperty(to > 0 ? "jounce" : "rebound",
+                       fmt::format("{:.1e} m, {:.1e} N", worst, worst_force));
     }
 }
 
@@ -299,11 +310,13 @@ TEST(Drivers, AHeldLoadIsAStaticLoad) {
     const auto values = values_to(0.06, 6);
     const auto held = walk(
         scene,
-        driven_branch("travel", {motion_of(scene, "jack", 1), force_on_wheel(scene, brake / 4, 0, 4)}, 0.06),
+        driven_branch("travel",
+                      {motion_of(scene, "jack", 1), force_on_wheel(scene, brake / 4, 0, 4)}, 0.06),
         values);
     Scene loaded = scene;
     loaded.static_loads = {std::get<Load>(force_on_wheel(scene, brake, 0).what)};
-    const auto fixed = walk(loaded, driven_branch("travel", {motion_of(scene, "jack", 1)}, 0.06), values);
+    const auto fixed =
+        walk(loaded, driven_branch("travel", {motion_of(scene, "jack", 1)}, 0.06), values);
     ASSERT_EQ(held.outcome, Outcome::converged) << held.detail;
     ASSERT_EQ(fixed.outcome, Outcome::converged) << fixed.detail;
     for (std::size_t k = 0; k < values.size(); ++k)
@@ -315,23 +328,25 @@ TEST(Drivers, AHeldLoadIsAStaticLoad) {
 // unique.
 TEST(Drivers, HeldHeightsAreReachedBySettling) {
     Scene scene = jacked_strut();
-    scene.joints.erase(scene.joints.begin() + 3);  // a bushing's compliance replaces the fore-and-aft plane
+    scene.joints.erase(scene.joints.begin() +
+                       3);  // a bushing's compliance replaces the fore-and-aft plane
     for (const double height : {-0.06, 0.03, 0.08}) {
         const auto lifted =
             walk(scene, driven_branch("lift", {motion_of(scene, "jack", 1)}, height), {height});
         const auto sweep_at =
             walk(scene,
-                 driven_branch("sweep", {motion_of(scene, "jack", 0, height), force_on_wheel(scene, X, 1)},
+                 driven_branch("sweep",
+                               {motion_of(scene, "jack", 0, height), force_on_wheel(scene, X, 1)},
                                600, ParameterUnit::newton),
                  {0, 300, 600});
         ASSERT_EQ(lifted.outcome, Outcome::converged) << lifted.detail;
         ASSERT_EQ(sweep_at.outcome, Outcome::converged) << sweep_at.detail;
         EXPECT_LE(furthest(lifted.points[0], sweep_at.points[0]), 1e-9) << height;
-        const auto both =
-            walk(scene,
-                 driven_branch("both", {motion_of(scene, "jack", height), force_on_wheel(scene, X, 600)}, 1,
-                               ParameterUnit::none),
-                 {1});
+        const auto both = walk(
+            scene,
+            driven_branch("both", {motion_of(scene, "jack", height), force_on_wheel(scene, X, 600)},
+                          1, ParameterUnit::none),
+            {1});
         ASSERT_EQ(both.outcome, Outcome::converged) << both.detail;
         EXPECT_LE(furthest(both.points[0], sweep_at.points[2]), 1e-9) << height;
     }
@@ -342,8 +357,8 @@ TEST(Drivers, HeldHeightsAreReachedBySettling) {
 TEST(Drivers, ADistanceMayHaveAnotherLengthThanDrawn) {
     const Scene scene = scene_named("chrono_mcpherson");
     for (const double longer : {0.003, -0.02}) {
-        const auto driven =
-            walk(scene, driven_branch("toe", {motion_of(scene, "tie_rod", 1)}, longer), {0, longer});
+        const auto driven = walk(
+            scene, driven_branch("toe", {motion_of(scene, "tie_rod", 1)}, longer), {0, longer});
         Scene other = scene;
         auto& rod = std::get<Distance>(other.joints[2].kind);
         rod.length += longer;
@@ -352,8 +367,8 @@ TEST(Drivers, ADistanceMayHaveAnotherLengthThanDrawn) {
         ASSERT_EQ(drawn.outcome, Outcome::converged) << drawn.detail;
         EXPECT_LE(furthest(driven.points[1], drawn.points[0]), 1e-9) << longer;
         EXPECT_GT(furthest(driven.points[0], drawn.points[0]), 1e-3) << longer;
-        EXPECT_NEAR((position(drawn.points[0], rod.i) - position(drawn.points[0], rod.j)).norm(), rod.length,
-                    1e-13);
+        EXPECT_NEAR((position(drawn.points[0], rod.i) - position(drawn.points[0], rod.j)).norm(),
+                    rod.length, 1e-13);
     }
 }
 
@@ -368,7 +383,8 @@ TEST(Drivers, WhatIsDrawnOpenIsClosed) {
     const auto path = walk(scene, load_branch("rest", {}, 1, 1), {0});
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     EXPECT_LE((path.points[0].poses[0].r - Vector3d(0.01, -0.02, 0.03)).norm(), 1e-13);
-    EXPECT_LE(path.points[0].poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(2.5, Z))), 1e-12);
+    EXPECT_LE(path.points[0].poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(2.5, Z))),
+              1e-12);
 }
 
 // ---- Elements.
@@ -407,7 +423,8 @@ TEST(Drivers, PreloadPushesAsItsStiffnessSays) {
              values_to(2000, 10));
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     for (const auto& state : path.points) {
-        const Vector6 e = -(bushing.preload + state.load * b).cwiseQuotient(stiffness_of(bushing).diagonal());
+        const Vector6 e =
+            -(bushing.preload + state.load * b).cwiseQuotient(stiffness_of(bushing).diagonal());
         EXPECT_LE((state.poses[0].r - e.head<3>()).norm(), 1e-13) << state.load;
         EXPECT_LE(state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(e[5], Z))), 1e-12)
             << state.load;
@@ -433,7 +450,8 @@ TEST(Drivers, OnlyModelsThatStandOnTheBranchAreTaken) {
 // A rod lengthened beyond reach: reported with the joint, in the branch's own unit.
 TEST(Drivers, WhatIsOutOfReachNamesAJoint) {
     Scene scene = scene_named("pinned_bar");
-    scene.joints.push_back({"rod", Distance{{0, {0.5, 0, 0}}, {ground, {0, 0, -1}}, std::hypot(0.5, 1)}});
+    scene.joints.push_back(
+        {"rod", Distance{{0, {0.5, 0, 0}}, {ground, {0, 0, -1}}, std::hypot(0.5, 1)}});
     const Branch stretch = driven_branch("stretch", {motion_of(scene, "rod", 1)}, 1);
     // The bar's tip is at most 1.5 m from the foot of the rod: a ≤ 1.5 - 1.118 m.
     for (const int steps : {1, 4, 50}) {
@@ -447,12 +465,14 @@ TEST(Drivers, WhatIsOutOfReachNamesAJoint) {
     // Held there from the start, it cannot settle.
     auto path = walk(scene, driven_branch("held", {motion_of(scene, "rod", 0, 1)}, 1), {0, 1});
     EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << path.detail;
-    EXPECT_NE(path.detail.find("settling from the design pose: joint '"), std::string::npos) << path.detail;
+    EXPECT_NE(path.detail.find("settling from the design pose: joint '"), std::string::npos)
+        << path.detail;
     EXPECT_TRUE(path.points.empty());
     // Or of negative length.
     path = walk(scene, driven_branch("shorten", {motion_of(scene, "rod", -1)}, 2), {0, 0.1, 2});
     EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << path.detail;
-    EXPECT_NE(path.detail.find("joint 'rod' would have the length -0.88"), std::string::npos) << path.detail;
+    EXPECT_NE(path.detail.find("joint 'rod' would have the length -0.88"), std::string::npos)
+        << path.detail;
     EXPECT_EQ(path.points.size(), 2u);
     path = walk(scene, driven_branch("none", {motion_of(scene, "rod", 0, -2)}, 2), {0});
     EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << path.detail;
@@ -460,11 +480,12 @@ TEST(Drivers, WhatIsOutOfReachNamesAJoint) {
 
 TEST(Drivers, MessagesSpeakOfTheParameterInItsUnit) {
     Scene scene = jacked_arch();
-    const std::pair<ParameterUnit, const char*> texts[] = {{ParameterUnit::newton, "at inf N:"},
-                                                           {ParameterUnit::newton_metre, "at inf N·m:"},
-                                                           {ParameterUnit::metre, "at inf m:"},
-                                                           {ParameterUnit::radian, "at inf rad:"},
-                                                           {ParameterUnit::none, "at inf:"}};
+    const std::pair<ParameterUnit, const char*> texts[] = {
+        {ParameterUnit::newton, "at inf N:"},
+        {ParameterUnit::newton_metre, "at inf N·m:"},
+        {ParameterUnit::metre, "at inf m:"},
+        {ParameterUnit::radian, "at inf rad:"},
+        {ParameterUnit::none, "at inf:"}};
     for (const auto& [unit, text] : texts) {
         const Branch down = driven_branch("down", {motion_of(scene, "jack", -1)}, 0.01, unit);
         const auto path = walk(scene, down, {INFINITY});
@@ -476,9 +497,10 @@ TEST(Drivers, MessagesSpeakOfTheParameterInItsUnit) {
 TEST(Drivers, DriversThatAreNoNumbersNeverConverge) {
     const Scene scene = jacked_strut();
     for (const double bad : {double(NAN), double(INFINITY)}) {
-        const std::vector<Driver> drivers{motion_of(scene, "jack", bad), motion_of(scene, "jack", 1, bad),
-                                          motion_of(scene, "tie_rod", bad), Driver{FreeLength{0}, 0, bad},
-                                          Driver{Preload{1, Vector6::Constant(bad)}, 0, 1}};
+        const std::vector<Driver> drivers{
+            motion_of(scene, "jack", bad), motion_of(scene, "jack", 1, bad),
+            motion_of(scene, "tie_rod", bad), Driver{FreeLength{0}, 0, bad},
+            Driver{Preload{1, Vector6::Constant(bad)}, 0, 1}};
         for (const auto& driver : drivers) {
             const auto path = walk(scene, driven_branch("bad", {driver}, 0.01), {0, 0.01});
             EXPECT_NE(path.outcome, Outcome::converged) << path.detail;
@@ -493,7 +515,8 @@ TEST(Drivers, AnAngleTheOtherWayRoundIsNoGoodState) {
     const BodyId crank = add_crank(scene, "crank", Vector3d::Zero());
     add_angle_drive(scene, crank);
     scene.probes = {{"crank", {crank}}};
-    scene.branches = {driven_branch("turn", {motion_of(scene, "drive", 1)}, 1, ParameterUnit::radian)};
+    scene.branches = {
+        driven_branch("turn", {motion_of(scene, "drive", 1)}, 1, ParameterUnit::radian)};
     const Model model = compile(scene);
     Equilibrium state{1, {{Vector3d::Zero(), Quaterniond(Eigen::AngleAxisd(1, Z))}}, {}, 0};
     EXPECT_LE(largest(residuals(model, model.branches[0], state)), 1e-12);

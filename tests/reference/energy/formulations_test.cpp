@@ -3,9 +3,9 @@
 #include <numbers>
 
 #include "models/curve.hpp"
-#include "reference/energy/balance.hpp"
-#include "reference/energy/laws.hpp"
-#include "reference/energy/relative_rotation.hpp"
+#include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/potential/laws.hpp"
+#include "reference/energy/potential/relative_rotation.hpp"
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -55,10 +55,11 @@ std::vector<Case> cases(Random& random) {
                               {frame, measure}};
                     Model model;
                     model.bodies = {{"a", {}}, {"b", {}}};
-                    model.elastics = {{"b", frame == Frame::on_j ? turned_round(b) : b}};
-                    all.push_back({fmt::format("frame {} angles {} {} {}-{}", static_cast<int>(frame),
-                                               static_cast<int>(measure), curved ? "curves" : "linear", i, j),
-                                   b, model});
+                    model.elastics = {{"b", frame == Frame::on_j ? markers_swapped(b) : b}};
+                    all.push_back(
+                        {fmt::format("frame {} angles {} {} {}-{}", static_cast<int>(frame),
+                                     static_cast<int>(measure), curved ? "curves" : "linear", i, j),
+                         b, model});
                 }
     return all;
 }
@@ -79,8 +80,9 @@ struct Places {
 Places inside(Random& random, const Case& one, double size) {
     const auto& b = std::get<Bushing>(one.model.elastics[0].kind);
     for (;;) {
-        Places places{{{random.vector(), random.rotation(2)}, {random.vector(), random.rotation(2)}},
-                      random.many(12, size)};
+        Places places{
+            {{random.vector(), random.rotation(2)}, {random.vector(), random.rotation(2)}},
+            random.many(12, size)};
         Chart chart = chart_about(places.centre);
         move_to(chart, places.x);
         if (way_to_the_end(b.formulation, relative(b, places.centre)) >= 0.4 &&
@@ -89,7 +91,7 @@ Places inside(Random& random, const Case& one, double size) {
     }
 }
 
-// ---- The laws of models/mechanism.hpp, implemented independently from the poses.
+// ---- The laws of include/elastocheck/mechanism.hpp, implemented independently from the poses.
 
 double u(const ScalarLaw& law, double x) {
     if (const auto* line = std::get_if<LinearRate>(&law)) return 0.5 * line->k * x * x;
@@ -99,7 +101,8 @@ double u(const ScalarLaw& law, double x) {
 double u(const SpatialLaw& law, const Vector6& x) {
     if (const auto* line = std::get_if<LinearStiffness>(&law)) return 0.5 * x.dot(line->K * x);
     double sum = 0;
-    for (int k = 0; k < 6; ++k) sum += u(std::get<PerAxis>(law).axis[static_cast<std::size_t>(k)], x[k]);
+    for (int k = 0; k < 6; ++k)
+        sum += u(std::get<PerAxis>(law).axis[static_cast<std::size_t>(k)], x[k]);
     return sum;
 }
 
@@ -107,7 +110,9 @@ Vector6 deformation(const Bushing& b, const std::vector<Pose>& poses) {
     const auto at = [&](BodyId body) {
         return body == ground ? Pose{} : poses[static_cast<std::size_t>(body)];
     };
-    const auto place = [&](const Marker& m) -> Vector3d { return at(m.body).r + at(m.body).p * m.s_local; };
+    const auto place = [&](const Marker& m) -> Vector3d {
+        return at(m.body).r + at(m.body).p * m.s_local;
+    };
     const Quaterniond A_i = at(b.i.body).p * b.i.A_local, A_j = at(b.j.body).p * b.j.A_local;
     const Matrix3d B = (A_i.conjugate() * A_j).toRotationMatrix();
     Vector3d theta;
@@ -118,7 +123,8 @@ Vector6 deformation(const Bushing& b, const std::vector<Pose>& poses) {
             break;
         }
         case Angles::cardan:
-            theta << std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)), std::atan2(-B(0, 1), B(0, 0));
+            theta << std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)),
+                std::atan2(-B(0, 1), B(0, 0));
             break;
         case Angles::projected:
             theta << std::atan2(-B(1, 2), B(2, 2)), std::atan2(B(0, 2), B(2, 2)),
@@ -159,7 +165,8 @@ TEST(Formulations, EnergyIsTheOneStated) {
             const double change = potential_at(one, chart, x).change;
             const double before = stated_energy(one.bushing, centre),
                          expected = stated_energy(one.bushing, poses(chart)) - before;
-            const double error = std::abs(change - expected) / (1 + std::abs(before) + std::abs(expected));
+            const double error =
+                std::abs(change - expected) / (1 + std::abs(before) + std::abs(expected));
             EXPECT_LE(error, 1e-12) << one.name;
             worst = std::max(worst, error);
         }
@@ -179,8 +186,8 @@ TEST(Formulations, GradientIsFirstOrderExact) {
                 const VectorXd s = random.many(12);
                 for (const int half : {0, 1}) {
                     const double h = half ? 1e-4 : 2e-4;
-                    const double d =
-                        potential_at(one, chart, x + h * s).change - V.change - h * V.gradient.dot(s);
+                    const double d = potential_at(one, chart, x + h * s).change - V.change -
+                                     h * V.gradient.dot(s);
                     remainder[half] += d * d;
                 }
             }
@@ -195,14 +202,16 @@ TEST(Formulations, HessianAgreesWithDifferencesOfTheGradient) {
     const Scales scales;
     for (const auto& one : cases(random)) {
         const auto centre = inside(random, one, 0.1).centre;
-        const MatrixXd H = hessian(one.model, nothing_prescribed(one.model), scales, centre, VectorXd(0));
+        const MatrixXd H =
+            hessian(one.model, nothing_prescribed(one.model), scales, centre, VectorXd(0));
         Chart chart = chart_about(centre);
         MatrixXd expected(12, 12);
         const double h = 1e-5;
         for (int i = 0; i < 12; ++i) {
             const VectorXd s = h * VectorXd::Unit(12, i);
             expected.col(i) =
-                (potential_at(one, chart, s).gradient - potential_at(one, chart, -s).gradient) / (2 * h);
+                (potential_at(one, chart, s).gradient - potential_at(one, chart, -s).gradient) /
+                (2 * h);
         }
         EXPECT_LE((H - expected).norm(), 2e-7 * (1 + H.norm())) << one.name;
     }
@@ -218,8 +227,8 @@ TEST(Formulations, ChangesKeepTheirRelativeAccuracy) {
             const VectorXd x = random.many(12, 1e-10),
                            g_c = potential_at(one, chart, VectorXd::Zero(12)).gradient;
             const Potential V = potential_at(one, chart, x);
-            worst = std::max(worst,
-                             std::abs(V.change - 0.5 * (g_c + V.gradient).dot(x)) / (g_c.norm() * x.norm()));
+            worst = std::max(worst, std::abs(V.change - 0.5 * (g_c + V.gradient).dot(x)) /
+                                        (g_c.norm() * x.norm()));
         }
     }
     EXPECT_LE(worst, 2e-14);
@@ -260,9 +269,11 @@ TEST(Formulations, WhereALawEndsTheBranchEnds) {
     };
     for (const auto& [frame, measure, axis, end] :
          {End{Frame::on_i, Angles::rotation_vector, 0, pi},
-          End{Frame::middle, Angles::rotation_vector, 1, pi}, End{Frame::on_i, Angles::cardan, 1, pi / 2},
+          End{Frame::middle, Angles::rotation_vector, 1, pi},
+          End{Frame::on_i, Angles::cardan, 1, pi / 2},
           End{Frame::middle, Angles::cardan, 1, pi / 2}, End{Frame::on_i, Angles::cardan, 2, pi},
-          End{Frame::on_i, Angles::projected, 1, pi / 2}, End{Frame::on_i, Angles::projected, 2, pi}}) {
+          End{Frame::on_i, Angles::projected, 1, pi / 2},
+          End{Frame::on_i, Angles::projected, 2, pi}}) {
         Model model;
         model.bodies = {{"body", {}}};
         Bushing b{Marker{ground}, Marker{0}, LinearStiffness{}};
@@ -272,11 +283,12 @@ TEST(Formulations, WhereALawEndsTheBranchEnds) {
         stiffness_of(b)(3 + axis, 3 + axis) = k;
         b.formulation = {frame, measure};
         model.elastics = {{"bushing", b}};
-        const Branch branch =
-            load_branch("turn", {{"moment", DeadMoment{0, Vector3d::Unit(axis)}}}, 1.2 * k * end, 12);
+        const Branch branch = load_branch("turn", {{"moment", DeadMoment{0, Vector3d::Unit(axis)}}},
+                                          1.2 * k * end, 12);
         const auto path = solve(model, branch, sweep(branch));
-        const std::string what = fmt::format("frame {} angles {} axis {}: {}", static_cast<int>(frame),
-                                             static_cast<int>(measure), axis, path.detail);
+        const std::string what =
+            fmt::format("frame {} angles {} axis {}: {}", static_cast<int>(frame),
+                        static_cast<int>(measure), axis, path.detail);
         EXPECT_EQ(path.outcome, Outcome::branch_lost) << what;
         for (const auto& state : path.points) {
             EXPECT_LT(state.load, k * end) << what;
@@ -297,7 +309,8 @@ TEST(Formulations, ABushingSettlesToItsUndeformedOffset) {
         b.undeformed << 0.003, -0.002, 0.001, 0.02, 0.01, -0.03;
         b.formulation.frame = frame;
         model.elastics = {{"bushing", b}};
-        const Branch branch = load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitX()}}}, 1, 1);
+        const Branch branch =
+            load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitX()}}}, 1, 1);
         const double loads[] = {0};
         const auto path = solve(model, branch, loads);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;

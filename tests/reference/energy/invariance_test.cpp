@@ -129,12 +129,12 @@ std::vector<Scene> scenes() {
          .to = 1,
          .steps = 10,
          .unit = ParameterUnit::none,
-         .drivers = {
-             {Motion{4}, 0.01, 0.03},
-             {Motion{2}, -0.001, 0.002},
-             {FreeLength{0}, 0.002, 0.01},
-             {Preload{3, random.many(6, 20)}, 1, 2},
-             {Load{"brake", DeadForce{{wheel.body, Vector3d(0, 0.05, 0)}, {-1, 0.2, 0}}}, 300, 200}}}};
+         .drivers = {{Motion{4}, 0.01, 0.03},
+                     {Motion{2}, -0.001, 0.002},
+                     {FreeLength{0}, 0.002, 0.01},
+                     {Preload{3, random.many(6, 20)}, 1, 2},
+                     {Load{"brake", DeadForce{{wheel.body, Vector3d(0, 0.05, 0)}, {-1, 0.2, 0}}},
+                      300, 200}}}};
     return {scene_named("chrono_mcpherson"),
             hard,
             driven,
@@ -172,7 +172,8 @@ void compare(Compared& c, const Scene& scene, const Scene& other, const Back& ba
                 const Vector3d here = position(one.points[k], {p.body, p.s_local});
                 const Vector3d there = position(two.points[k], {q.body, q.s_local});
                 c.worst = std::max(c.worst, (here - back.position(there)).norm());
-                c.moved = std::max(c.moved, (here - position(one.points[0], {p.body, p.s_local})).norm());
+                c.moved =
+                    std::max(c.moved, (here - position(one.points[0], {p.body, p.s_local})).norm());
             };
             for (std::size_t e = 0; e < scene.elastics.size(); ++e) {
                 std::visit(
@@ -214,7 +215,9 @@ TEST(Invariance, GroundFrameDoesNotMatter) {
             const Quaterniond Q = random.rotation();
             const Vector3d t = random.vector(5);
             Change change;
-            change.body = [&](Body& body) { body.design = {Q * body.design.r + t, Q * body.design.p}; };
+            change.body = [&](Body& body) {
+                body.design = {Q * body.design.r + t, Q * body.design.p};
+            };
             change.point = [&](Point& p) {
                 if (p.body == ground) p.s_local = Q * p.s_local + t;
             };
@@ -225,8 +228,12 @@ TEST(Invariance, GroundFrameDoesNotMatter) {
                 if (m.body == ground) m = {ground, Q * m.s_local + t, Q * m.A_local};
             };
             change.force = change.moment = [&](Vector3d& f) { f = Q * f; };
-            const auto back = [&](const Vector3d& p) -> Vector3d { return Q.conjugate() * (p - t); };
-            const auto back_force = [&](const Vector3d& f) -> Vector3d { return Q.conjugate() * f; };
+            const auto back = [&](const Vector3d& p) -> Vector3d {
+                return Q.conjugate() * (p - t);
+            };
+            const auto back_force = [&](const Vector3d& f) -> Vector3d {
+                return Q.conjugate() * f;
+            };
             compare(c, scene, changed(scene, change), {back, back_force, back_force});
         }
         expect_same(c, scene.name);
@@ -280,7 +287,9 @@ TEST(Invariance, BodyFramesDoNotMatter) {
         change.point = [&](Point& p) {
             p.s_local = frame(p.body).p.conjugate() * (p.s_local - frame(p.body).r);
         };
-        change.direction = [&](Direction& d) { d.u_local = frame(d.body).p.conjugate() * d.u_local; };
+        change.direction = [&](Direction& d) {
+            d.u_local = frame(d.body).p.conjugate() * d.u_local;
+        };
         change.marker = [&](Marker& m) {
             const Pose f = frame(m.body);
             m = {m.body, f.p.conjugate() * (m.s_local - f.r), f.p.conjugate() * m.A_local};
@@ -298,7 +307,9 @@ TEST(Invariance, OrderDoesNotMatter) {
         change.id = [&](BodyId& id) {
             if (id != ground) id = nb - 1 - id;
         };
-        change.joint = [&](int& joint) { joint = static_cast<int>(scene.joints.size()) - 1 - joint; };
+        change.joint = [&](int& joint) {
+            joint = static_cast<int>(scene.joints.size()) - 1 - joint;
+        };
         Scene other = changed(scene, change);
         std::reverse(other.bodies.begin(), other.bodies.end());
         std::reverse(other.joints.begin(), other.joints.end());
@@ -314,7 +325,8 @@ TEST(Invariance, SideOfTheCarDoesNotMatter) {
     const Vector3d mirror(1, -1, 1);
     const auto reflected = [&](const Vector3d& v) -> Vector3d { return mirror.cwiseProduct(v); };
     const auto reflected_axes = [&](const Quaterniond& q) {
-        return Quaterniond(Matrix3d(mirror.asDiagonal() * q.toRotationMatrix() * mirror.asDiagonal()));
+        return Quaterniond(
+            Matrix3d(mirror.asDiagonal() * q.toRotationMatrix() * mirror.asDiagonal()));
     };
     for (const auto& scene : scenes()) {
         Change change;
@@ -323,7 +335,9 @@ TEST(Invariance, SideOfTheCarDoesNotMatter) {
         };
         change.point = [&](Point& p) { p.s_local = reflected(p.s_local); };
         change.direction = [&](Direction& d) { d.u_local = reflected(d.u_local); };
-        change.marker = [&](Marker& m) { m = {m.body, reflected(m.s_local), reflected_axes(m.A_local)}; };
+        change.marker = [&](Marker& m) {
+            m = {m.body, reflected(m.s_local), reflected_axes(m.A_local)};
+        };
         change.bushing = [&](Bushing& b) {
             Vector6 T;
             T << mirror, -mirror;

@@ -1,8 +1,8 @@
 // Large scenes: predicted cost, the limit of solving, and judging at any size.
 #include <Eigen/QR>
 
-#include "reference/energy/balance.hpp"
-#include "reference/energy/cost.hpp"
+#include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/minimise/cost.hpp"
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -27,15 +27,18 @@ Scene chain(int n, bool hinged) {
             hinged ? Vector3d(0, k, 0) : Vector3d(k, k, k);
         const Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
         scene.elastics.push_back(
-            {fmt::format("k{}", b), Bushing{{i, at, axes}, {b, Vector3d::Zero(), axes}, LinearStiffness{K}}});
+            {fmt::format("k{}", b),
+             Bushing{{i, at, axes}, {b, Vector3d::Zero(), axes}, LinearStiffness{K}}});
         if (hinged)
-            scene.joints.push_back(
-                {fmt::format("j{}", b),
-                 Revolute{{i, at}, {b, Vector3d::Zero()}, {i, Vector3d::UnitY()}, {b, Vector3d::UnitY()}}});
+            scene.joints.push_back({fmt::format("j{}", b), Revolute{{i, at},
+                                                                    {b, Vector3d::Zero()},
+                                                                    {i, Vector3d::UnitY()},
+                                                                    {b, Vector3d::UnitY()}}});
     }
     const Point tip{n - 1, Vector3d(h, 0, 0)};
     scene.probes.push_back({"tip", tip});
-    scene.branches.push_back(load_branch("up", {{"force", DeadForce{tip, Vector3d::UnitZ()}}}, 50, 5));
+    scene.branches.push_back(
+        load_branch("up", {{"force", DeadForce{tip, Vector3d::UnitZ()}}}, 50, 5));
     return scene;
 }
 
@@ -45,7 +48,8 @@ Equilibrium bent(const Model& model, double angle) {
     Equilibrium state{.load = 50, .poses = {}, .reactions = {}};
     Vector3d r = Vector3d::Zero();
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        const Eigen::Quaterniond p(Eigen::AngleAxisd(-angle * static_cast<double>(b + 1), Vector3d::UnitY()));
+        const Eigen::Quaterniond p(
+            Eigen::AngleAxisd(-angle * static_cast<double>(b + 1), Vector3d::UnitY()));
         state.poses.push_back({r, p});
         r += p * Vector3d(h, 0, 0);
     }
@@ -68,10 +72,11 @@ TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
         const Cost cost = cost_of(model, values.size());
         const Counts counts = solve(model, branch, values).counts;
         // Besides the evaluations in charts, a state takes one and those of its Hessian.
-        const double states =
-            static_cast<double>(counts.evaluations - counts.factorisations) / hessian_evaluations(model);
+        const double states = static_cast<double>(counts.evaluations - counts.factorisations) /
+                              hessian_evaluations(model);
         const double evaluations = static_cast<double>(counts.factorisations) - states;
-        EXPECT_TRUE(is_near(cost.states, states)) << model.name << " " << cost.states << " " << states;
+        EXPECT_TRUE(is_near(cost.states, states))
+            << model.name << " " << cost.states << " " << states;
         EXPECT_TRUE(is_near(cost.evaluations, evaluations))
             << model.name << " " << cost.evaluations << " " << evaluations;
     }
@@ -106,9 +111,9 @@ TEST(LargeScenes, NoSuspensionIsOne) {
     for (const char* name : {"mcpherson", "solid_axle_leaf", "front_axle", "twist_beam"}) {
         const Model all = compile(scene_named(name));
         for (const auto& branch : all.branches)
-            EXPECT_LE(
-                cost_of(on_branch(all, branch), static_cast<std::size_t>(branch.steps) + 1).operations(),
-                most_operations)
+            EXPECT_LE(cost_of(on_branch(all, branch), static_cast<std::size_t>(branch.steps) + 1)
+                          .operations(),
+                      most_operations)
                 << name << " " << branch.name;
     }
 }
@@ -119,7 +124,8 @@ TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
     for (const bool doubled : {false, true}) {
         Scene scene = chain(12, true);
         if (doubled) {
-            for (int k : {3, 4, 9}) scene.joints.push_back(scene.joints[static_cast<std::size_t>(k)]);
+            for (int k : {3, 4, 9})
+                scene.joints.push_back(scene.joints[static_cast<std::size_t>(k)]);
             for (std::size_t k = 12; k < scene.joints.size(); ++k) scene.joints[k].name += "again";
         }
         const Model model = compile(scene, Detail::everything);
@@ -127,7 +133,8 @@ TEST(LargeScenes, WhatIsLeftOverIsThatOfTheDenseBalance) {
         const Chart chart = chart_about(bent(model, 0.05).poses);
         const auto values = constraints(model, nothing_prescribed(model), chart);
         EXPECT_EQ(values.Phi.size(), doubled ? 75 : 60);
-        const VectorXd gradient = random.many(coordinates(model)), S = scales.coordinates(coordinates(model));
+        const VectorXd gradient = random.many(coordinates(model)),
+                       S = scales.coordinates(coordinates(model));
         const Balance dense = balance(model, scales, gradient, values);
         EXPECT_EQ(dense.independent.size(), 60u);
         const VectorXd left = left_over(scaled(values.Phi_q, scales.rows(model), S),

@@ -1,5 +1,5 @@
 // Elastic laws: the energy of a curve is the integral of its force, to the last digits.
-#include "reference/energy/laws.hpp"
+#include "reference/energy/potential/laws.hpp"
 
 #include "support.hpp"
 
@@ -8,7 +8,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-// f as defined in models/mechanism.hpp.
+// f as defined in include/elastocheck/mechanism.hpp.
 double force(const Curve& curve, double x) {
     std::size_t k = 0;
     while (k < curve.knots.size() && x >= curve.knots[k]) ++k;
@@ -29,7 +29,8 @@ double quadrature(const Curve& curve, double a, double b) {
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
         const double h = ends[i + 1] - ends[i];
         sum +=
-            h / 6 * (force(curve, ends[i]) + 4 * force(curve, ends[i] + h / 2) + force(curve, ends[i + 1]));
+            h / 6 *
+            (force(curve, ends[i]) + 4 * force(curve, ends[i] + h / 2) + force(curve, ends[i + 1]));
     }
     return sum;
 }
@@ -60,10 +61,11 @@ TEST(Curves, StiffnessIsTheSlopeOfTheForce) {
     for (int repeat = 0; repeat < 1000; ++repeat) {
         const Curve curve = random.kinked_curve(1 + repeat % 7);
         const double x_c = random(-2, 2), delta = random(-2, 2), h = 1e-4;
-        const bool near_a_knot =
-            std::ranges::any_of(curve.knots, [&](double x) { return std::abs(x - x_c - delta) <= h; });
+        const bool near_a_knot = std::ranges::any_of(
+            curve.knots, [&](double x) { return std::abs(x - x_c - delta) <= h; });
         if (near_a_knot) continue;
-        const double slope = (force(curve, x_c + delta + h) - force(curve, x_c + delta - h)) / (2 * h);
+        const double slope =
+            (force(curve, x_c + delta + h) - force(curve, x_c + delta - h)) / (2 * h);
         worst = std::max(worst, std::abs(ask(curve, x_c, delta).stiffness(0, 0) - slope));
     }
     EXPECT_LE(worst, 1e-5);  // c_3 h²
@@ -100,7 +102,8 @@ TEST(Curves, TheWalkEndsFromOnOverAndBeyondEveryKnot) {
                     EXPECT_FALSE(std::isfinite(u.change) && std::isfinite(u.stress[0]))
                         << x_c << " " << delta;
                 } else {
-                    EXPECT_NEAR(u.change, quadrature(curve, x_c, x_c + delta), 1e-13) << x_c << " " << delta;
+                    EXPECT_NEAR(u.change, quadrature(curve, x_c, x_c + delta), 1e-13)
+                        << x_c << " " << delta;
                 }
             }
         }

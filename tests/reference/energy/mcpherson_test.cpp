@@ -18,7 +18,8 @@ struct Solved {
 const Solved& solved() {
     static const Solved all = [] {
         Solved s;
-        for (const auto& branch : s.model.branches) s.paths.push_back(solve(s.model, branch, sweep(branch)));
+        for (const auto& branch : s.model.branches)
+            s.paths.push_back(solve(s.model, branch, sweep(branch)));
         return s;
     }();
     return all;
@@ -51,8 +52,9 @@ TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
     for (std::size_t b = 0; b < s.paths.size(); ++b) {
         double previous = 0;
         for (const auto& state : s.paths[b].points) {
-            const double z = state.poses[static_cast<std::size_t>(s.model.wheels[0].body)].r.z() -
-                             s.model.bodies[static_cast<std::size_t>(s.model.wheels[0].body)].design.r.z();
+            const double z =
+                state.poses[static_cast<std::size_t>(s.model.wheels[0].body)].r.z() -
+                s.model.bodies[static_cast<std::size_t>(s.model.wheels[0].body)].design.r.z();
             if (state.load != 0) {
                 EXPECT_GT(z / state.load, previous / state.load) << state.load;
             }
@@ -80,9 +82,11 @@ TEST(McPherson, EquilibriumDoesNotDependOnTheWayThere) {
                 // The strut spins freely: its axis is compared, not its rotation.
                 const bool strut = s.model.bodies[body].name == "strut";
                 const auto& p = path.points[k].poses[body].p;
-                worst_r = std::max(worst_r, (path.points[k].poses[body].r - fine.poses[body].r).norm());
-                worst_p = std::max(worst_p, strut ? (p * strut_axis - fine.poses[body].p * strut_axis).norm()
-                                                  : p.angularDistance(fine.poses[body].p));
+                worst_r =
+                    std::max(worst_r, (path.points[k].poses[body].r - fine.poses[body].r).norm());
+                worst_p = std::max(worst_p,
+                                   strut ? (p * strut_axis - fine.poses[body].p * strut_axis).norm()
+                                         : p.angularDistance(fine.poses[body].p));
             }
         }
     }
@@ -140,7 +144,8 @@ TEST(McPherson, SettlesUnderPreloadAndWeight) {
     Scene scene = scene_named("chrono_mcpherson");
     auto& coil = std::get<AxialSpring>(scene.elastics[0].kind);
     coil.free_length += 3500 / rate_of(coil);
-    scene.static_loads = {{"weight", DeadForce{{scene.wheels[0].body, Vector3d::Zero()}, {0, 0, 2500}}}};
+    scene.static_loads = {
+        {"weight", DeadForce{{scene.wheels[0].body, Vector3d::Zero()}, {0, 0, 2500}}}};
     const Model model = compile(scene);
     for (const auto& branch : model.branches) {
         const auto path = solve(model, branch, sweep(branch, 60));

@@ -16,7 +16,8 @@ void expect_near(const Vector3d& computed, const Vector3d& expected, double tole
 // A body held by one joint under a force and a moment: the joint exerts the opposite, about its own
 // point. With ground as body i the wrench is the one on ground, about the same point.
 TEST(Reactions, OneJointCarriesWhatTheBodyPassesOn) {
-    const Vector3d r(1, 2, 3), joint(0.2, -0.1, 0.4), handle(-0.3, 0.5, 0.1), f(100, -200, 300), m(7, 8, -9);
+    const Vector3d r(1, 2, 3), joint(0.2, -0.1, 0.4), handle(-0.3, 0.5, 0.1), f(100, -200, 300),
+        m(7, 8, -9);
     Random random;
     for (int repeat = 0; repeat < 20; ++repeat) {
         const Eigen::Quaterniond p = random.rotation();
@@ -28,21 +29,23 @@ TEST(Reactions, OneJointCarriesWhatTheBodyPassesOn) {
                 return std::pair<Direction, Direction>{{0, p.conjugate() * u}, {ground, u}};
             };
             const auto x = d(Vector3d::UnitX()), y = d(Vector3d::UnitY());
-            const Fixed weld = ground_first ? Fixed{on_ground, on_body, x.second, y.second, x.first, y.first}
-                                            : Fixed{on_body, on_ground, x.first, y.first, x.second, y.second};
+            const Fixed weld =
+                ground_first ? Fixed{on_ground, on_body, x.second, y.second, x.first, y.first}
+                             : Fixed{on_body, on_ground, x.first, y.first, x.second, y.second};
             model.joints = {{"weld", ground_first ? ground : 0, ground_first ? 0 : ground,
                              ground_first ? on_ground : on_body}};
-            for (const auto& kind : lower(weld, model.bodies)) model.constraints.push_back({0, kind});
-            const Branch branch =
-                load_branch("pull", {{"f", DeadForce{{0, handle}, f}}, {"m", DeadMoment{0, m}}}, 3, 3);
+            for (const auto& kind : lower(weld, model.bodies))
+                model.constraints.push_back({0, kind});
+            const Branch branch = load_branch(
+                "pull", {{"f", DeadForce{{0, handle}, f}}, {"m", DeadMoment{0, m}}}, 3, 3);
             const auto path = solve(model, branch, sweep(branch));
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
             for (const auto& state : path.points) {
                 const double sign = ground_first ? 1 : -1, scale = 1000 * 3;
                 const Vector3d lever = p * (handle - joint);
                 expect_near(state.reactions[0].force, sign * state.load * f, 1e-9 * scale, "force");
-                expect_near(state.reactions[0].moment, sign * state.load * (m + lever.cross(f)), 1e-9 * scale,
-                            "moment");
+                expect_near(state.reactions[0].moment, sign * state.load * (m + lever.cross(f)),
+                            1e-9 * scale, "moment");
             }
         }
     }
@@ -80,11 +83,11 @@ TEST(Reactions, GuideCarriesTheMomentOfAnOffsetLoad) {
     for (const auto& state : path.points) {
         const double z = state.load / 75e3;
         const Vector3d up = Vector3d::UnitZ();
-        const Vector3d springs =
-            Vector3d(-0.2, 0, 0).cross((600 - 30e3 * z) * up) + Vector3d(0.3, 0, 0).cross(-45e3 * z * up);
+        const Vector3d springs = Vector3d(-0.2, 0, 0).cross((600 - 30e3 * z) * up) +
+                                 Vector3d(0.3, 0, 0).cross(-45e3 * z * up);
         expect_near(state.reactions[0].force, Vector3d::Zero(), 1e-6, "force");
-        expect_near(state.reactions[0].moment, -springs - load.at.s_local.cross(state.load * up), 1e-6,
-                    "moment");
+        expect_near(state.reactions[0].moment, -springs - load.at.s_local.cross(state.load * up),
+                    1e-6, "moment");
     }
 }
 
@@ -100,7 +103,9 @@ TEST(Reactions, WheelIsInBalance) {
         const Vector3d centre = state.poses[static_cast<std::size_t>(wheel)].r;
         Vector3d force = state.load * Vector3d::UnitZ(), moment = Vector3d::Zero();
         for (std::size_t j = 0; j < model.joints.size(); ++j) {
-            const double sign = model.joints[j].i == wheel ? 1 : model.joints[j].j == wheel ? -1 : 0;
+            const double sign = model.joints[j].i == wheel   ? 1
+                                : model.joints[j].j == wheel ? -1
+                                                             : 0;
             const Vector3d lever = position(state, model.joints[j].at) - centre;
             force += sign * state.reactions[j].force;
             moment += sign * (state.reactions[j].moment + lever.cross(state.reactions[j].force));
@@ -130,7 +135,8 @@ TEST(Reactions, MembersCarryWhatTheirKindCanCarry) {
             if (name == "fore_aft")
                 expect_near(w.force.cross(Vector3d::UnitX()), Vector3d::Zero(), 1e-9, name);
             if (name == "tie_rod") {
-                const Vector3d rod = position(state, model.joints[j].at) - Vector3d(-0.300, 0.520, -0.059);
+                const Vector3d rod =
+                    position(state, model.joints[j].at) - Vector3d(-0.300, 0.520, -0.059);
                 expect_near(w.force.cross(rod.normalized()), Vector3d::Zero(), 1e-9, name);
             }
         }

@@ -1,4 +1,4 @@
-#include "reference/energy/rotation.hpp"
+#include "reference/energy/potential/rotation.hpp"
 
 #include "support.hpp"
 
@@ -11,7 +11,8 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 Quaterniond turned_by(const Vector3d& phi) {
-    return phi.norm() > 0 ? Quaterniond(AngleAxisd(phi.norm(), phi.normalized())) : Quaterniond::Identity();
+    return phi.norm() > 0 ? Quaterniond(AngleAxisd(phi.norm(), phi.normalized()))
+                          : Quaterniond::Identity();
 }
 
 TEST(Rotation, TurnAndQuaternionAreTheExponential) {
@@ -20,8 +21,10 @@ TEST(Rotation, TurnAndQuaternionAreTheExponential) {
     for (int i = 0; i < 1000; ++i) {
         const Vector3d phi = random.unit() * std::pow(10, random(-9, 0.5));
         const Quaterniond q = turned_by(phi), dq = quaternion_minus_one(phi);
-        worst = std::max(worst, (turn_minus_one(phi) + Matrix3d::Identity() - q.toRotationMatrix()).norm());
-        worst = std::max(worst, (dq.coeffs() + Quaterniond::Identity().coeffs() - q.coeffs()).norm());
+        worst = std::max(
+            worst, (turn_minus_one(phi) + Matrix3d::Identity() - q.toRotationMatrix()).norm());
+        worst =
+            std::max(worst, (dq.coeffs() + Quaterniond::Identity().coeffs() - q.coeffs()).norm());
     }
     EXPECT_LE(worst, 4e-15);
 }
@@ -53,8 +56,9 @@ TEST(Rotation, InverseJacobianInverts) {
     double worst = 0;
     for (int i = 0; i < 1000; ++i) {
         const Vector3d theta = random.unit() * std::pow(10, random(-9, 0.49));
-        worst = std::max(worst,
-                         (inverse_turn_jacobian(theta) * turn_jacobian(theta) - Matrix3d::Identity()).norm());
+        worst = std::max(
+            worst,
+            (inverse_turn_jacobian(theta) * turn_jacobian(theta) - Matrix3d::Identity()).norm());
     }
     EXPECT_LE(worst, 1e-14);
 }
@@ -90,7 +94,8 @@ TEST(Rotation, ChangeOfTheLogKeepsItsRelativeAccuracy) {
     Random random;
     double worst = 0;
     for (int i = 0; i < 2000; ++i) {
-        const Vector3d theta = random.unit() * (i % 4 == 0 ? std::pow(10, random(-12, 0)) : random(0, 3.1));
+        const Vector3d theta =
+            random.unit() * (i % 4 == 0 ? std::pow(10, random(-12, 0)) : random(0, 3.1));
         const Vector3d delta = random.unit() * 1e-14;
         const Quaterniond q_c = turned_by(theta), dq = quaternion_minus_one(delta) * q_c;
         const Vector3d expected = inverse_turn_jacobian(theta) * delta;

@@ -47,8 +47,9 @@ std::vector<double> values_to(double to, int steps) {
 void expect_lost(const Scene& scene, double critical, int steps, const std::string& what) {
     const auto values = values_to(scene.branches[0].to, steps);
     const auto path = solve(scene, 0, values);
-    EXPECT_EQ(path.outcome, Outcome::dividing_point) << what << ": " << path.detail;
-    EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos) << what << ": " << path.detail;
+    EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << what << ": " << path.detail;
+    EXPECT_NE(path.detail.find("stops being a minimum"), std::string::npos)
+        << what << ": " << path.detail;
     const auto before = std::ranges::count_if(
         values, [&](double a) { return std::abs(a) <= std::abs(critical) * (1 - 1e-9); });
     EXPECT_EQ(static_cast<long>(path.points.size()), before) << what << ": " << path.detail;
@@ -60,7 +61,8 @@ TEST(Stability, AnUnstableStretchIsSeenWhereverThePointsLie) {
     for (const double z_c : {0.041, 0.021, 0.011, 0.0053, 0.0021}) {
         const Sideways arch{.z_c = z_c};
         for (const int steps : counts)
-            expect_lost(arch.scene(), arch.h - z_c, steps, fmt::format("|z| < {} in {} steps", z_c, steps));
+            expect_lost(arch.scene(), arch.h - z_c, steps,
+                        fmt::format("|z| < {} in {} steps", z_c, steps));
     }
 }
 
@@ -81,16 +83,19 @@ TEST(Stability, AnUnstableStretchIsSeenBehindSofterModes) {
 TEST(Stability, LoadDrivenTheArchIsLostWhereItGivesWaySideways) {
     const Sideways arch{.z_c = 0.06};
     Scene scene = arch.scene();
-    scene.branches = {load_branch("down", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, -205, 20)};
-    for (const int steps : counts) expect_lost(scene, arch.load(0.06), steps, fmt::format("{} steps", steps));
+    scene.branches = {
+        load_branch("down", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, -205, 20)};
+    for (const int steps : counts)
+        expect_lost(scene, arch.load(0.06), steps, fmt::format("{} steps", steps));
 }
 
 // A stretch that stays stable is passed, with any number of points.
 TEST(Stability, AStretchThatStaysStableIsPassed) {
     const Sideways almost{.z_c = 0.02};
     Scene scene = almost.scene();
-    // Softest at z = 0: 1 % above the limit of stability there.
-    stiffness_of(std::get<Bushing>(scene.elastics.back().kind))(1, 1) = 1.01 * 2e5 * (almost.l_0 / 0.3 - 1);
+    // SubspaceBasis at z = 0: 1 % above the limit of stability there.
+    stiffness_of(std::get<Bushing>(scene.elastics.back().kind))(1, 1) =
+        1.01 * 2e5 * (almost.l_0 / 0.3 - 1);
     for (const int steps : counts) {
         const auto path = solve(scene, 0, values_to(0.16, steps));
         EXPECT_EQ(path.outcome, Outcome::converged) << steps << ": " << path.detail;
@@ -102,13 +107,15 @@ TEST(Stability, AColumnBucklesAtItsLoadInAnyNumberOfSteps) {
     const double k_R = 1e6, L = 0.5;
     Scene scene;
     scene.bodies = {{"column", {}}};
-    scene.joints = {{"foot", Revolute{{0}, {ground}, {0, Vector3d::UnitY()}, {ground, Vector3d::UnitY()}}}};
+    scene.joints = {
+        {"foot", Revolute{{0}, {ground}, {0, Vector3d::UnitY()}, {ground, Vector3d::UnitY()}}}};
     Bushing foot{Marker{0}, Marker{ground}, LinearStiffness{}, Vector6::Zero()};
     stiffness_of(foot).bottomRightCorner<3, 3>().diagonal().setConstant(k_R);
     scene.elastics = {{"foot", foot}};
     scene.probes = {{"head", {0, {0, 0, L}}}};
     for (const double beyond : {1.01, 1.9, 30.0}) {
-        scene.branches = {load_branch("press", {{"force", DeadForce{{0, {0, 0, L}}, -Vector3d::UnitZ()}}},
+        scene.branches = {load_branch("press",
+                                      {{"force", DeadForce{{0, {0, 0, L}}, -Vector3d::UnitZ()}}},
                                       beyond * k_R / L, 1)};
         for (const int steps : counts)
             expect_lost(scene, k_R / L, steps, fmt::format("to {} P in {}", beyond, steps));
@@ -138,7 +145,8 @@ TEST(Stability, AStretchThatNothingAnnouncesIsSeenByWhatItLeavesBehind) {
                         {"jack", InPlane{{0}, {ground}, {ground, Z}, 0}, true}};
         Bushing side{Marker{ground}, Marker{0}, LinearStiffness{}};
         stiffness_of(side)(1, 1) = k_y;
-        scene.elastics = {{"side", side}, {"strut", AxialSpring{{ground, {0, 0, -l}}, {0}, press, l}}};
+        scene.elastics = {{"side", side},
+                          {"strut", AxialSpring{{ground, {0, 0, -l}}, {0}, press, l}}};
         scene.probes = {{"block", {0}}};
         scene.branches = {{.name = "travel",
                            .to = 0.2,
@@ -147,7 +155,7 @@ TEST(Stability, AStretchThatNothingAnnouncesIsSeenByWhatItLeavesBehind) {
                            .drivers = {{Motion{4}, 0, 1}}}};
         const double values[] = {0, 0.2};
         const auto path = solve(scene, 0, values);
-        EXPECT_EQ(path.outcome, Outcome::dividing_point) << at << ": " << path.detail;
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << at << ": " << path.detail;
         EXPECT_EQ(path.points.size(), 1u) << at;
     }
 }

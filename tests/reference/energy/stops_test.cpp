@@ -54,11 +54,13 @@ TEST(Stops, ContactForceIsTheHandCalculation) {
             const Branch branch =
                 load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, to, steps);
             const auto path = solve(block.model(), branch, values_to(to, steps));
-            ASSERT_EQ(path.outcome, Outcome::converged) << to << " in " << steps << ": " << path.detail;
+            ASSERT_EQ(path.outcome, Outcome::converged)
+                << to << " in " << steps << ": " << path.detail;
             for (const auto& state : path.points) {
                 const double z = state.poses[0].r.z();
                 EXPECT_NEAR(z, block.height(state.load), 1e-12) << to << " in " << steps;
-                EXPECT_NEAR(state.load - block.k * z, block.contact(block.height(state.load)), 1e-7) << to;
+                EXPECT_NEAR(state.load - block.k * z, block.contact(block.height(state.load)), 1e-7)
+                    << to;
                 EXPECT_LE(largest(residuals(block.model(), branch, state)), 1e-7);
             }
         }
@@ -69,7 +71,8 @@ TEST(Stops, ContactForceIsTheHandCalculation) {
 // an idle mode, and a load on it is reported.
 TEST(Stops, AnOpenStopAloneHoldsNothing) {
     const Block block{.k = 0};
-    const Branch branch = load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, 3000, 4);
+    const Branch branch =
+        load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, 3000, 4);
     const auto path = solve(block.model(), branch, values_to(3000, 4));
     EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode) << path.detail;
 }
@@ -89,7 +92,8 @@ TEST(Stops, AStopThatClosesOpensAgainOrJustTouchesIsPassed) {
         model.constraints.push_back({1, CoincidentPoints{{1}, {ground}}});
         model.constraints.push_back({1, PerpendicularDirections{{1, Y}, {ground, X}}});
         model.constraints.push_back({1, PerpendicularDirections{{1, Y}, {ground, Z}}});
-        model.joints.push_back({"crank", 1, ground, {1}, static_cast<int>(model.constraints.size())});
+        model.joints.push_back(
+            {"crank", 1, ground, {1}, static_cast<int>(model.constraints.size())});
         model.constraints.push_back({2, DirectionAtAngle{{1, X}, {ground, X}, {ground, Z}, 0}});
         PerAxis law;
         law.axis[2] = stop(c, block.up);
@@ -101,10 +105,12 @@ TEST(Stops, AStopThatClosesOpensAgainOrJustTouchesIsPassed) {
                             .drivers = {{Motion{2}, 0, 1}}};
         for (const int steps : counts) {
             const auto path = solve(model, branch, values_to(branch.to, steps));
-            ASSERT_EQ(path.outcome, Outcome::converged) << c << " in " << steps << ": " << path.detail;
+            ASSERT_EQ(path.outcome, Outcome::converged)
+                << c << " in " << steps << ": " << path.detail;
             for (const auto& state : path.points) {
                 const double gap = R * std::sin(state.load) - c;
-                EXPECT_NEAR(state.poses[0].r.z(), block.up * std::max(0.0, gap) / (block.k + block.up), 1e-12)
+                EXPECT_NEAR(state.poses[0].r.z(),
+                            block.up * std::max(0.0, gap) / (block.k + block.up), 1e-12)
                     << c << " at " << state.load;
             }
         }
@@ -132,7 +138,8 @@ TEST(Stops, ABumpStopInAStrutIsPassedByAnySteps) {
         const auto path = solve(stopped, branch, values_to(branch.to, steps));
         ASSERT_EQ(path.outcome, Outcome::converged) << steps << ": " << path.detail;
         for (const auto& state : path.points)
-            EXPECT_LE(largest(residuals(stopped, branch, state)), 1e-7) << steps << " at " << state.load;
+            EXPECT_LE(largest(residuals(stopped, branch, state)), 1e-7)
+                << steps << " at " << state.load;
         ends.push_back(path.points.back().poses[0].r);
         EXPECT_LE((ends.back() - ends.front()).norm(), 1e-12) << steps;
     }
@@ -153,7 +160,8 @@ TEST(Stops, AProgressiveCurveIsFollowedThroughItsKnots) {
     }
     std::get<AxialSpring>(model.elastics[1].kind).law = hermite(x, f, slope);
     for (const double to : {4000.0, -4000.0}) {
-        const Branch branch = load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, to, 1);
+        const Branch branch =
+            load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitZ()}}}, to, 1);
         for (const int steps : counts) {
             const auto path = solve(model, branch, values_to(to, steps));
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <random>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reference/energy/solve.hpp"
 
 namespace elastocheck::reference::energy {
 
@@ -28,7 +28,9 @@ inline const Matrix6& stiffness_of(const Bushing& bushing) {
 }
 
 // f = 0 up to `clearance`, then `rate` (x - clearance): a stop that closes with growing x.
-inline Curve stop(double clearance, double rate) { return {{clearance}, {{{0, 0, 0, 0}, {0, rate, 0, 0}}}}; }
+inline Curve stop(double clearance, double rate) {
+    return {{clearance}, {{{0, 0, 0, 0}, {0, rate, 0, 0}}}};
+}
 
 // Cubic Hermite interpolation through (x, f) with these slopes, linear outside: continuously
 // differentiable.
@@ -45,7 +47,8 @@ inline Curve hermite(const std::vector<double>& x, const std::vector<double>& f,
 }
 
 // A branch driven by these loads, from 0 to `to`.
-inline Branch load_branch(const std::string& name, const std::vector<Load>& loads, double to, int steps) {
+inline Branch load_branch(const std::string& name, const std::vector<Load>& loads, double to,
+                          int steps) {
     Branch branch{.name = name, .to = to, .steps = steps, .drivers = {}};
     for (const auto& load : loads) branch.drivers.push_back({load, 0, 1});
     return branch;
@@ -59,7 +62,8 @@ inline std::vector<double> sweep(const Branch& branch, int steps = 0) {
     return loads;
 }
 
-inline EquilibriumPath solve(const Scene& scene, std::size_t branch, std::span<const double> loads) {
+inline EquilibriumPath solve(const Scene& scene, std::size_t branch,
+                             std::span<const double> loads) {
     const Model model = compile(scene);
     const Branch& walked = model.branches.at(branch);
     return solve(on_branch(model, walked), walked, loads);

@@ -17,10 +17,11 @@ Scene cantilever(int segments) {
     const double h = L / segments;
     Bushing segment;
     segment.formulation.frame = Formulation::Frame::middle;
-    stiffness_of(segment).K.diagonal() << EA / h, 12 * EI / (h * h * h), 12 * EI_y / (h * h * h), GJ / h,
-        EI_y / h, EI / h;
+    stiffness_of(segment).K.diagonal() << EA / h, 12 * EI / (h * h * h), 12 * EI_y / (h * h * h),
+        GJ / h, EI_y / h, EI / h;
     for (int k = 0; k < segments; ++k) {
-        s.bodies.push_back({fmt::format("node {}", k + 1), {{(k + 1) * h, 0, 0}, Quaterniond::Identity()}});
+        s.bodies.push_back(
+            {fmt::format("node {}", k + 1), {{(k + 1) * h, 0, 0}, Quaterniond::Identity()}});
         segment.i = {k - 1, {h / 2, 0, 0}};
         segment.j = {k, {-h / 2, 0, 0}};
         s.elastics.push_back({fmt::format("segment {}", k + 1), segment});
@@ -54,7 +55,8 @@ TEST(EquilibriumChains, UnderATipMomentACantileverRollsIntoACircle) {
             s.branches = {twist(n - 1, {0, 0, 1})};
             const auto state = at_full_load(s, turn * EI / L);
             ASSERT_EQ(state.poses.size(), static_cast<std::size_t>(n));
-            const double theta = turn / n, R = L / turn, R_n = R * (theta / 2) / std::tan(theta / 2);
+            const double theta = turn / n, R = L / turn,
+                         R_n = R * (theta / 2) / std::tan(theta / 2);
             Worst worst;
             for (int k = 0; k < n; ++k) {
                 const double phi = theta * (k + 1);
@@ -66,7 +68,8 @@ TEST(EquilibriumChains, UnderATipMomentACantileverRollsIntoACircle) {
             const Vector3d tip = R * Vector3d(std::sin(turn), 1 - std::cos(turn), 0);
             if (turn < 2) errors.push_back((state.poses.back().r - tip).norm() / L);
         }
-    for (std::size_t k = 1; k < errors.size(); ++k) EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1) << k;
+    for (std::size_t k = 1; k < errors.size(); ++k)
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1) << k;
 }
 
 // The elastica: EI θ'' = -P cos θ, θ(0) = 0, θ'(L) = 0, by shooting with a fourth-order Runge-Kutta
@@ -78,7 +81,8 @@ Vector3d elastica_tip(double P) {
     const auto end_curvature = [&](double kappa) {
         Eigen::Vector4d y(0, kappa, 0, 0);  // θ, θ', x, y
         const auto rate = [&](const Eigen::Vector4d& at) {
-            return Eigen::Vector4d(at[1], -P / EI * std::cos(at[0]), std::cos(at[0]), std::sin(at[0]));
+            return Eigen::Vector4d(at[1], -P / EI * std::cos(at[0]), std::cos(at[0]),
+                                   std::sin(at[0]));
         };
         for (int n = 0; n < steps; ++n) {
             const Eigen::Vector4d a = rate(y), b = rate(y + h / 2 * a), c = rate(y + h / 2 * b),
@@ -131,18 +135,19 @@ TEST(EquilibriumChains, AStraightChainIsSingularAtEulersLoad) {
             if (path.outcome == Outcome::converged) {
                 low = loads[0];
             } else {
-                ASSERT_EQ(path.outcome, Outcome::dividing_point) << path.detail;
+                ASSERT_EQ(path.outcome, Outcome::bifurcation_point) << path.detail;
                 high = loads[0];
             }
         }
         errors.push_back(std::abs(low / euler - 1));
     }
     for (std::size_t k = 1; k < errors.size(); ++k)
-        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1) << errors[k - 1] << " to " << errors[k];
+        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1)
+            << errors[k - 1] << " to " << errors[k];
     EXPECT_LT(errors.back(), 0.02);
 }
 
-// Second variation of a straight chain under N (models/reader/beams.hpp), with nodes rotated by
+// Second variation of a straight chain under N (models/reader/definitions/beams.hpp), with nodes rotated by
 // φ_k = sin(α k), α = π / (2n), clamped at one end and free at the other: the segments' κ² and φ²
 // sum to 4 sin²(α/2) : cos²(α/2), so that
 //
@@ -169,7 +174,8 @@ TEST(EquilibriumChains, AStraightChainIsSingularInTensionWhereItsSegmentsEnd) {
                 return solve(model, model.branches[0], loads).outcome;
             };
             EXPECT_EQ(outcome(1 - 1e-4), Outcome::converged) << n << " segments, " << N << " N";
-            EXPECT_EQ(outcome(1 + 1e-4), Outcome::dividing_point) << n << " segments, " << N << " N";
+            EXPECT_EQ(outcome(1 + 1e-4), Outcome::bifurcation_point)
+                << n << " segments, " << N << " N";
         }
     }
 }

@@ -37,7 +37,8 @@ Vector3d probe(const Model& model, const Equilibrium& state, std::size_t n) {
 TEST(EquilibriumClosedForm, PinnedBarTurnsByItsFormula) {
     expect_closed_form("pinned_bar", [](const Model& model, const Equilibrium& state) {
         const double L = 0.5, theta = std::atan(state.load / (20e3 * L));
-        return (probe(model, state, 0) - L * Vector3d(std::cos(theta), 0, std::sin(theta))).norm() / L;
+        return (probe(model, state, 0) - L * Vector3d(std::cos(theta), 0, std::sin(theta))).norm() /
+               L;
     });
 }
 
@@ -58,7 +59,8 @@ TEST(EquilibriumClosedForm, ParallelSpringsShareTheLoad) {
 TEST(EquilibriumClosedForm, ArchStandsUnderItsLoad) {
     expect_closed_form("two_spring_arch", [](const Model& model, const Equilibrium& state) {
         const Vector3d apex = probe(model, state, 0);
-        const double b = 0.3, h = 0.08, k = 100e3, l = std::hypot(b, apex[2]), l_0 = std::hypot(b, h);
+        const double b = 0.3, h = 0.08, k = 100e3, l = std::hypot(b, apex[2]),
+                     l_0 = std::hypot(b, h);
         const double F = 2 * k * (l - l_0) * apex[2] / l;
         return std::max(std::hypot(apex[0], apex[1]) / h, std::abs(F - state.load) / 2000);
     });
@@ -69,9 +71,11 @@ TEST(EquilibriumClosedForm, BushingPairKeepsTheMomentOfItsForces) {
         const double a = 0.15, e = 0.25, k = 2e5, k_R = 500;
         const Vector3d arm = probe(model, state, 0) - probe(model, state, 1);
         const double theta = std::atan2(arm[2], arm[0]);
-        const double F = (2 * k * a * a * std::sin(theta) + 2 * k_R * theta) / (e * std::cos(theta));
+        const double F =
+            (2 * k * a * a * std::sin(theta) + 2 * k_R * theta) / (e * std::cos(theta));
         const Vector3d nose(e * std::cos(theta), 0, state.load / (2 * k) + e * std::sin(theta));
-        return std::max((probe(model, state, 0) - nose).norm() / e, std::abs(F - state.load) / 6000);
+        return std::max((probe(model, state, 0) - nose).norm() / e,
+                        std::abs(F - state.load) / 6000);
     });
 }
 
@@ -80,7 +84,8 @@ TEST(EquilibriumClosedForm, PendulumTurnsInItsPlane) {
         const double L = 0.4, k_R = 600;
         const Vector3d tip = probe(model, state, 0);
         const double theta = std::asin(tip[2] / L);
-        const Vector3d expected = L * Vector3d(0.8 * std::cos(theta), 0.6 * std::cos(theta), std::sin(theta));
+        const Vector3d expected =
+            L * Vector3d(0.8 * std::cos(theta), 0.6 * std::cos(theta), std::sin(theta));
         return std::max((tip - expected).norm() / L,
                         std::abs(k_R * theta / (L * std::cos(theta)) - state.load) / 3000);
     });
@@ -105,9 +110,9 @@ TEST(EquilibriumClosedForm, DeadMomentTurnsAnIsotropicBushingByMOverK) {
         const auto path = solve(model, model.branches[0], loads);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& state : path.points)
-            worst.see(
-                state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(state.load / k_R, axis))),
-                fmt::format("trial {}, {} N·m", trial, state.load));
+            worst.see(state.poses[0].p.angularDistance(
+                          Quaterniond(Eigen::AngleAxisd(state.load / k_R, axis))),
+                      fmt::format("trial {}, {} N·m", trial, state.load));
     }
     EXPECT_TRUE(within(worst, 1e-10));
 }

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reference/equilibrium/solve.hpp"
 
 namespace elastocheck {
 namespace {
@@ -94,7 +94,8 @@ struct Side {
 
     const Pose& pose(std::size_t point, const std::string& body) const {
         const auto found = std::ranges::find(model.bodies, body, &Body::name);
-        return path.points.at(point).poses.at(static_cast<std::size_t>(found - model.bodies.begin()));
+        return path.points.at(point).poses.at(
+            static_cast<std::size_t>(found - model.bodies.begin()));
     }
     double force(std::size_t point, const std::string& joint) const {
         const auto found = std::ranges::find(model.joints, joint, &ModelJoint::name);
@@ -119,7 +120,8 @@ TEST(Condensed, AnswersAsWhatIsWritten) {
             std::vector<double> loads;
             for (int k = 0; k <= 6; ++k) loads.push_back(way.to * k / 6);
             const Side s{small, reference::equilibrium::solve(on_branch(small, way), way, loads)};
-            const Side l{whole, reference::equilibrium::solve(on_branch(whole, whole_way), whole_way, loads)};
+            const Side l{whole, reference::equilibrium::solve(on_branch(whole, whole_way),
+                                                              whole_way, loads)};
             ASSERT_EQ(s.path.outcome, Outcome::converged) << way.name << ": " << s.path.detail;
             ASSERT_EQ(l.path.outcome, Outcome::converged) << way.name << ": " << l.path.detail;
             for (std::size_t k = 0; k < loads.size(); ++k) {

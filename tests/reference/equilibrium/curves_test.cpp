@@ -14,7 +14,8 @@ Curve stop(double c, double k) {
 }
 
 // f and its exact slopes at the knots, cubics between, linear outside.
-Curve through(const std::vector<double>& x, const std::vector<double>& f, const std::vector<double>& slope) {
+Curve through(const std::vector<double>& x, const std::vector<double>& f,
+              const std::vector<double>& slope) {
     Curve curve{x, {{f[0], slope[0], 0, 0}}};
     for (std::size_t k = 0; k + 1 < x.size(); ++k) {
         const double h = x[k + 1] - x[k], chord = (f[k + 1] - f[k]) / h;
@@ -30,7 +31,8 @@ Scene block(const std::vector<ScalarLaw>& laws) {
     Scene s;
     s.name = "block";
     s.bodies = {{"block", {}}};
-    s.joints = {{"guide", Translational{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, ground_z}}};
+    s.joints = {
+        {"guide", Translational{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, ground_z}}};
     for (const auto& law : laws)
         s.elastics.push_back({"spring", AxialSpring{{ground, {0, 0, -1}}, {0, {0, 0, 0}}, law, 1}});
     s.branches = {pull({0, {0, 0, 0}}, {0, 0, 1})};
@@ -38,14 +40,15 @@ Scene block(const std::vector<ScalarLaw>& laws) {
     return s;
 }
 
-void expect_heights(const Scene& s, const std::vector<double>& loads, const std::function<double(double)>& z,
-                    double limit, const std::string& what) {
+void expect_heights(const Scene& s, const std::vector<double>& loads,
+                    const std::function<double(double)>& z, double limit, const std::string& what) {
     const Model model = compile(s);
     const auto path = solve(model, model.branches[0], loads);
     EXPECT_EQ(path.outcome, Outcome::converged) << what << ": " << path.detail;
     Worst worst;
     for (const auto& state : path.points)
-        worst.see(std::abs(state.poses[0].r[2] - z(state.load)), fmt::format("{}, {} N", what, state.load));
+        worst.see(std::abs(state.poses[0].r[2] - z(state.load)),
+                  fmt::format("{}, {} N", what, state.load));
     EXPECT_TRUE(within(worst, limit));
     EXPECT_EQ(path.points.size(), loads.size());
 }
@@ -116,7 +119,8 @@ TEST(EquilibriumCurves, ASpringFollowsItsCurve) {
         expect_heights(
             s, loads,
             [&](double F) {
-                return heights[static_cast<std::size_t>(std::ranges::find(loads, F) - loads.begin())];
+                return heights[static_cast<std::size_t>(std::ranges::find(loads, F) -
+                                                        loads.begin())];
             },
             1e-14, fmt::format("trial {}", trial));
     }
@@ -132,12 +136,15 @@ TEST(EquilibriumCurves, AStopThatJustTouchesIsPassed) {
             Scene s;
             s.name = "sweep";
             s.bodies = {{"bar", {}}};
-            s.joints = {{"hinge", Revolute{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, ground_z}},
-                        {"drive", Angle{{0, {1, 0, 0}}, ground_x, ground_y, 0}, true}};
+            s.joints = {
+                {"hinge", Revolute{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, ground_z}},
+                {"drive", Angle{{0, {1, 0, 0}}, ground_x, ground_y, 0}, true}};
             s.elastics = {
                 {"stop",
-                 AxialSpring{{ground, {d, 0, 0}}, {0, {r, 0, 0}}, stop(r + d - short_of - 0.1, k), 0.1}}};
-            s.branches = {branch_of("turn", {{Motion{1}, 0, 1}}, 2 * M_PI, 1, ParameterUnit::radian)};
+                 AxialSpring{
+                     {ground, {d, 0, 0}}, {0, {r, 0, 0}}, stop(r + d - short_of - 0.1, k), 0.1}}};
+            s.branches = {
+                branch_of("turn", {{Motion{1}, 0, 1}}, 2 * M_PI, 1, ParameterUnit::radian)};
             s.probes = {{"tip", {0, {r, 0, 0}}}};
             const Model whole = compile(s);
             const Model model = on_branch(whole, whole.branches[0]);
@@ -149,7 +156,8 @@ TEST(EquilibriumCurves, AStopThatJustTouchesIsPassed) {
             ASSERT_EQ(path.outcome, Outcome::converged) << where << ": " << path.detail;
             Worst worst;
             for (const auto& state : path.points) {
-                const double alpha = state.load, l = std::sqrt(r * r + d * d - 2 * r * d * std::cos(alpha));
+                const double alpha = state.load,
+                             l = std::sqrt(r * r + d * d - 2 * r * d * std::cos(alpha));
                 const double f = std::max(0., k * (l - (r + d - short_of)));
                 worst.see(std::abs(state.reactions[1].moment[2] - f * r * d * std::sin(alpha) / l),
                           fmt::format("{}, at {} rad", where, alpha));
@@ -177,7 +185,8 @@ TEST(EquilibriumCurves, ALawThatFallsEndsTheBranchAtItsKnot) {
     const double k = 60e3, c = 0.01;
     for (const double after : {0., -15e3})
         for (const int steps : {1, 2, 7, 100}) {
-            const Model model = compile(block({Curve{{c}, {{k * c, k, 0, 0}, {k * c, after, 0, 0}}}}));
+            const Model model =
+                compile(block({Curve{{c}, {{k * c, k, 0, 0}, {k * c, after, 0, 0}}}}));
             std::vector<double> loads;
             for (int n = 0; n <= steps; ++n) loads.push_back(1001. * n / steps);
             const auto path = solve(model, model.branches[0], loads);
@@ -226,8 +235,9 @@ TEST(EquilibriumCurves, AStrutOnItsStopsDoesNotDependOnThePoints) {
             ASSERT_EQ(coarse.outcome, Outcome::converged) << stride << ": " << coarse.detail;
             for (std::size_t n = 0; n < some.size(); ++n)
                 for (std::size_t b = 0; b < model.bodies.size(); ++b)
-                    apart.see((coarse.points[n].poses[b].r - path.points[n * stride].poses[b].r).norm(),
-                              fmt::format("{}, {}, stride {}", branch.name, some[n], stride));
+                    apart.see(
+                        (coarse.points[n].poses[b].r - path.points[n * stride].poses[b].r).norm(),
+                        fmt::format("{}, {}, stride {}", branch.name, some[n], stride));
         }
         EXPECT_TRUE(within(apart, 1e-12));
     }

@@ -7,7 +7,8 @@
 
 namespace elastocheck::reference::equilibrium::test {
 
-inline const Direction ground_x{ground, {1, 0, 0}}, ground_y{ground, {0, 1, 0}}, ground_z{ground, {0, 0, 1}};
+inline const Direction ground_x{ground, {1, 0, 0}}, ground_y{ground, {0, 1, 0}},
+    ground_z{ground, {0, 0, 1}};
 
 // In the x-y plane: a crank r about z at the origin, along +x in the design position, a rod l, a
 // slider on the line y = e. 12 coordinates, 12 constraints.
@@ -44,7 +45,9 @@ inline Scene four_bar(double a, double b, double c, double d) {
     const auto along = [](const Vector3d& u) {
         return Quaterniond(Eigen::AngleAxisd(std::atan2(u[1], u[0]), Vector3d::UnitZ()));
     };
-    s.bodies = {{"crank", {}}, {"coupler", {pin, along(tip - pin)}}, {"rocker", {pivot, along(tip - pivot)}}};
+    s.bodies = {{"crank", {}},
+                {"coupler", {pin, along(tip - pin)}},
+                {"rocker", {pivot, along(tip - pivot)}}};
     const auto z = [](BodyId body) { return Direction{body, {0, 0, 1}}; };
     s.joints = {
         {"crank pivot", Revolute{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, z(0), ground_z}},
@@ -67,7 +70,9 @@ inline Vector3d position_in(const Scene& s, const Wheel& wheel) {
 inline Scene with_jack(Scene s) {
     const Wheel& wheel = s.wheels[0];
     s.joints.push_back(
-        {"jack", InPlane{{wheel.body, wheel.centre_local}, {ground, position_in(s, wheel)}, ground_z}, true});
+        {"jack",
+         InPlane{{wheel.body, wheel.centre_local}, {ground, position_in(s, wheel)}, ground_z},
+         true});
     return s;
 }
 
@@ -80,7 +85,8 @@ inline Scene with_rack(Scene s) {
     s.bodies.push_back({"rack", {inner, Quaterniond::Identity()}});
     tie.j = {rack, {0, 0, 0}};
     s.joints.push_back(
-        {"rack guide", Translational{{rack, {0, 0, 0}}, {ground, inner}, {rack, {0, 1, 0}}, ground_y}});
+        {"rack guide",
+         Translational{{rack, {0, 0, 0}}, {ground, inner}, {rack, {0, 1, 0}}, ground_y}});
     s.joints.push_back({"rack", InPlane{{rack, {0, 0, 0}}, {ground, inner}, ground_y}});
     return s;
 }
@@ -91,7 +97,8 @@ inline Vector6 deformation(const Bushing& b, const Equilibrium& state) {
         return body == ground ? Pose{} : state.poses[static_cast<std::size_t>(body)];
     };
     const Pose i = pose(b.i.body), j = pose(b.j.body);
-    const Eigen::AngleAxisd turn(Quaterniond((i.p * b.i.A_local).conjugate() * (j.p * b.j.A_local)));
+    const Eigen::AngleAxisd turn(
+        Quaterniond((i.p * b.i.A_local).conjugate() * (j.p * b.j.A_local)));
     Vector6 e;
     e << (i.p * b.i.A_local).conjugate() * (j.r + j.p * b.j.s_local - i.r - i.p * b.i.s_local),
         turn.angle() * turn.axis();

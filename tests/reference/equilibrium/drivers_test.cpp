@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "models/branch.hpp"
-#include "reference/equilibrium/system.hpp"
+#include "reference/equilibrium/statement/system.hpp"
 #include "tests/reference/equilibrium/driven_scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
@@ -60,8 +60,10 @@ TEST(EquilibriumDrivers, ASliderCrankFollowsItsGeometryThroughAFullTurn) {
             for (const auto& state : solved.path.points) {
                 const double a = state.load;
                 const Vector3d pin(r * std::cos(a), r * std::sin(a), 0);
-                const Vector3d slider(pin[0] + std::sqrt(l * l - (pin[1] - e) * (pin[1] - e)), e, 0);
-                worst.see((position(state, {0, {r, 0, 0}}) - pin).norm() / l, fmt::format("pin at {}", a));
+                const Vector3d slider(pin[0] + std::sqrt(l * l - (pin[1] - e) * (pin[1] - e)), e,
+                                      0);
+                worst.see((position(state, {0, {r, 0, 0}}) - pin).norm() / l,
+                          fmt::format("pin at {}", a));
                 worst.see((state.poses[1].r - slider).norm() / l, fmt::format("slider at {}", a));
             }
             EXPECT_TRUE(within(worst, 1e-12));
@@ -76,8 +78,8 @@ TEST(EquilibriumDrivers, AFourBarFollowsItsGeometryThroughAFullTurn) {
         ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
         Worst worst;
         for (const auto& state : solved.path.points) {
-            const Vector3d tip =
-                circles_meet(a * Vector3d(std::cos(state.load), std::sin(state.load), 0), b, {d, 0, 0}, c);
+            const Vector3d tip = circles_meet(
+                a * Vector3d(std::cos(state.load), std::sin(state.load), 0), b, {d, 0, 0}, c);
             worst.see((position(state, {2, {c, 0, 0}}) - tip).norm() / d,
                       fmt::format("rocker at {}", state.load));
             worst.see((position(state, {1, {b, 0, 0}}) - tip).norm() / d,
@@ -107,7 +109,8 @@ TEST(EquilibriumDrivers, TheCranksMomentIsWhatVirtualWorkSays) {
 TEST(EquilibriumDrivers, AJackTakesTheArchThroughBothItsLimitPoints) {
     const double b = 0.3, h = 0.08, k = 100e3, l_0 = std::hypot(b, h), limit = 211.5166;
     Scene s = scene("two_spring_arch");
-    s.joints.push_back({"jack", InPlane{{0, {0, 0, 0}}, {ground, {0, 0, h}}, {ground, {0, 0, 1}}}, true});
+    s.joints.push_back(
+        {"jack", InPlane{{0, {0, 0, 0}}, {ground, {0, 0, h}}, {ground, {0, 0, 1}}}, true});
     s.branches = {branch_of("jack", {{Motion{1}, 0, 1}}, -0.2, 100, ParameterUnit::metre)};
     for (const int steps : {1, 3, 100}) {
         const auto solved = solved_at(s, 0, equally(-0.2, steps));
@@ -117,9 +120,12 @@ TEST(EquilibriumDrivers, AJackTakesTheArchThroughBothItsLimitPoints) {
         for (const auto& state : solved.path.points) {
             const double z = h + state.load, l = std::hypot(b, z), F = 2 * k * (l - l_0) * z / l;
             const auto& jack = state.reactions[1];
-            worst.see((jack.force - Vector3d(0, 0, F)).norm() / limit, fmt::format("force at z = {}", z));
-            worst.see((state.poses[0].r - Vector3d(0, 0, z)).norm() / b, fmt::format("apex at z = {}", z));
-            if (z > -h) least = std::min(least, jack.force[2]), most = std::max(most, jack.force[2]);
+            worst.see((jack.force - Vector3d(0, 0, F)).norm() / limit,
+                      fmt::format("force at z = {}", z));
+            worst.see((state.poses[0].r - Vector3d(0, 0, z)).norm() / b,
+                      fmt::format("apex at z = {}", z));
+            if (z > -h)
+                least = std::min(least, jack.force[2]), most = std::max(most, jack.force[2]);
         }
         EXPECT_TRUE(within(worst, 1e-12));
         if (steps == 100) {
@@ -132,7 +138,8 @@ TEST(EquilibriumDrivers, AJackTakesTheArchThroughBothItsLimitPoints) {
 TEST(EquilibriumDrivers, ABarThatGrowsLiftsByItsTriangle) {
     // A bar of 0.5 m hinged at the origin about y; a strut from 0.3 m below the hinge to its tip.
     Scene s = hinged_bar({0.5, 0, 0}, {0, 1, 0}, 100);
-    s.joints.push_back({"strut", Distance{{0, {0.5, 0, 0}}, {ground, {0, 0, -0.3}}, std::hypot(0.5, 0.3)}});
+    s.joints.push_back(
+        {"strut", Distance{{0, {0.5, 0, 0}}, {ground, {0, 0, -0.3}}, std::hypot(0.5, 0.3)}});
     s.branches = {branch_of("lift", {{Motion{1}, 0, 1}}, 0.2, 20, ParameterUnit::metre)};
     const auto solved = solved_at(s, 0, equally(0.2, 20));
     ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
@@ -159,7 +166,8 @@ TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
         s.branches = {
             branch_of(
                 "load",
-                {driven_by({"vertical", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 0, 1}}})},
+                {driven_by({"vertical",
+                            DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 0, 1}}})},
                 to, 30),
             branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}},
                       std::copysign(0.15, to), 30, ParameterUnit::metre)};
@@ -167,7 +175,8 @@ TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
         ASSERT_EQ(loaded.path.outcome, Outcome::converged) << loaded.path.detail;
         std::vector<double> travels;
         for (const auto& state : loaded.path.points)
-            travels.push_back(position(state, {s.wheels[0].body, s.wheels[0].centre_local})[2] - design[2]);
+            travels.push_back(position(state, {s.wheels[0].body, s.wheels[0].centre_local})[2] -
+                              design[2]);
         const auto jacked = solved_at(s, 1, travels);
         ASSERT_EQ(jacked.path.outcome, Outcome::converged) << jacked.path.detail;
         ASSERT_EQ(jacked.path.points.size(), travels.size());
@@ -186,8 +195,8 @@ TEST(EquilibriumDrivers, TravelAndLoadMeetAtTheSameStates) {
         }
         EXPECT_TRUE(within(states, 1e-9));
         EXPECT_TRUE(within(forces, 1e-9));
-        fmt::print("travel {:.1f} mm: states {:.1e}, jack force {:.1e} of 3000 N\n", 1e3 * travels.back(),
-                   states.value, forces.value);
+        fmt::print("travel {:.1f} mm: states {:.1e}, jack force {:.1e} of 3000 N\n",
+                   1e3 * travels.back(), states.value, forces.value);
     }
 }
 
@@ -222,8 +231,8 @@ TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
     };
     for (const double to : {0.09, -0.1}) {
         Scene s = with_jack(scene("chrono_mcpherson"));
-        s.branches = {branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, to, 30,
-                                ParameterUnit::metre)};
+        s.branches = {branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}},
+                                to, 30, ParameterUnit::metre)};
         expect_work_is_energy(s, to, jack_force, nothing);
     }
     Scene arch = scene("two_spring_arch");
@@ -250,13 +259,17 @@ TEST(EquilibriumDrivers, TheWorkOfADriverIsTheEnergyStored) {
     Vector6 direction;
     direction << 300, -200, 500, 10, -20, 5;
     Scene mount = scene("single_bushing");
-    mount.branches = {branch_of("preload", {{Preload{0, direction}, 0, 1}}, 2, 1, ParameterUnit::none)};
+    mount.branches = {
+        branch_of("preload", {{Preload{0, direction}, 0, 1}}, 2, 1, ParameterUnit::none)};
     expect_work_is_energy(
         mount, 2,
         [=](const Solved& solved, const Equilibrium& state) {
-            return direction.dot(deformation(std::get<Bushing>(solved.model.elastics[0].kind), state));
+            return direction.dot(
+                deformation(std::get<Bushing>(solved.model.elastics[0].kind), state));
         },
-        [=](Scene& s, double a) { std::get<Bushing>(s.elastics[0].kind).preload += a * direction; });
+        [=](Scene& s, double a) {
+            std::get<Bushing>(s.elastics[0].kind).preload += a * direction;
+        });
 }
 
 // ---- Elements
@@ -267,9 +280,11 @@ TEST(EquilibriumDrivers, AFreeLengthShiftsTheBlockByItsShareOfTheRates) {
     Scene s;
     s.bodies = {{"block", {}}};
     s.joints = {
-        {"guide", Translational{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, {ground, {0, 0, 1}}}}};
-    s.elastics = {{"lower", AxialSpring{{ground, {0, 0, -0.3}}, {0, {0, 0, 0}}, LinearRate{k_1}, 0.3}},
-                  {"upper", AxialSpring{{ground, {0, 0, 0.4}}, {0, {0, 0, 0}}, LinearRate{k_2}, 0.4}}};
+        {"guide",
+         Translational{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, {0, 0, 1}}, {ground, {0, 0, 1}}}}};
+    s.elastics = {
+        {"lower", AxialSpring{{ground, {0, 0, -0.3}}, {0, {0, 0, 0}}, LinearRate{k_1}, 0.3}},
+        {"upper", AxialSpring{{ground, {0, 0, 0.4}}, {0, {0, 0, 0}}, LinearRate{k_2}, 0.4}}};
     s.static_loads = {{"weight", DeadForce{{0, {0, 0, 0}}, {0, 0, -W}}}};
     s.probes = {{"block", {0, {0, 0, 0}}}};
     const double start = 0.01, rate = 2;
@@ -278,8 +293,9 @@ TEST(EquilibriumDrivers, AFreeLengthShiftsTheBlockByItsShareOfTheRates) {
     ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
     Worst worst;
     for (const auto& state : solved.path.points)
-        worst.see(std::abs(state.poses[0].r[2] - (k_1 * (start + rate * state.load) - W) / (k_1 + k_2)),
-                  "block");
+        worst.see(
+            std::abs(state.poses[0].r[2] - (k_1 * (start + rate * state.load) - W) / (k_1 + k_2)),
+            "block");
     EXPECT_TRUE(within(worst, 1e-14));
 }
 
@@ -294,13 +310,14 @@ TEST(EquilibriumDrivers, APreloadIsAnsweredByItsBushing) {
         Vector6 start, rate;
         start << random_vector(random, 300), random_vector(random, 5);
         rate << random_vector(random, 600), random_vector(random, 20);
-        s.branches = {branch_of("preload", {{Preload{0, start}, 1, 0}, {Preload{0, rate}, 0, 1}}, 2, 8,
-                                ParameterUnit::none)};
+        s.branches = {branch_of("preload", {{Preload{0, start}, 1, 0}, {Preload{0, rate}, 0, 1}}, 2,
+                                8, ParameterUnit::none)};
         const auto solved = solved_at(s, 0, equally(2, 8));
         ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
         for (const auto& state : solved.path.points) {
             const Vector6 e = deformation(bushing, state);
-            const Vector6 expected = -stiffness_of(bushing).K.ldlt().solve(start + state.load * rate);
+            const Vector6 expected =
+                -stiffness_of(bushing).K.ldlt().solve(start + state.load * rate);
             worst.see((e - expected).norm() / expected.norm(),
                       fmt::format("trial {}, a = {}", trial, state.load));
         }
@@ -318,7 +335,8 @@ TEST(EquilibriumDrivers, AHeldRackIsGround) {
     Worst worst;
     for (std::size_t n = 0; n < 2; ++n)
         for (std::size_t body = 0; body < 2; ++body) {
-            const auto &a = with.path.points[n].poses[body], &b = without.path.points[n].poses[body];
+            const auto &a = with.path.points[n].poses[body],
+                       &b = without.path.points[n].poses[body];
             worst.see((a.r - b.r).norm(), "position");
             worst.see(a.p.angularDistance(b.p), "turn");
         }
@@ -332,8 +350,8 @@ TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
         for (const double to : {0.03, -0.03}) {
             Scene s = with_jack(with_rack(scene("chrono_mcpherson")));
             const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
-            s.branches = {branch_of("steer", {{Motion{rack}, 0, 1}, {Motion{jack}, height, 0}}, to, 12,
-                                    ParameterUnit::metre)};
+            s.branches = {branch_of("steer", {{Motion{rack}, 0, 1}, {Motion{jack}, height, 0}}, to,
+                                    12, ParameterUnit::metre)};
             const auto solved = solved_at(s, 0, equally(to, 12));
             ASSERT_EQ(solved.path.outcome, Outcome::converged) << solved.path.detail;
             Worst geometry, force;
@@ -343,7 +361,8 @@ TEST(EquilibriumDrivers, ARackSweepAtEachOfThreeHeights) {
             for (const auto& state : solved.path.points) {
                 const Vector3d centre = position(state, {wheel.body, wheel.centre_local});
                 geometry.see(std::abs(centre[2] - position_in(s, wheel)[2] - height), "height");
-                geometry.see(std::abs(state.poses[3].r[1] - s.bodies[3].design.r[1] - state.load), "rack");
+                geometry.see(std::abs(state.poses[3].r[1] - s.bodies[3].design.r[1] - state.load),
+                             "rack");
                 const Vector3d rod = position(state, tie.i) - position(state, tie.j);
                 geometry.see(std::abs(rod.norm() - tie.length), "tie rod");
                 const auto& on_wheel = state.reactions[joint(solved.model, "tie_rod")].force;
@@ -370,7 +389,8 @@ TEST(EquilibriumDrivers, TheOrderOfDriversDoesNotMatter) {
         s.static_loads.push_back(
             {"side", DeadForce{{s.wheels[0].body, s.wheels[0].centre_local}, {0, 400, 0}}});
         const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
-        const Load braking{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, brake}};
+        const Load braking{"brake",
+                           DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, brake}};
         const double now = steer_last ? 1 : 0;
         s.branches = {branch_of("both",
                                 {{Motion{rack}, 0.02 * (1 - now), 0.02 * now},
@@ -389,8 +409,10 @@ TEST(EquilibriumDrivers, TheOrderOfDriversDoesNotMatter) {
         worst.see(at_a.p.angularDistance(at_b.p), a.model.bodies[body].name);
     }
     for (std::size_t n = 0; n < a.model.joints.size(); ++n)
-        worst.see((a.path.points[1].reactions[n].force - b.path.points[1].reactions[n].force).norm() / 3000,
-                  a.model.joints[n].name);
+        worst.see(
+            (a.path.points[1].reactions[n].force - b.path.points[1].reactions[n].force).norm() /
+                3000,
+            a.model.joints[n].name);
     EXPECT_TRUE(within(worst, 1e-10));
     expect_in_balance(a);
 }
@@ -417,8 +439,10 @@ TEST(EquilibriumDrivers, HeldValuesAreSettledHoweverFarTheyAreFromTheDrawing) {
         ASSERT_EQ(solved.path.outcome, Outcome::converged) << start << ": " << solved.path.detail;
         for (const auto& state : solved.path.points) {
             const double a = start + state.load, y = r * std::sin(a) - e;
-            EXPECT_LE((state.poses[1].r - Vector3d(r * std::cos(a) + std::sqrt(l * l - y * y), e, 0)).norm(),
-                      1e-12 * l);
+            EXPECT_LE(
+                (state.poses[1].r - Vector3d(r * std::cos(a) + std::sqrt(l * l - y * y), e, 0))
+                    .norm(),
+                1e-12 * l);
         }
     }
 }
@@ -468,7 +492,8 @@ TEST(EquilibriumDrivers, WhatCannotBeClosedIsNamed) {
         EXPECT_EQ(solved.path.outcome, Outcome::inconsistent_constraints) << solved.path.detail;
         EXPECT_NE(solved.path.detail.find("'rod'"), std::string::npos) << solved.path.detail;
         EXPECT_NE(solved.path.detail.find(" deg"), std::string::npos) << solved.path.detail;
-        EXPECT_NEAR(static_cast<double>(solved.path.points.size()), 1 + std::floor(steps * 57.14 / 360), 0.1);
+        EXPECT_NEAR(static_cast<double>(solved.path.points.size()),
+                    1 + std::floor(steps * 57.14 / 360), 0.1);
         expect_in_balance(solved);
     }
     // held beyond its reach from the start
@@ -502,7 +527,8 @@ TEST(EquilibriumDrivers, MessagesSpeakOfTheParameterInItsUnit) {
 
 TEST(EquilibriumDrivers, AModelThatDoesNotStandOnTheBranchIsMisuse) {
     Scene s = with_jack(scene("chrono_mcpherson"));
-    s.branches.push_back(branch_of("travel", {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, 0.1, 1,
+    s.branches.push_back(branch_of("travel",
+                                   {{Motion{static_cast<int>(s.joints.size()) - 1}, 0, 1}}, 0.1, 1,
                                    // otherwise the model would have no jack
                                    ParameterUnit::metre));
     const Model model = compile(s);
@@ -541,7 +567,8 @@ TEST(EquilibriumDrivers, SolvesOfOneModelAtTheSameTimeAgreeToTheBit) {
     const std::vector<double> points = equally(3000, 10);
     std::vector<EquilibriumPath> paths(4);
     std::vector<std::thread> threads;
-    for (auto& path : paths) threads.emplace_back([&] { path = solve(model, model.branches[0], points); });
+    for (auto& path : paths)
+        threads.emplace_back([&] { path = solve(model, model.branches[0], points); });
     for (auto& thread : threads) thread.join();
     for (const auto& path : paths) {
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;

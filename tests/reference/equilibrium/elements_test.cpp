@@ -2,8 +2,8 @@
 // energies of mechanism.hpp; and the Jacobian against differences of the residual.
 #include <fmt/format.h>
 
-#include "reference/equilibrium/equations.hpp"
-#include "reference/equilibrium/newton.hpp"
+#include "reference/equilibrium/continuation/newton.hpp"
+#include "reference/equilibrium/statement/equations.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
@@ -41,7 +41,8 @@ double deviation_from_gradient(const Element& element, const Pose& i, const Pose
         on.j.moment + (on.j.at - j.r).cross(on.j.force);
     for (int k = 0; k < 6; ++k) {
         gradient[k] = -slope([&](double h) { return energy(element, moved(i, k, h), j); }, 1e-3);
-        gradient[6 + k] = -slope([&](double h) { return energy(element, i, moved(j, k, h)); }, 1e-3);
+        gradient[6 + k] =
+            -slope([&](double h) { return energy(element, i, moved(j, k, h)); }, 1e-3);
     }
     return (wrench - gradient).cwiseAbs().maxCoeff() / gradient.cwiseAbs().maxCoeff();
 }
@@ -63,7 +64,8 @@ TEST(EquilibriumElements, SpringForceIsTheNegativeGradientOfItsEnergy) {
 TEST(EquilibriumElements, BushingForceIsTheNegativeGradientOfItsEnergy) {
     std::mt19937 random(2);
     Worst worst;
-    for (const double angle : {0., 1e-9, 1e-6, 1e-4, 0.01, 0.09, 0.0999, 0.1, 0.1001, 0.3, 1., 2., 3.})
+    for (const double angle :
+         {0., 1e-9, 1e-6, 1e-4, 0.01, 0.09, 0.0999, 0.1, 0.1001, 0.3, 1., 2., 3.})
         for (int trial = 0; trial < 40; ++trial) {
             Bushing b{{0, random_vector(random, 0.3), random_turn(random)},
                       {1, random_vector(random, 0.3), random_turn(random)},
@@ -75,7 +77,8 @@ TEST(EquilibriumElements, BushingForceIsTheNegativeGradientOfItsEnergy) {
             Pose j;
             j.p = i.p * b.i.A_local * turn * b.j.A_local.conjugate();
             j.r = i.r + i.p * b.i.s_local - j.p * b.j.s_local + random_vector(random, 0.05);
-            worst.see(deviation_from_gradient(b, i, j), fmt::format("{} rad, trial {}", angle, trial));
+            worst.see(deviation_from_gradient(b, i, j),
+                      fmt::format("{} rad, trial {}", angle, trial));
         }
     EXPECT_TRUE(within(worst, 1e-9));
 }
@@ -98,8 +101,8 @@ TEST(EquilibriumElements, LogarithmInvertsTheExponentialFromNothingToNearlyHalfA
 TEST(EquilibriumElements, HalfATurnIsNotANumber) {
     for (const double short_of : {0., 1e-9, 1e-7})
         for (const double sign : {1., -1.}) {
-            const auto log =
-                logarithm(Quaterniond(Eigen::AngleAxisd(sign * (M_PI - short_of), Vector3d(0.6, 0, 0.8))));
+            const auto log = logarithm(
+                Quaterniond(Eigen::AngleAxisd(sign * (M_PI - short_of), Vector3d(0.6, 0, 0.8))));
             EXPECT_TRUE(std::isnan(log.theta[0]) && std::isnan(log.c)) << short_of;
         }
 }
@@ -116,9 +119,10 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
         const System system = make_system(model, model.branches[0], loads);
         const int n = system.equations();
         for (const double away : {0., 1e-9, 1e-3, 0.3}) {
-            const Eigen::VectorXd off = away * Eigen::VectorXd::NullaryExpr(n, [&] {
-                                            return std::uniform_real_distribution<double>(-1, 1)(random);
-                                        });
+            const Eigen::VectorXd off =
+                away * Eigen::VectorXd::NullaryExpr(n, [&] {
+                    return std::uniform_real_distribution<double>(-1, 1)(random);
+                });
             const Eigen::VectorXd x = equilibrium::moved(system, design_unknowns(system), off);
             Counts counts;
             const Eigen::MatrixXd J = derivatives(system, {700}, x, counts).J;
@@ -127,9 +131,9 @@ TEST(EquilibriumElements, JacobianIsTheDerivativeOfTheResidual) {
                 for (int row = 0; row < n; ++row)
                     differences[row] = slope(
                         [&](double h) {
-                            return residual(
-                                system, {700},
-                                equilibrium::moved(system, x, h * Eigen::VectorXd::Unit(n, k)))[row];
+                            return residual(system, {700},
+                                            equilibrium::moved(
+                                                system, x, h * Eigen::VectorXd::Unit(n, k)))[row];
                         },
                         2e-3);
                 worst.see((J.col(k) - differences).cwiseAbs().maxCoeff() / J.cwiseAbs().maxCoeff(),

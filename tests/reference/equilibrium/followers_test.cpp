@@ -6,7 +6,9 @@
 namespace elastocheck::reference::equilibrium::test {
 namespace {
 
-Branch follow(const LoadKind& load) { return branch_of("follow", {driven_by({"follower", load})}, 1, 1); }
+Branch follow(const LoadKind& load) {
+    return branch_of("follow", {driven_by({"follower", load})}, 1, 1);
+}
 
 // A force that stays perpendicular to the bar: θ = F L / k, whereas a dead force gives F L cos
 // θ = k θ.
@@ -25,7 +27,8 @@ TEST(EquilibriumFollowers, AForceAcrossABarTurnsItByFLOverK) {
             const Quaterniond turned(Eigen::AngleAxisd(-state.load * L / k, Vector3d::UnitY()));
             worst.see(state.poses[0].p.angularDistance(turned), fmt::format("{} N", state.load));
             // The hinge reaction is opposite to the current force.
-            const Vector3d left = state.reactions[0].force + state.load * (turned * Vector3d::UnitZ());
+            const Vector3d left =
+                state.reactions[0].force + state.load * (turned * Vector3d::UnitZ());
             worst.see(left.norm() / 1150, fmt::format("reaction, {} N", state.load));
         }
     }
@@ -53,8 +56,8 @@ TEST(EquilibriumFollowers, ACoupleTurnsAnIsotropicBushingByMOverK) {
         const auto path = solve(model, model.branches[0], loads);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& state : path.points)
-            worst.see(state.poses[0].p.angularDistance(Quaterniond(Eigen::AngleAxisd(state.load / k, axis)) *
-                                                       drawn),
+            worst.see(state.poses[0].p.angularDistance(
+                          Quaterniond(Eigen::AngleAxisd(state.load / k, axis)) * drawn),
                       fmt::format("trial {}, {} N·m", trial, state.load));
     }
     EXPECT_TRUE(within(worst, 1e-12));
@@ -68,7 +71,8 @@ TEST(EquilibriumFollowers, AColumnUnderAFollowerForceNeverDiverges) {
     const double c = 1000, L = 0.5;
     Scene s = hinged_bar({0, 0, L}, {0, 1, 0}, c);
     s.bodies.push_back({"upper", {{0, 0, L}, Quaterniond::Identity()}});
-    s.joints.push_back({"middle", Revolute{{1, {0, 0, 0}}, {0, {0, 0, L}}, {1, {0, 1, 0}}, {0, {0, 1, 0}}}});
+    s.joints.push_back(
+        {"middle", Revolute{{1, {0, 0, 0}}, {0, {0, 0, L}}, {1, {0, 1, 0}}, {0, {0, 1, 0}}}});
     Bushing torsion = std::get<Bushing>(s.elastics[0].kind);
     torsion.i = {1, {0, 0, 0}};
     torsion.j = {0, {0, 0, L}};
@@ -82,7 +86,7 @@ TEST(EquilibriumFollowers, AColumnUnderAFollowerForceNeverDiverges) {
             std::vector<double> loads;
             for (int n = 0; n <= steps; ++n) loads.push_back(10 * c / L * n / steps);
             const auto path = solve(model, model.branches[0], loads);
-            EXPECT_EQ(path.outcome, follows ? Outcome::converged : Outcome::dividing_point)
+            EXPECT_EQ(path.outcome, follows ? Outcome::converged : Outcome::bifurcation_point)
                 << steps << ": " << path.detail;
         }
     }
@@ -100,9 +104,9 @@ TEST(EquilibriumFollowers, DivergenceUnderADeadWeightIsNotHiddenByAFollower) {
         std::vector<double> loads;
         for (int n = 0; n <= steps; ++n) loads.push_back(3929.4 * n / steps);
         const auto path = solve(model, model.branches[0], loads);
-        EXPECT_EQ(path.outcome, Outcome::dividing_point) << path.detail;
-        EXPECT_EQ(path.points.size(), static_cast<std::size_t>(
-                                          std::ranges::count_if(loads, [&](double D) { return D < k / L; })));
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << path.detail;
+        EXPECT_EQ(path.points.size(), static_cast<std::size_t>(std::ranges::count_if(
+                                          loads, [&](double D) { return D < k / L; })));
     }
 }
 

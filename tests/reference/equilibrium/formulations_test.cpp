@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "models/curve.hpp"
-#include "reference/equilibrium/equations.hpp"
-#include "reference/equilibrium/newton.hpp"
+#include "reference/equilibrium/continuation/newton.hpp"
+#include "reference/equilibrium/statement/equations.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
@@ -14,7 +14,9 @@ using Kind = Formulation::Angles;
 using On = Formulation::Frame;
 
 const char* name(Kind kind) {
-    return kind == Kind::rotation_vector ? "rotation vector" : kind == Kind::cardan ? "cardan" : "projected";
+    return kind == Kind::rotation_vector ? "rotation vector"
+           : kind == Kind::cardan        ? "cardan"
+                                         : "projected";
 }
 
 // ---- The energies
@@ -46,13 +48,14 @@ double work(const ScalarLaw& law, double x) {
 double work(const SpatialLaw& law, const Vector6& e) {
     if (const auto* u = std::get_if<LinearStiffness>(&law)) return 0.5 * e.dot(u->K * e);
     double sum = 0;
-    for (std::size_t k = 0; k < 6; ++k) sum += work(std::get<PerAxis>(law).axis[k], e[static_cast<int>(k)]);
+    for (std::size_t k = 0; k < 6; ++k)
+        sum += work(std::get<PerAxis>(law).axis[k], e[static_cast<int>(k)]);
     return sum;
 }
 
 Vector6 deformation_of(const Bushing& b, const Pose& i, const Pose& j) {
-    const Matrix3d A_i = (i.p * b.i.A_local).toRotationMatrix(), A_j = (j.p * b.j.A_local).toRotationMatrix(),
-                   B = A_i.transpose() * A_j;
+    const Matrix3d A_i = (i.p * b.i.A_local).toRotationMatrix(),
+                   A_j = (j.p * b.j.A_local).toRotationMatrix(), B = A_i.transpose() * A_j;
     const Eigen::AngleAxisd turn(B);
     Matrix3d A_f = A_i;
     if (b.formulation.frame == On::on_j) A_f = A_j;
@@ -63,7 +66,8 @@ Vector6 deformation_of(const Bushing& b, const Pose& i, const Pose& j) {
     switch (b.formulation.angles) {
         case Kind::rotation_vector: e.tail<3>() = turn.angle() * turn.axis(); break;
         case Kind::cardan:
-            e.tail<3>() << std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)), std::atan2(-B(0, 1), B(0, 0));
+            e.tail<3>() << std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)),
+                std::atan2(-B(0, 1), B(0, 0));
             break;
         case Kind::projected:
             e.tail<3>() << std::atan2(-B(1, 2), B(2, 2)), std::atan2(B(0, 2), B(2, 2)),
@@ -90,8 +94,8 @@ double energy_of(const Bushing& b, const Pose& i, const Pose& j) {
 using Wrenches = Eigen::Matrix<double, 12, 1>;  // (force; moment about the origin) on i, then on j
 
 Wrenches wrenches(const Bushing& b, const Pose& i, const Pose& j) {
-    const auto on =
-        interaction(b, b.preload, true, all_by_themselves, Frame<double>{i.r, i.p}, Frame<double>{j.r, j.p});
+    const auto on = interaction(b, b.preload, true, all_by_themselves, Frame<double>{i.r, i.p},
+                                Frame<double>{j.r, j.p});
     Wrenches w;
     w << on.i.force, on.i.moment + (on.i.at - i.r).cross(on.i.force), on.j.force,
         on.j.moment + (on.j.at - j.r).cross(on.j.force);
@@ -109,7 +113,8 @@ Pose moved(Pose pose, int coordinate, double by) {
 Wrenches negative_gradient(const Bushing& b, const Pose& i, const Pose& j) {
     const auto slope = [](const auto& U) {
         const double h = 5e-4;
-        return (45 * (U(h) - U(-h)) - 9 * (U(2 * h) - U(-2 * h)) + (U(3 * h) - U(-3 * h))) / (60 * h);
+        return (45 * (U(h) - U(-h)) - 9 * (U(2 * h) - U(-2 * h)) + (U(3 * h) - U(-3 * h))) /
+               (60 * h);
     };
     Wrenches w;
     for (int k = 0; k < 6; ++k) {
@@ -122,7 +127,8 @@ Wrenches negative_gradient(const Bushing& b, const Pose& i, const Pose& j) {
 // Smooth over ±1: rising cubics between knots at ±1.5, other slopes outside.
 Curve some_curve(std::mt19937& random, double rate) {
     std::uniform_real_distribution<double> in(0.3, 1);
-    const double c_1 = rate * in(random), c_2 = 0.3 * rate * in(random), c_3 = rate * in(random), w = 1.5;
+    const double c_1 = rate * in(random), c_2 = 0.3 * rate * in(random), c_3 = rate * in(random),
+                 w = 1.5;
     // about 0: c_1 x + c_2 x² + c_3 x³, expanded about -w
     const auto f = [&](double x) { return c_1 * x + c_2 * x * x + c_3 * x * x * x; };
     return {{-w, w},
@@ -174,15 +180,16 @@ TEST(EquilibriumFormulations, ForcesAreTheNegativeGradientOfTheEnergyWhereThereI
                         b.formulation = {frame, angles};
                         const auto [i, j] = some_poses(random, b, turn_by(random, angle));
                         const Wrenches by_hand = negative_gradient(b, i, j);
-                        worst.see((wrenches(b, i, j) - by_hand).cwiseAbs().maxCoeff() /
-                                      by_hand.cwiseAbs().maxCoeff(),
-                                  fmt::format("{}, frame {}, {} rad", name(angles),
-                                              frame == On::middle ? "in the middle" : "on i", angle));
+                        worst.see(
+                            (wrenches(b, i, j) - by_hand).cwiseAbs().maxCoeff() /
+                                by_hand.cwiseAbs().maxCoeff(),
+                            fmt::format("{}, frame {}, {} rad", name(angles),
+                                        frame == On::middle ? "in the middle" : "on i", angle));
                     }
     EXPECT_TRUE(within(worst, 2e-9));
 }
 
-// turned_round() converts a frame on j to one on i.
+// markers_swapped() converts a frame on j to one on i.
 TEST(EquilibriumFormulations, AFrameOnJIsAFrameOnIOfTheBushingTurnedRound) {
     std::mt19937 random(42);
     Worst worst;
@@ -191,7 +198,8 @@ TEST(EquilibriumFormulations, AFrameOnJIsAFrameOnIOfTheBushingTurnedRound) {
             Bushing b = some_bushing(random, trial % 2 == 1);
             b.formulation = {On::on_j, angles};
             const auto [i, j] = some_poses(random, b, turn_by(random, 0.7));
-            Wrenches turned = wrenches(turned_round(b), j, i), by_hand = negative_gradient(b, i, j);
+            Wrenches turned = wrenches(markers_swapped(b), j, i),
+                     by_hand = negative_gradient(b, i, j);
             const Vector6 on_j = turned.head<6>();
             turned.head<6>() = turned.tail<6>().eval();
             turned.tail<6>() = on_j;
@@ -209,7 +217,7 @@ TEST(EquilibriumFormulations, InTheMiddleABushingIsItselfTurnedRound) {
         Bushing b = some_bushing(random, trial % 2 == 1);
         b.formulation.frame = On::middle;
         const auto [i, j] = some_poses(random, b, turn_by(random, 0.03 * trial));
-        const Wrenches here = wrenches(b, i, j), there = wrenches(turned_round(b), j, i);
+        const Wrenches here = wrenches(b, i, j), there = wrenches(markers_swapped(b), j, i);
         worst.see(std::max((here.head<6>() - there.tail<6>()).cwiseAbs().maxCoeff(),
                            (here.tail<6>() - there.head<6>()).cwiseAbs().maxCoeff()) /
                       here.cwiseAbs().maxCoeff(),
@@ -262,7 +270,8 @@ TEST(EquilibriumFormulations, TheCommercialLawIsItsFormula) {
         // j's marker is its origin
         by_hand << force, moment + acts_at.cross(force), -force, -moment;
         const Wrenches w = wrenches(b, i, j);
-        EXPECT_LT((w - by_hand).cwiseAbs().maxCoeff(), 1e-10) << w.transpose() << "\n" << by_hand.transpose();
+        EXPECT_LT((w - by_hand).cwiseAbs().maxCoeff(), 1e-10) << w.transpose() << "\n"
+                                                              << by_hand.transpose();
     }
 }
 
@@ -282,7 +291,8 @@ TEST(EquilibriumFormulations, OnlyWithoutTheOffsetMomentIsThePairOutOfBalance) {
                         const auto [i, j] = some_poses(random, b, turn_by(random, 0.8));
                         const Wrenches w = wrenches(b, i, j);
                         const Vector3d f = w.head<3>(), sum = f + w.segment<3>(6);
-                        Vector3d moments = w.segment<3>(3) + i.r.cross(f) + w.tail<3>() - j.r.cross(f);
+                        Vector3d moments =
+                            w.segment<3>(3) + i.r.cross(f) + w.tail<3>() - j.r.cross(f);
                         const Vector3d D = j.r + j.p * b.j.s_local - i.r - i.p * b.i.s_local;
                         if (!offset) moments += D.cross(f);
                         worst.see((sum.norm() + moments.norm()) / w.norm(), name(angles));
@@ -299,11 +309,13 @@ TEST(EquilibriumFormulations, WhereAnAngleHasNoValueThereIsNoNumber) {
     };
     const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
     const auto any_nan = [](const Angles<double>& a) {
-        return !(a.theta.allFinite() && a.a[0].allFinite() && a.a[1].allFinite() && a.a[2].allFinite());
+        return !(a.theta.allFinite() && a.a[0].allFinite() && a.a[1].allFinite() &&
+                 a.a[2].allFinite());
     };
     for (const double off : {0., 1e-8, -1e-8}) {
         EXPECT_TRUE(any_nan(angles_of(Kind::cardan, turn(M_PI / 2 + off, y))));
-        EXPECT_TRUE(any_nan(angles_of(Kind::projected, turn(M_PI / 2 + off, x) * turn(M_PI / 2, y))));
+        EXPECT_TRUE(
+            any_nan(angles_of(Kind::projected, turn(M_PI / 2 + off, x) * turn(M_PI / 2, y))));
         for (const Vector3d& axis : {x, y, z})
             for (const Kind kind : {Kind::rotation_vector, Kind::projected}) {
                 if (kind == Kind::projected && axis == y) continue;
@@ -335,7 +347,8 @@ TEST(EquilibriumFormulations, CardanAnglesEndTheBranchAtAQuarterTurn) {
         << path.detail;
     ASSERT_EQ(path.points.size(), 40u);  // up to 156 N·m < 50 π
     for (const auto& state : path.points)
-        EXPECT_NEAR(state.poses[0].p.angularDistance(Quaterniond::Identity()), state.load / 100, 1e-10);
+        EXPECT_NEAR(state.poses[0].p.angularDistance(Quaterniond::Identity()), state.load / 100,
+                    1e-10);
 }
 
 // ---- In a scene
@@ -346,7 +359,8 @@ TEST(EquilibriumFormulations, TheJacobianIsTheDerivativeOfTheResidual) {
     std::mt19937 random(46);
     Scene s;
     s.name = "all";
-    s.bodies = {{"a", {{0.1, 0, 0}, random_turn(random)}}, {"b", {{-0.1, 0.1, 0}, random_turn(random)}}};
+    s.bodies = {{"a", {{0.1, 0, 0}, random_turn(random)}},
+                {"b", {{-0.1, 0.1, 0}, random_turn(random)}}};
     int n = 0;
     for (const On frame : {On::on_i, On::middle})
         for (const Kind angles : {Kind::rotation_vector, Kind::cardan, Kind::projected})
@@ -360,9 +374,11 @@ TEST(EquilibriumFormulations, TheJacobianIsTheDerivativeOfTheResidual) {
                     const auto axes = [&](const Marker& m) {
                         return m.body == ground
                                    ? m.A_local
-                                   : s.bodies[static_cast<std::size_t>(m.body)].design.p * m.A_local;
+                                   : s.bodies[static_cast<std::size_t>(m.body)].design.p *
+                                         m.A_local;
                     };
-                    b.j.A_local = s.bodies[1].design.p.conjugate() * axes(b.i) * turn_by(random, 0.4);
+                    b.j.A_local =
+                        s.bodies[1].design.p.conjugate() * axes(b.i) * turn_by(random, 0.4);
                     s.elastics.push_back({fmt::format("bushing {}", n), b});
                 }
     s.elastics.push_back(
@@ -378,9 +394,9 @@ TEST(EquilibriumFormulations, TheJacobianIsTheDerivativeOfTheResidual) {
     EXPECT_FALSE(system.conservative);
     Worst worst;
     for (const double away : {0., 1e-3, 0.1}) {
-        const Eigen::VectorXd off = away * Eigen::VectorXd::NullaryExpr(12, [&] {
-                                        return std::uniform_real_distribution<double>(-1, 1)(random);
-                                    });
+        const Eigen::VectorXd off =
+            away * Eigen::VectorXd::NullaryExpr(
+                       12, [&] { return std::uniform_real_distribution<double>(-1, 1)(random); });
         const Eigen::VectorXd x = equilibrium::moved(system, design_unknowns(system), off);
         Counts counts;
         const Eigen::MatrixXd J = derivatives(system, {700}, x, counts).J;
@@ -391,7 +407,8 @@ TEST(EquilibriumFormulations, TheJacobianIsTheDerivativeOfTheResidual) {
             };
             const double h = 5e-4;
             const Eigen::VectorXd differences =
-                (45 * (E(h) - E(-h)) - 9 * (E(2 * h) - E(-2 * h)) + (E(3 * h) - E(-3 * h))) / (60 * h);
+                (45 * (E(h) - E(-h)) - 9 * (E(2 * h) - E(-2 * h)) + (E(3 * h) - E(-3 * h))) /
+                (60 * h);
             worst.see((J.col(k) - differences).cwiseAbs().maxCoeff() / J.cwiseAbs().maxCoeff(),
                       fmt::format("{} away, column {}", away, k));
         }
@@ -406,7 +423,8 @@ TEST(EquilibriumFormulations, AFrameThatThisLegHasNoLawForIsMisuse) {
     Model model = compile(s);
     auto& formulation = std::get<Bushing>(model.elastics[0].kind).formulation;
     const std::vector<double> loads = {0};
-    for (const Formulation& none : {Formulation{On::on_j}, Formulation{On::middle, Kind::projected, false}}) {
+    for (const Formulation& none :
+         {Formulation{On::on_j}, Formulation{On::middle, Kind::projected, false}}) {
         formulation = none;
         EXPECT_THROW(solve(model, model.branches[0], loads), std::invalid_argument);
     }

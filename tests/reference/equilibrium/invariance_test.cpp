@@ -39,8 +39,8 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
         for (std::size_t k = 0; k < loads.size(); ++k) {
             const auto &at_a = path_a.points[k], &at_b = path_b.points[k];
             const auto where = [&](const std::string& what) {
-                return fmt::format("{}: {}, branch '{}', {}", a.name, what, model_a.branches[0].name,
-                                   loads[k]);
+                return fmt::format("{}: {}, branch '{}', {}", a.name, what,
+                                   model_a.branches[0].name, loads[k]);
             };
             const Wheel &w_a = model_a.wheels[0], &w_b = model_b.wheels[0];
             worst.see((position(at_a, {w_a.body, w_a.centre_local}) -
@@ -52,16 +52,20 @@ void expect_same(const Scene& a, const Scene& b, const Back& back, double limit 
                           .norm(),
                       where("contact"));
             worst.see((at_a.poses[static_cast<std::size_t>(w_a.body)].p * w_a.spin_axis_local -
-                       back.vector(at_b.poses[static_cast<std::size_t>(w_b.body)].p * w_b.spin_axis_local))
+                       back.vector(at_b.poses[static_cast<std::size_t>(w_b.body)].p *
+                                   w_b.spin_axis_local))
                           .norm(),
                       where("spin axis"));
             for (std::size_t j = 0; j < model_a.joints.size(); ++j)
                 for (std::size_t i = 0; i < model_b.joints.size(); ++i) {
                     if (model_a.joints[j].name != model_b.joints[i].name) continue;
-                    worst.see((at_a.reactions[j].force - back.vector(at_b.reactions[i].force)).norm() / force,
-                              where("force of " + model_a.joints[j].name));
                     worst.see(
-                        (at_a.reactions[j].moment - back.moment(at_b.reactions[i].moment)).norm() / moment,
+                        (at_a.reactions[j].force - back.vector(at_b.reactions[i].force)).norm() /
+                            force,
+                        where("force of " + model_a.joints[j].name));
+                    worst.see(
+                        (at_a.reactions[j].moment - back.moment(at_b.reactions[i].moment)).norm() /
+                            moment,
                         where("moment of " + model_a.joints[j].name));
                 }
         }
@@ -79,12 +83,15 @@ Scene driven_scene() {
     Vector6 preload;
     preload << 900, -400, 300, 4, 7, -3;
     const Driver braking = {
-        Load{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, {-1, .3, 0}}}, 900, 0};
+        Load{"brake", DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, {-1, .3, 0}}}, 900,
+        0};
     s.branches = {
-        branch_of("load", {{s.branches[0].drivers[0].what, 0, 1}, {Motion{rack}, 0.015, 0}}, 2000, 8),
+        branch_of("load", {{s.branches[0].drivers[0].what, 0, 1}, {Motion{rack}, 0.015, 0}}, 2000,
+                  8),
         branch_of("travel", {{Motion{jack}, 0, 1}, {Preload{2, preload}, 1, 0}, braking}, -0.08, 8,
                   ParameterUnit::metre),
-        branch_of("steer", {{Motion{rack}, 0, 1}, {Motion{jack}, 0.02, 0.5}}, 0.02, 8, ParameterUnit::metre),
+        branch_of("steer", {{Motion{rack}, 0, 1}, {Motion{jack}, 0.02, 0.5}}, 0.02, 8,
+                  ParameterUnit::metre),
         branch_of("trim", {{FreeLength{0}, 0.005, 1}}, 0.02, 8, ParameterUnit::metre)};
     return s;
 }
@@ -94,10 +101,10 @@ std::vector<Scene> scenes() { return {scene("chrono_mcpherson"), rich_scene(), d
 TEST(EquilibriumInvariance, UnitOfLength) {
     for (const auto& s : scenes())
         for (const double c : {1000., 1e-3, 39.37})
-            expect_same(
-                s, with_length_unit(s, c),
-                {[c](const Vector3d& v) { return Vector3d(v / c); }, [](const Vector3d& v) { return v; },
-                 [c](const Vector3d& v) { return Vector3d(v / c); }});
+            expect_same(s, with_length_unit(s, c),
+                        {[c](const Vector3d& v) { return Vector3d(v / c); },
+                         [](const Vector3d& v) { return v; },
+                         [c](const Vector3d& v) { return Vector3d(v / c); }});
 }
 
 // The same scene file in millimetres and in metres.
@@ -127,9 +134,9 @@ TEST(EquilibriumInvariance, GroundFrame) {
             const Quaterniond Q = random_turn(random);
             const Vector3d t = random_vector(random, trial < 2 ? 1 : 100);
             const auto turn_back = [Q](const Vector3d& v) { return Vector3d(Q.conjugate() * v); };
-            expect_same(
-                s, moved_with_ground(s, Q, t),
-                {[=](const Vector3d& v) { return Vector3d(Q.conjugate() * (v - t)); }, turn_back, turn_back});
+            expect_same(s, moved_with_ground(s, Q, t),
+                        {[=](const Vector3d& v) { return Vector3d(Q.conjugate() * (v - t)); },
+                         turn_back, turn_back});
         }
 }
 
@@ -155,7 +162,8 @@ TEST(EquilibriumInvariance, MirroredSide) {
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     const auto mirror = [S](const Vector3d& v) { return Vector3d(S * v); };
     for (const auto& s : scenes())
-        expect_same(s, mirrored(s), {mirror, mirror, [S](const Vector3d& v) { return Vector3d(-S * v); }});
+        expect_same(s, mirrored(s),
+                    {mirror, mirror, [S](const Vector3d& v) { return Vector3d(-S * v); }});
 }
 
 // An equilibrium is independent of the preceding steps.
@@ -174,9 +182,11 @@ TEST(EquilibriumInvariance, NumberOfSteps) {
                 const auto other = solve(model, branch, loads);
                 ASSERT_EQ(other.outcome, Outcome::converged) << other.detail;
                 const auto body = static_cast<std::size_t>(model.wheels[0].body);
-                worst.see((other.points.back().poses[body].r - fine.points.back().poses[body].r).norm(),
-                          fmt::format("{} steps", steps));
-                worst.see(other.points.back().poses[body].p.angularDistance(fine.points.back().poses[body].p),
+                worst.see(
+                    (other.points.back().poses[body].r - fine.points.back().poses[body].r).norm(),
+                    fmt::format("{} steps", steps));
+                worst.see(other.points.back().poses[body].p.angularDistance(
+                              fine.points.back().poses[body].p),
                           fmt::format("{} steps", steps));
             }
             EXPECT_TRUE(within(worst, 1e-11)) << s.name;

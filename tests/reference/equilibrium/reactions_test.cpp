@@ -24,17 +24,22 @@ TEST(EquilibriumReactions, AWeldAnswersAForceAndAMoment) {
         const BodyId i = ground_first ? ground : 0, j = ground_first ? 0 : ground;
         Scene s;
         s.bodies = {{"bracket", {}}};
-        s.joints = {
-            {"weld",
-             Fixed{{i, at}, {j, at}, {i, {1, 0, 0}}, {i, {0, 1, 0}}, {j, {1, 0, 0}}, {j, {0, 1, 0}}}}};
+        s.joints = {{"weld", Fixed{{i, at},
+                                   {j, at},
+                                   {i, {1, 0, 0}},
+                                   {i, {0, 1, 0}},
+                                   {j, {1, 0, 0}},
+                                   {j, {0, 1, 0}}}}};
         s.branches = {branch_of(
-            "both", {driven_by({"f", DeadForce{{0, p}, f}}), driven_by({"m", DeadMoment{0, m}})}, 1, 1)};
+            "both", {driven_by({"f", DeadForce{{0, p}, f}}), driven_by({"m", DeadMoment{0, m}})}, 1,
+            1)};
         s.probes = {{"p", {0, p}}};
         const Model model = compile(s);
         const double a = 250, sign = ground_first ? -1 : 1;  // the wrench on ground is the opposite
         const auto state = solved(model, model.branches[0], a);
         EXPECT_LE((state.reactions.at(0).force + sign * a * f).norm(), 1e-11);
-        EXPECT_LE((state.reactions.at(0).moment + sign * a * (m + (p - at).cross(f))).norm(), 1e-11);
+        EXPECT_LE((state.reactions.at(0).moment + sign * a * (m + (p - at).cross(f))).norm(),
+                  1e-11);
     }
 }
 
@@ -44,9 +49,12 @@ TEST(EquilibriumReactions, AWeldOnABodyThatMovesAnswersWhereItIsNow) {
     Scene s;
     s.bodies = {{"block", {}}, {"bracket", {{0.2, 0, 0}, Quaterniond::Identity()}}};
     const Vector3d at_bracket = at - s.bodies[1].design.r, p_bracket = p - s.bodies[1].design.r;
-    s.joints = {
-        {"weld",
-         Fixed{{1, at_bracket}, {0, at}, {1, {1, 0, 0}}, {1, {0, 1, 0}}, {0, {1, 0, 0}}, {0, {0, 1, 0}}}}};
+    s.joints = {{"weld", Fixed{{1, at_bracket},
+                               {0, at},
+                               {1, {1, 0, 0}},
+                               {1, {0, 1, 0}},
+                               {0, {1, 0, 0}},
+                               {0, {0, 1, 0}}}}};
     Bushing mount;
     mount.j.body = 0;
     stiffness_of(mount).K.diagonal() << 2e4, 3e4, 4e4, 600, 500, 400;
@@ -73,7 +81,8 @@ TEST(EquilibriumReactions, ACraneIsInBalanceByHand) {
         s.bodies = {{"jib", {}}};
         s.joints = {
             {"hinge", Revolute{{i, {0, 0, 0}}, {j, {0, 0, 0}}, {i, {0, 1, 0}}, {j, {0, 1, 0}}}},
-            {"stay", Distance{{i, ground_first ? head : foot}, {j, ground_first ? foot : head}, 2.5}}};
+            {"stay",
+             Distance{{i, ground_first ? head : foot}, {j, ground_first ? foot : head}, 2.5}}};
         s.branches = {pull({0, hook}, {0, 0, -1})};
         s.probes = {{"hook", {0, hook}}};
         const Model model = compile(s);
@@ -98,7 +107,8 @@ TEST(EquilibriumReactions, ThePinOfTheBarCarriesTheRest) {
     for (const auto& branch : model.branches)
         for (const auto& state : solve(model, branch, every_load(branch)).points) {
             const Vector3d tip = position(state, model.probes[0].at);
-            const Vector3d rest = -state.load * Vector3d::UnitZ() + 20e3 * (tip - Vector3d(0.5, 0, 0));
+            const Vector3d rest =
+                -state.load * Vector3d::UnitZ() + 20e3 * (tip - Vector3d(0.5, 0, 0));
             worst.see((state.reactions.at(0).force - rest).norm(), fmt::format("{} N", state.load));
             worst.see(state.reactions.at(0).moment.norm(), fmt::format("{} N, moment", state.load));
         }
@@ -141,8 +151,9 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
                 s.elastics.push_back({"mount", mount});
                 s.branches.resize(1);
                 s.branches[0].name = "any";
-                s.branches[0].drivers.push_back(driven_by(
-                    {"f", DeadForce{{body, random_vector(random, 0.3)}, random_vector(random, 1)}}));
+                s.branches[0].drivers.push_back(
+                    driven_by({"f", DeadForce{{body, random_vector(random, 0.3)},
+                                              random_vector(random, 1)}}));
                 s.branches[0].drivers.push_back(
                     driven_by({"m", DeadMoment{body, random_vector(random, 0.05)}}));
             }
@@ -159,9 +170,10 @@ TEST(EquilibriumReactions, EveryKindOfJointIsInBalanceAndTransmitsWhatItCan) {
             double carried = 0;
             for (const auto& state : path.points) {
                 const auto r = residuals(model, model.branches[0], state);
-                for (const double part : {r.length, r.direction, r.force, r.moment}) worst.see(part, s.name);
-                carried =
-                    std::max(carried, state.reactions[0].force.norm() + state.reactions[0].moment.norm());
+                for (const double part : {r.length, r.direction, r.force, r.moment})
+                    worst.see(part, s.name);
+                carried = std::max(
+                    carried, state.reactions[0].force.norm() + state.reactions[0].moment.norm());
             }
             EXPECT_TRUE(within(worst, 5e-9));
             EXPECT_GT(carried, 1) << s.name;
@@ -189,10 +201,12 @@ TEST(EquilibriumReactions, McPhersonIsInBalanceToRoundOffForHardlyMoreThanOneIte
         EXPECT_TRUE(within(balance, 1e-8));
         EXPECT_LE(path.counts.iterations, 2 * 301);
         const double travel =
-            position(path.points.back(), {model.wheels[0].body, model.wheels[0].centre_local})[2] + 0.026;
+            position(path.points.back(), {model.wheels[0].body, model.wheels[0].centre_local})[2] +
+            0.026;
         EXPECT_GT(travel * branch.to, 0);
         fmt::print(
-            "{}: {:.1f} mm, constraints {:.1e} m, balance {:.1e} N, {:.0f} µs and {:.2f} iterations a "
+            "{}: {:.1f} mm, constraints {:.1e} m, balance {:.1e} N, {:.0f} µs and {:.2f} "
+            "iterations a "
             "point\n",
             branch.name, 1e3 * travel, constraints.value, balance.value, 1e6 * took.count() / 301,
             static_cast<double>(path.counts.iterations) / 301);
@@ -237,7 +251,8 @@ TEST_F(EquilibriumResiduals, ShowEveryMisplacedBody) {
         const auto shifted = judged([&](Equilibrium& s) { s.poses[b].r[0] += 1e-6; });
         EXPECT_TRUE(shifted.length > 1e-8 || shifted.force > 1e-3) << model.bodies[b].name;
         const auto turned = judged([&](Equilibrium& s) {
-            s.poses[b].p = Quaterniond(Eigen::AngleAxisd(1e-6, Vector3d(0.6, 0, 0.8))) * s.poses[b].p;
+            s.poses[b].p =
+                Quaterniond(Eigen::AngleAxisd(1e-6, Vector3d(0.6, 0, 0.8))) * s.poses[b].p;
         });
         EXPECT_TRUE(turned.length > 1e-8 || turned.direction > 1e-8 || turned.moment > 1e-5)
             << model.bodies[b].name;
@@ -277,7 +292,8 @@ TEST_F(EquilibriumResiduals, ShowAWrenchThatTheJointCannotTransmit) {
 }
 
 TEST_F(EquilibriumResiduals, ShowAQuaternionOffTheUnitSphere) {
-    EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[1].p.coeffs() *= 1.001; }).direction, 1e-3, 1e-12);
+    EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[1].p.coeffs() *= 1.001; }).direction, 1e-3,
+                1e-12);
 }
 
 TEST_F(EquilibriumResiduals, NeverPassANaN) {

@@ -7,9 +7,9 @@
 #include <functional>
 #include <random>
 
-#include "models/compile.hpp"
-#include "models/reader/scene_file.hpp"
-#include "reference/equilibrium/solve.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
 
@@ -28,13 +28,15 @@ inline std::vector<double> every_load(const Branch& branch) {
     return loads;
 }
 
-inline Branch branch_of(const std::string& name, const std::vector<Driver>& drivers, double to, int steps,
-                        ParameterUnit unit = ParameterUnit::newton) {
+inline Branch branch_of(const std::string& name, const std::vector<Driver>& drivers, double to,
+                        int steps, ParameterUnit unit = ParameterUnit::newton) {
     return {name, 0, to, steps, unit, drivers};
 }
 inline Driver driven_by(const Load& load) { return {load, 0, 1}; }
 
-inline LinearStiffness& stiffness_of(Bushing& bushing) { return std::get<LinearStiffness>(bushing.law); }
+inline LinearStiffness& stiffness_of(Bushing& bushing) {
+    return std::get<LinearStiffness>(bushing.law);
+}
 inline LinearRate& rate_of(AxialSpring& spring) { return std::get<LinearRate>(spring.law); }
 
 inline Vector3d position(const Equilibrium& state, const Point& p) {
@@ -142,14 +144,16 @@ inline Scene moved_with_ground(Scene s, const Quaterniond& Q, const Vector3d& t)
 }
 
 // Other body axes and origins: rotated by Q[b], origin moved to c[b] of the old body axes.
-inline Scene with_body_frames(Scene s, const std::vector<Quaterniond>& Q, const std::vector<Vector3d>& c) {
+inline Scene with_body_frames(Scene s, const std::vector<Quaterniond>& Q,
+                              const std::vector<Vector3d>& c) {
     const auto n = [](BodyId body) { return static_cast<std::size_t>(body); };
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
         auto& pose = s.bodies[b].design;
         pose = {pose.r + pose.p * c[b], pose.p * Q[b]};
     }
     visit(s, {[&](Point& p) {
-                  if (p.body != ground) p.s_local = Q[n(p.body)].conjugate() * (p.s_local - c[n(p.body)]);
+                  if (p.body != ground)
+                      p.s_local = Q[n(p.body)].conjugate() * (p.s_local - c[n(p.body)]);
               },
               [&](Direction& d) {
                   if (d.body != ground) d.u_local = Q[n(d.body)].conjugate() * d.u_local;
@@ -176,7 +180,8 @@ inline Scene reversed(Scene s) {
     for (auto& branch : s.branches) {
         std::reverse(branch.drivers.begin(), branch.drivers.end());
         for (auto& driver : branch.drivers) {
-            if (auto* motion = std::get_if<Motion>(&driver.what)) other_end(motion->joint, s.joints.size());
+            if (auto* motion = std::get_if<Motion>(&driver.what))
+                other_end(motion->joint, s.joints.size());
             if (auto* length = std::get_if<FreeLength>(&driver.what))
                 other_end(length->elastic, s.elastics.size());
             if (auto* preload = std::get_if<Preload>(&driver.what))
@@ -190,9 +195,12 @@ inline Scene reversed(Scene s) {
 // θ) -S v.
 inline Scene mirrored(Scene s) {
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
-    const auto mirror = [&](const Quaterniond& p) { return Quaterniond(p.w(), -p.x(), p.y(), -p.z()); };
+    const auto mirror = [&](const Quaterniond& p) {
+        return Quaterniond(p.w(), -p.x(), p.y(), -p.z());
+    };
     for (auto& body : s.bodies) body.design = {S * body.design.r, mirror(body.design.p)};
-    visit(s, {[&](Point& p) { p.s_local = S * p.s_local; }, [&](Direction& d) { d.u_local = S * d.u_local; },
+    visit(s, {[&](Point& p) { p.s_local = S * p.s_local; },
+              [&](Direction& d) { d.u_local = S * d.u_local; },
               [&](Marker& m) { m.s_local = S * m.s_local, m.A_local = mirror(m.A_local); }});
     turn_loads(s, S, -S);
     Vector6 T;
@@ -212,7 +220,8 @@ inline Scene mirrored(Scene s) {
 // Numbers for a unit of length of 1/c m, forces still in N.
 inline Scene with_length_unit(Scene s, double c) {
     for (auto& body : s.bodies) body.design.r *= c;
-    visit(s, {[&](Point& p) { p.s_local *= c; }, [](Direction&) {}, [&](Marker& m) { m.s_local *= c; }});
+    visit(s, {[&](Point& p) { p.s_local *= c; }, [](Direction&) {},
+              [&](Marker& m) { m.s_local *= c; }});
     turn_loads(s, Matrix3d::Identity(), c * Matrix3d::Identity());
     Vector6 T;
     T << 1, 1, 1, c, c, c;  // (force, moment), and 1 / length becomes / c for translations
@@ -240,9 +249,10 @@ inline Scene with_length_unit(Scene s, double c) {
             if (length) driver.rate /= c;
             double of_length = 1;  // factor of the driven quantity
             if (const auto* motion = std::get_if<Motion>(&driver.what))
-                of_length =
-                    std::holds_alternative<Angle>(s.joints[static_cast<std::size_t>(motion->joint)].kind) ? 1
-                                                                                                          : c;
+                of_length = std::holds_alternative<Angle>(
+                                s.joints[static_cast<std::size_t>(motion->joint)].kind)
+                                ? 1
+                                : c;
             if (std::holds_alternative<FreeLength>(driver.what)) of_length = c;
             if (auto* preload = std::get_if<Preload>(&driver.what))
                 preload->direction = T.asDiagonal() * preload->direction;
@@ -275,26 +285,29 @@ inline Scene rich_scene() {
     };
     const auto along = [&](BodyId body, const Vector3d& u) {
         if (body == ground) return Direction{body, u.normalized()};
-        return Direction{body,
-                         s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * u.normalized()};
+        return Direction{
+            body, s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * u.normalized()};
     };
     const auto marker = [&](BodyId body, const Vector3d& p, const Quaterniond& axes) {
         const auto at = point(body, p);
-        return Marker{
-            body, at.s_local,
-            body == ground ? axes : s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * axes};
+        return Marker{body, at.s_local,
+                      body == ground
+                          ? axes
+                          : s.bodies[static_cast<std::size_t>(body)].design.p.conjugate() * axes};
     };
-    const auto bushing = [&](const char* name, BodyId i, BodyId j, const Vector3d& at, double preload) {
+    const auto bushing = [&](const char* name, BodyId i, BodyId j, const Vector3d& at,
+                             double preload) {
         const Quaterniond axes = random_turn(random);
         Vector6 pre;
         pre << random_vector(random, 1), random_vector(random, 0.02);
-        s.elastics.push_back({name, Bushing{marker(i, at, axes), marker(j, at, axes),
-                                            LinearStiffness{random_stiffness(random)}, preload * pre}});
+        s.elastics.push_back(
+            {name, Bushing{marker(i, at, axes), marker(j, at, axes),
+                           LinearStiffness{random_stiffness(random)}, preload * pre}});
     };
     const Vector3d lower_ball(.02, .75, -.12), upper_ball(-.01, .68, .3), tie_out(-.12, .72, 0),
         tie_in(-.15, .35, .02);
-    for (const Vector3d& at :
-         {Vector3d(.3, .3, .05), Vector3d(-.3, .3, .05), Vector3d(.3, .2, -.1), Vector3d(-.3, .2, -.1)})
+    for (const Vector3d& at : {Vector3d(.3, .3, .05), Vector3d(-.3, .3, .05), Vector3d(.3, .2, -.1),
+                               Vector3d(-.3, .2, -.1)})
         bushing("mount", ground, subframe, at, 200);
     bushing("front", arm, subframe, {.2, .35, -.1}, 100);
     bushing("rear", subframe, arm, {-.2, .35, -.1}, 0);
@@ -302,29 +315,35 @@ inline Scene rich_scene() {
     s.joints = {
         {"lower ball", Spherical{point(arm, lower_ball), point(knuckle, lower_ball)}},
         {"upper ball", Spherical{point(knuckle, upper_ball), point(upper, upper_ball)}},
-        {"upper pivot", Revolute{point(ground, {0, .4, .32}), point(upper, {0, .4, .32}), along(ground, axis),
-                                 along(upper, axis)}},
-        {"tie rod", Distance{point(knuckle, tie_out), point(ground, tie_in), (tie_out - tie_in).norm()}},
+        {"upper pivot", Revolute{point(ground, {0, .4, .32}), point(upper, {0, .4, .32}),
+                                 along(ground, axis), along(upper, axis)}},
+        {"tie rod",
+         Distance{point(knuckle, tie_out), point(ground, tie_in), (tie_out - tie_in).norm()}},
         {"damper", Translational{point(slider, {.2, .5, .1}), point(subframe, {.2, .5, .1}),
                                  along(slider, {.1, .2, 1}), along(subframe, {.1, .2, 1})}},
-        {"cross", Universal{point(link, {-.2, .5, 0}), point(subframe, {-.2, .5, 0}), along(link, {1, 0, 0}),
-                            along(subframe, {0, 0, 1})}},
-        {"weld", Fixed{point(plate, {.1, .9, .1}), point(knuckle, {.1, .9, .1}), along(plate, {1, 0, 0}),
-                       along(plate, {0, 1, 0}), along(knuckle, {1, 0, 0}), along(knuckle, {0, 1, 0})}},
-        {"tube", InLine{point(link, {-.2, .7, 0}), point(arm, {-.2, .7, 0}), along(arm, {1, .1, 0})}},
+        {"cross", Universal{point(link, {-.2, .5, 0}), point(subframe, {-.2, .5, 0}),
+                            along(link, {1, 0, 0}), along(subframe, {0, 0, 1})}},
+        {"weld",
+         Fixed{point(plate, {.1, .9, .1}), point(knuckle, {.1, .9, .1}), along(plate, {1, 0, 0}),
+               along(plate, {0, 1, 0}), along(knuckle, {1, 0, 0}), along(knuckle, {0, 1, 0})}},
+        {"tube",
+         InLine{point(link, {-.2, .7, 0}), point(arm, {-.2, .7, 0}), along(arm, {1, .1, 0})}},
     };
     bushing("spin", link, arm, {-.2, .7, 0}, 0);
-    s.elastics.push_back({"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}),
-                                              LinearRate{30e3}, .49}});
-    s.elastics.push_back({"damper spring", AxialSpring{point(slider, {.25, .5, .15}),
-                                                       point(arm, {.2, .6, -.1}), LinearRate{20e3}, .27}});
+    s.elastics.push_back(
+        {"coil", AxialSpring{point(arm, {.05, .6, -.1}), point(ground, {.05, .5, .35}),
+                             LinearRate{30e3}, .49}});
+    s.elastics.push_back(
+        {"damper spring", AxialSpring{point(slider, {.25, .5, .15}), point(arm, {.2, .6, -.1}),
+                                      LinearRate{20e3}, .27}});
     s.static_loads = {{"weight", DeadForce{point(knuckle, {0, .85, .1}), {0, 0, 400}}}};
-    s.branches = {branch_of("mixed",
-                            {driven_by({"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}}),
-                             driven_by({"twist", DeadMoment{knuckle, {.02, .05, .03}}})},
-                            1500, 30)};
-    s.wheels = {Wheel{"", plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}).s_local,
-                      along(plate, {0, 1, 0}).u_local, 1}};
+    s.branches = {
+        branch_of("mixed",
+                  {driven_by({"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}}),
+                   driven_by({"twist", DeadMoment{knuckle, {.02, .05, .03}}})},
+                  1500, 30)};
+    s.wheels = {Wheel{"", plate, point(plate, {0, .95, .1}).s_local,
+                      point(plate, {0, .95, -.2}).s_local, along(plate, {0, 1, 0}).u_local, 1}};
     return s;
 }
 
@@ -334,7 +353,8 @@ inline Scene hinged_bar(const Vector3d& u, const Vector3d& axis, double k_R) {
     Scene s;
     s.name = "hinged bar";
     s.bodies = {{"bar", {}}};
-    s.joints = {{"hinge", Revolute{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, axis}, {ground, axis}}}};
+    s.joints = {
+        {"hinge", Revolute{{0, {0, 0, 0}}, {ground, {0, 0, 0}}, {0, axis}, {ground, axis}}}};
     Bushing torsion;
     torsion.i.body = 0;
     stiffness_of(torsion).K.bottomRightCorner<3, 3>() = k_R * Matrix3d::Identity();
@@ -358,10 +378,12 @@ inline double energy(const AxialSpring& spring, const Pose& i, const Pose& j) {
 }
 
 inline double energy(const Bushing& b, const Pose& i, const Pose& j) {
-    const Matrix3d A_i = (i.p * b.i.A_local).toRotationMatrix(), A_j = (j.p * b.j.A_local).toRotationMatrix();
+    const Matrix3d A_i = (i.p * b.i.A_local).toRotationMatrix(),
+                   A_j = (j.p * b.j.A_local).toRotationMatrix();
     Eigen::AngleAxisd turn(Quaterniond((i.p * b.i.A_local).conjugate() * (j.p * b.j.A_local)));
     Vector6 e;
-    e << A_i.transpose() * (j.r + j.p * b.j.s_local - i.r - i.p * b.i.s_local), turn.angle() * turn.axis();
+    e << A_i.transpose() * (j.r + j.p * b.j.s_local - i.r - i.p * b.i.s_local),
+        turn.angle() * turn.axis();
     EXPECT_TRUE((A_i * turn.toRotationMatrix()).isApprox(A_j, 1e-9));
     return 0.5 * e.dot(std::get<LinearStiffness>(b.law).K * e) + b.preload.dot(e);
 }
@@ -380,8 +402,8 @@ struct Worst {
 inline ::testing::AssertionResult within(const Worst& worst, double limit) {
     const bool ok = worst.compared > 0 && std::isfinite(worst.value) && worst.value <= limit;
     return (ok ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-           << "worst " << worst.value << " of " << worst.compared << " at " << worst.where << ", allowed "
-           << limit;
+           << "worst " << worst.value << " of " << worst.compared << " at " << worst.where
+           << ", allowed " << limit;
 }
 
 }  // namespace elastocheck::reference::equilibrium::test

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "models/branch.hpp"
-#include "reference/equilibrium/walk.hpp"
+#include "reference/equilibrium/continuation/continuation.hpp"
 #include "tests/reference/equilibrium/driven_scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
@@ -175,10 +175,12 @@ TEST(EquilibriumSparse, TheConstraintsSideIsThatOfTheDenseDeterminant) {
         if (m == 0) return;
         Counts counts;
         for (const double away : {0.1, 1., 2.}) {
-            const VectorXd dx = away * VectorXd::NullaryExpr(system.equations(), [&] { return in(random); });
+            const VectorXd dx =
+                away * VectorXd::NullaryExpr(system.equations(), [&] { return in(random); });
             Linearisation to;
-            to.J =
-                derivatives(system, loading_at(walk, walk.here.t), moved(system, walk.here.x, dx), counts).J;
+            to.J = derivatives(system, loading_at(walk, walk.here.t),
+                               moved(system, walk.here.x, dx), counts)
+                       .J;
             const MatrixXd begin = MatrixXd(from.J).bottomLeftCorner(m, n),
                            end = MatrixXd(to.J).bottomLeftCorner(m, n);
             const MatrixXd Z = null_space(begin), U = null_space(begin.transpose());
@@ -207,12 +209,17 @@ TEST(EquilibriumSparse, LeastSquaresAreShortestToo) {
     const auto any = [&](Index rows, Index cols) {
         return MatrixXd(MatrixXd::NullaryExpr(rows, cols, [&] { return in(random); }));
     };
-    for (const auto& [rows, cols, rank] :
-         {std::tuple<Index, Index, Index>{9, 5, 5}, {9, 5, 3}, {5, 9, 5}, {5, 9, 2}, {6, 6, 6}, {6, 6, 4}}) {
+    for (const auto& [rows, cols, rank] : {std::tuple<Index, Index, Index>{9, 5, 5},
+                                           {9, 5, 3},
+                                           {5, 9, 5},
+                                           {5, 9, 2},
+                                           {6, 6, 6},
+                                           {6, 6, 4}}) {
         const MatrixXd A = any(rows, rank) * any(rank, cols);
         const VectorXd b = any(rows, 1), x = least_squares(A.sparseView(), b);
         const VectorXd pseudo = A.completeOrthogonalDecomposition().solve(b);
-        EXPECT_LT((x - pseudo).norm(), 1e-10 * pseudo.norm()) << rows << " x " << cols << ", rank " << rank;
+        EXPECT_LT((x - pseudo).norm(), 1e-10 * pseudo.norm())
+            << rows << " x " << cols << ", rank " << rank;
     }
 }
 
@@ -225,7 +232,8 @@ TEST(EquilibriumSparse, AThousandSpringsInSeriesShareTheLoad) {
     Scene s;
     s.name = "springs in series";
     for (int b = 0; b < n; ++b) {
-        s.bodies.push_back({fmt::format("block {}", b), {{(b + 1) * h, 0, 0}, Quaterniond::Identity()}});
+        s.bodies.push_back(
+            {fmt::format("block {}", b), {{(b + 1) * h, 0, 0}, Quaterniond::Identity()}});
         Bushing spring;
         spring.i = {b - 1, {h / 2, 0, 0}};
         spring.j = {b, {-h / 2, 0, 0}};
@@ -241,8 +249,9 @@ TEST(EquilibriumSparse, AThousandSpringsInSeriesShareTheLoad) {
     Worst worst;
     for (int b = 0; b < n; ++b) {
         const Vector3d exact((b + 1) * (h + P / k), 0, 0);
-        worst.see((path.points[0].poses[static_cast<std::size_t>(b)].r - exact).norm() / exact.norm(),
-                  fmt::format("block {}", b));
+        worst.see(
+            (path.points[0].poses[static_cast<std::size_t>(b)].r - exact).norm() / exact.norm(),
+            fmt::format("block {}", b));
     }
     EXPECT_TRUE(within(worst, 1e-10));
 }
@@ -257,10 +266,11 @@ TEST(EquilibriumSparse, AThousandHingesTurnAlikeByAsManyStepsAsTen) {
         s.name = fmt::format("{} hinges", n);
         const double h = L / n;
         for (int b = 0; b < n; ++b) {
-            s.bodies.push_back({fmt::format("bar {}", b), {{(b + 1) * h, 0, 0}, Quaterniond::Identity()}});
+            s.bodies.push_back(
+                {fmt::format("bar {}", b), {{(b + 1) * h, 0, 0}, Quaterniond::Identity()}});
             const Vector3d end(0, 0, 0), begin(-h, 0, 0), z(0, 0, 1);
-            s.joints.push_back(
-                {fmt::format("hinge {}", b), Revolute{{b, begin}, {b - 1, end}, {b, z}, {b - 1, z}}});
+            s.joints.push_back({fmt::format("hinge {}", b),
+                                Revolute{{b, begin}, {b - 1, end}, {b, z}, {b - 1, z}}});
             Bushing torsion;
             torsion.i = {b - 1, end};
             torsion.j = {b, begin};

@@ -23,9 +23,9 @@ void expect_dividing_at(const Scene& s, double to, double at) {
         const auto path = solve(model, model.branches[0], points);
         // A stretch narrower than the smallest step is stable on both sides; the outcome does not
         // distinguish this case.
-        EXPECT_TRUE(
-            path.outcome == Outcome::dividing_point ||
-            (path.outcome == Outcome::singular && path.detail.find("may divide") != std::string::npos))
+        EXPECT_TRUE(path.outcome == Outcome::bifurcation_point ||
+                    (path.outcome == Outcome::singular &&
+                     path.detail.find("may divide") != std::string::npos))
             << steps << " steps: " << path.detail;
         EXPECT_NE(path.detail.find("divide"), std::string::npos) << path.detail;
         EXPECT_EQ(path.points.size(), before) << steps << " steps: " << path.detail;
@@ -64,9 +64,10 @@ struct Arch {
         mount.i.s_local = at.s_local;
         stiffness_of(mount).K.diagonal() << 0, k_y, driven ? 0 : k_z, 0, 0, 0;
         s.elastics.push_back({"mount", mount});
-        s.branches = {driven
-                          ? branch_of("push", {{Motion{4}, 0, 1}}, -2 * h, 1, ParameterUnit::metre)
-                          : branch_of("push", {driven_by({"f", DeadForce{apex, {0, 0, 1}}})}, load(-h), 1)};
+        s.branches = {
+            driven
+                ? branch_of("push", {{Motion{4}, 0, 1}}, -2 * h, 1, ParameterUnit::metre)
+                : branch_of("push", {driven_by({"f", DeadForce{apex, {0, 0, 1}}})}, load(-h), 1)};
         s.probes = {{"apex", apex}};
         return s;
     }
@@ -76,7 +77,8 @@ TEST(EquilibriumStability, AnUnstableStretchEndsTheBranchWhereverThePointsFall) 
     const Arch arch;
     for (const double z_c : {0.05, 0.02, 0.005, 0.001}) {
         expect_dividing_at(arch.scene(arch.side_rate(z_c), true), -2 * arch.h, z_c - arch.h);
-        expect_dividing_at(arch.scene(arch.side_rate(z_c), false), arch.load(-arch.h), arch.load(z_c));
+        expect_dividing_at(arch.scene(arch.side_rate(z_c), false), arch.load(-arch.h),
+                           arch.load(z_c));
     }
 }
 
@@ -90,7 +92,8 @@ TEST(EquilibriumStability, AnArchThatNeverLeavesItsPlaneGoesThrough) {
                 std::vector<double> points;
                 for (int n = 0; n <= steps; ++n) points.push_back(model.branches[0].to * n / steps);
                 const auto path = solve(model, model.branches[0], points);
-                EXPECT_EQ(path.outcome, Outcome::converged) << part << ", " << steps << ": " << path.detail;
+                EXPECT_EQ(path.outcome, Outcome::converged)
+                    << part << ", " << steps << ": " << path.detail;
             }
 }
 
@@ -160,7 +163,8 @@ TEST(EquilibriumStability, AMechanismEndsWhereItsMotionDivides) {
         for (int n = 0; n <= steps; ++n) points.push_back(M_PI * n / steps);
         const auto path = solve(driven, driven.branches[0], points);
         EXPECT_EQ(path.outcome, Outcome::singular) << steps << ": " << path.detail;
-        EXPECT_NEAR(static_cast<double>(path.points.size()), 1 + std::floor(steps / 2.), 1) << path.detail;
+        EXPECT_NEAR(static_cast<double>(path.points.size()), 1 + std::floor(steps / 2.), 1)
+            << path.detail;
     }
 }
 

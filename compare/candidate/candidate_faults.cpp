@@ -1,0 +1,243 @@
+// Diagnosis of wrong columns: signs, units, reference positions and exchanged columns.
+//
+// A column v that deviates from its reference r is tested against transformations, the simplest
+// first; the first one that makes it right is reported:
+//
+//   v = -r     v = r + c     v = f r     v = r_0 + f (r - r_0)     v = -r + c     v = f r + c
+//   v = ± another output
+//
+// with f a unit factor, or fitted; c the mean of the remaining difference; r_0 the value at the
+// start of the branch. Right means: at most a twentieth of the deviation remains, and at most the
+// tolerance or a thousandth of the range of the reference. If none applies, the column may be right
+// up to a point.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "compare/candidate/candidate.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Kind = Explanation::Kind;
+using Values = std::vector<double>;
+
+constexpr double explained = 0.05;     // of the deviation that may remain
+constexpr double of_movement = 1e-3;   // of the range of the reference
+constexpr double first_part = 0.1;     // of the points of a branch that must be right first
+constexpr double right_so_far = 1e-3;  // of the largest deviation beyond
+// of that, a tenth of the branch further on: a deviation that grows as a power up to the sixth is
+// below a hundredth there, and was never right
+constexpr double at_once = 0.03;
+
+struct Written {
+    double factor;
+    const char* word;
+};
+constexpr double pi = std::numbers::pi;
+// Possible unit confusions, relative to the unit assumed for the column.
+constexpr std::array units{Written{1e-3, "metres for millimetres, or the like"},
+                           Written{1e3, "millimetres for metres, or the like"},
+                           Written{0.1, "centimetres for millimetres"},
+                           Written{10, "millimetres for centimetres"},
+                           Written{1 / 25.4, "inches for millimetres"},
+                           Written{25.4, "millimetres for inches"},
+                           Written{pi / 180, "radians for degrees"},
+                           Written{180 / pi, "degrees for radians"},
+                           Written{60, "minutes of arc for degrees"},
+                           Written{1 / 4.4482216152605, "pounds for newtons"},
+                           Written{1 / 9.80665, "kilograms for newtons"},
+                           Written{2, "an axle's total for a wheel's"},
+                           Written{0.5, "half of it"}};
+
+double mean(const Values& x) {
+    double sum = 0;
+    for (const double v : x) sum += v;
+    return x.empty() ? 0 : sum / static_cast<double>(x.size());
+}
+double off(const Values& a, const Values& b) {
+    double worst = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, std::abs(a[k] - b[k]));
+    return worst;
+}
+double span(const Values& x) {
+    if (x.empty()) return 0;
+    const auto [low, high] = std::ranges::minmax(x);
+    return high - low;
+}
+Values times(double f, Values x) {
+    for (double& v : x) v *= f;
+    return x;
+}
+Values plus(Values x, double c) {
+    for (double& v : x) v += c;
+    return x;
+}
+Values less(Values a, const Values& b) {
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] -= b[k];
+    return a;
+}
+double dot(const Values& a, const Values& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return sum;
+}
+
+const char* unit_word(double factor) {
+    for (const auto& unit : units)
+        if (std::abs(std::abs(factor) / unit.factor - 1) < 1e-6) return unit.word;
+    return "";
+}
+
+// First wrong point of a column that is right before it on its branch.
+std::optional<Explanation> wrong_from(const Beside& b) {
+    for (std::size_t first = 0; first < b.branch.size();) {
+        std::size_t last = first;
+        while (last < b.branch.size() && b.branch[last] == b.branch[first]) ++last;
+        // From a = 0 outwards.
+        std::vector<std::size_t> order;
+        for (std::size_t k = first; k < last; ++k) order.push_back(k);
+        std::ranges::stable_sort(order, {}, [&](std::size_t k) { return std::abs(b.at[k]); });
+        double worst = 0;
+        for (const std::size_t k : order)
+            worst = std::max(worst, std::abs(b.candidate[k] - b.reference[k]));
+        double before = 0;
+        std::size_t n = 0;
+        for (; n < order.size(); ++n) {
+            const double e = std::abs(b.candidate[order[n]] - b.reference[order[n]]);
+            if (e > right_so_far * worst) break;
+            before = std::max(before, e);
+        }
+        const double limit =
+            std::isfinite(b.tolerance) ? b.tolerance : of_movement * span(b.reference);
+        const std::size_t soon =
+            std::min(n + std::max<std::size_t>(1, order.size() / 10), order.size() - 1);
+        const double then = std::abs(b.candidate[order[soon]] - b.reference[order[soon]]);
+        if (worst > limit &&
+            static_cast<double>(n) >= first_part * static_cast<double>(order.size()) && n > 1 &&
+            n < order.size() && then >= at_once * worst)
+            return Explanation{.kind = Kind::from_there_on,
+                               .column = b.column,
+                               .branch = b.branch[first],
+                               .at = b.at[order[n - 1]],
+                               .left = before};
+        first = last;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Explanation> explain(const Beside& b) {
+    const Values &v = b.candidate, &r = b.reference;
+    if (v.size() < 2) return std::nullopt;
+    const double deviation = off(v, r), movement = span(r);
+    if (!(deviation > 0)) return std::nullopt;
+    if (!(span(v) > 1e-9) && movement > 1e-6)
+        return Explanation{.kind = Kind::still, .column = b.column, .left = deviation};
+    const double allowed =
+        std::min(explained * deviation,
+                 std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
+    std::optional<Explanation> found;
+    const auto try_it = [&](Explanation as, const Values& reading) {
+        as.left = off(v, reading);
+        as.column = b.column;
+        if (!found && as.left <= allowed) found = as;
+    };
+    const auto with_offset = [&](Explanation as, const Values& reading) {
+        as.offset = mean(less(v, reading));
+        try_it(as, plus(reading, as.offset));
+    };
+    try_it({.kind = Kind::sign}, times(-1, r));
+    with_offset({.kind = Kind::offset}, r);
+    for (const double sign : {1., -1.})
+        for (const auto& unit : units)
+            try_it({.kind = Kind::factor, .factor = sign * unit.factor, .unit_word = unit.word},
+                   times(sign * unit.factor, r));
+    // Fitted, for the whole column and for its change.
+    if (const double rr = dot(r, r); rr > 0) {
+        const double f = dot(v, r) / rr;
+        try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, times(f, r));
+    }
+    const Values change = less(r, b.begin);
+    if (const double cc = dot(change, change); cc > 0) {
+        const double f = dot(less(v, b.begin), change) / cc;
+        Values reading = times(f, change);
+        for (std::size_t k = 0; k < reading.size(); ++k) reading[k] += b.begin[k];
+        if (f > 0) try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, reading);
+    }
+    with_offset({.kind = Kind::sign_and_offset}, times(-1, r));
+    for (std::size_t o = 0; o < b.others.size(); ++o)
+        if (b.others[o].size() == v.size()) {
+            try_it({.kind = Kind::other_output, .other = b.other_channels[o]}, b.others[o]);
+            try_it({.kind = Kind::other_turned, .other = b.other_channels[o]},
+                   times(-1, b.others[o]));
+        }
+    for (const double sign : {1., -1.})
+        for (const auto& unit : units)
+            with_offset({.kind = Kind::factor_and_offset,
+                         .factor = sign * unit.factor,
+                         .unit_word = unit.word},
+                        times(sign * unit.factor, r));
+    if (!found) found = wrong_from(b);
+    return found;
+}
+
+std::string describe(const Explanation& e, const Comparison& comparison, const Points& points) {
+    const Channel& channel = comparison.channels[points.columns[e.column].channel];
+    const std::string unit = symbol(channel.unit);
+    const std::string agrees = fmt::format("{} agrees to {:.1e} {}", channel.name, e.left, unit);
+    const auto times = [&] {
+        return fmt::format("taken {:.6g} times{}", e.factor,
+                           e.unit_word.empty() ? "" : " (" + e.unit_word + ")");
+    };
+    switch (e.kind) {
+        case Kind::sign: return agrees + " with its sign turned";
+        case Kind::offset:
+            return fmt::format("{} once {:.6g} {} is taken off", agrees, e.offset, unit);
+        case Kind::factor:
+            if (const double share = e.factor - 1; e.unit_word.empty() && std::abs(share) < 0.2)
+                return fmt::format(
+                    "{} is {:.2g} % too {} throughout, and agrees to {:.1e} {} without that",
+                    channel.name, 100 * std::abs(share), share > 0 ? "large" : "small", e.left,
+                    unit);
+            return agrees + " with the reference " + times();
+        case Kind::sign_and_offset:
+            return fmt::format("{} with its sign turned, once {:.6g} {} is taken off", agrees,
+                               e.offset, unit);
+        case Kind::factor_and_offset:
+            return fmt::format("{} with the reference {}, once {:.6g} {} is taken off", agrees,
+                               times(), e.offset, unit);
+        case Kind::other_output:
+        case Kind::other_turned: {
+            const std::string& other = comparison.channels[e.other].name;
+            if (e.mutual)
+                return fmt::format(
+                    "{} and {} are changed over: each agrees to {:.1e} {} with the other's "
+                    "reference",
+                    channel.name, other, e.left, unit);
+            return fmt::format("{} agrees to {:.1e} {} with the reference's {}{}", channel.name,
+                               e.left, unit, other,
+                               e.kind == Kind::other_turned ? ", its sign turned" : "");
+        }
+        case Kind::from_there_on: {
+            const auto& branch =
+                *std::ranges::find(comparison.branches, e.branch, &BranchComparison::branch);
+            return fmt::format(
+                "{} agrees to {:.1e} {} up to {:.6g} {} of branch '{}', and is off from there on",
+                channel.name, e.left, unit, e.at,
+                points.a.empty() && branch.abscissa >= 0
+                    ? symbol(comparison.channels[static_cast<std::size_t>(branch.abscissa)].unit)
+                    : symbol(branch.unit),
+                e.branch);
+        }
+        case Kind::still:
+            return fmt::format("{} does not move, where the reference does", channel.name);
+    }
+    return {};
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+
+#include "compare/candidate/candidate.hpp"
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
+#include "elastocheck/equilibrium.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+bool is_said(const Pose& pose) { return pose.r.allFinite() && pose.p.coeffs().allFinite(); }
+// An infinite entry marks a value that is not a number.
+bool is_broken(const Pose& pose) {
+    const auto infinite = [](double x) { return std::isinf(x); };
+    return std::ranges::any_of(pose.r, infinite) || std::ranges::any_of(pose.p.coeffs(), infinite);
+}
+Pose broken_where_not_finite(Pose pose) {
+    if (!is_said(pose)) pose.r.setConstant(INFINITY);
+    return pose;
+}
+
+// The branch side that contains a load.
+const BranchSide& way_to(const std::vector<BranchSide>& ways, double load) {
+    const auto found =
+        std::ranges::find_if(ways, [&](const BranchSide& w) { return w.branch.to * load >= 0; });
+    return found == ways.end() ? ways.front() : *found;
+}
+
+}  // namespace
+
+Comparison outline(const Model& model) {
+    Comparison result;
+    result.channels = channels(model);
+    std::ranges::move(characteristics(model), std::back_inserter(result.channels));
+    for (const auto& branch : model.branches) {
+        BranchComparison& of = result.branches.emplace_back();
+        of.branch = branch.name;
+        of.unit = unit_of(branch.unit);
+        of.steps = branch.steps;
+        of.determined.assign(result.channels.size(), true);
+    }
+    return result;
+}
+
+Candidate candidate_of(const Model& model, const Comparison& comparison, std::string name,
+                       const std::vector<CandidateState>& states) {
+    Candidate result;
+    result.name = std::move(name);
+    result.every_output = true;
+    std::vector<Channel> channels;  // all but characteristics, which need the tangent of a leg
+    std::vector<std::size_t> position;
+    for (std::size_t c = 0; c < comparison.channels.size(); ++c)
+        if (!std::holds_alternative<Characteristic>(comparison.channels[c].reads))
+            channels.push_back(comparison.channels[c]), position.push_back(c);
+    for (const std::size_t c : position) result.points.columns.push_back({c, false, {}});
+
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const Branch& branch = model.branches[b];
+        const auto ways = sides_of(model, branch);
+        Leftover left;
+        left.branch = branch.name;
+        left.unit = unit_of(branch.unit);
+        left.second = comparison.branches[b].second;
+        for (const auto& state : states) {
+            if (state.branch != branch.name) continue;
+            const double a = in_unit(left.unit) * state.load;
+            result.points.branch.push_back(branch.name);
+            result.points.a.push_back(a);
+            Equilibrium found;
+            found.load = state.load;
+            found.poses = state.poses;
+            found.reactions.assign(model.joints.size(), {Eigen::Vector3d::Constant(nan),
+                                                         Eigen::Vector3d::Constant(nan)});
+            const bool whole = std::ranges::all_of(found.poses, is_said);
+            if (whole && std::isfinite(state.load)) {
+                const BranchSide& way = way_to(ways, state.load);
+                found.reactions = reference::equilibrium::reactions_at(way.model, way.branch,
+                                                                       state.load, found.poses);
+                const Leg second = left.second == Leg::energy ? Leg::energy : Leg::recursive;
+                left.a.push_back(a);
+                left.truth.push_back(judge(Leg::equilibrium, way, found));
+                left.by_second.push_back(judge(second, way, found));
+            } else {
+                left.why_not = "it does not say where every body is";
+            }
+            const bool broken =
+                !std::isfinite(state.load) || std::ranges::any_of(found.poses, is_broken);
+            auto values = evaluate(model, ways.front().branch, channels, found);
+            if (broken) std::ranges::fill(values, INFINITY);
+            for (std::size_t c = 0; c < values.size(); ++c)
+                result.points.columns[c].values.push_back(values[c]);
+        }
+        if (!left.a.empty() || !left.why_not.empty()) result.leftovers.push_back(std::move(left));
+    }
+    // Outputs of a body without a given pose have no values.
+    std::erase_if(result.points.columns, [](const PointColumn& column) {
+        return std::ranges::all_of(column.values, [](double v) { return std::isnan(v); });
+    });
+    return result;
+}
+
+Candidate candidate_of(const Model& model, const Comparison& comparison, std::string name,
+                       const CandidateSolver& solver) {
+    std::vector<CandidateState> states;
+    std::vector<std::string> notes;
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const Branch& branch = model.branches[b];
+        bool first = true;
+        for (const auto& way : sides_of(model, branch, comparison.branches[b].steps)) {
+            const EquilibriumPath path =
+                solver(way.model, way.branch, asked_for({way}, comparison.branches[b].every));
+            for (const auto& point : path.points) {
+                if (!first && point.load == 0) continue;
+                CandidateState& state =
+                    states.emplace_back(CandidateState{branch.name, point.load, point.poses});
+                std::ranges::transform(state.poses, state.poses.begin(), broken_where_not_finite);
+            }
+            if (path.outcome != Outcome::converged)
+                notes.push_back(fmt::format("{}: {}: {}", way.name, elastocheck::name(path.outcome),
+                                            path.detail));
+            first = false;
+        }
+    }
+    for (const auto& state : states)
+        if (state.poses.size() != model.bodies.size())
+            throw std::invalid_argument(
+                fmt::format("a state of branch '{}' has {} poses, the model {} bodies",
+                            state.branch, state.poses.size(), model.bodies.size()));
+    Candidate result = candidate_of(model, comparison, std::move(name), states);
+    result.complete = true;
+    result.notes = std::move(notes);
+    return result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "compare/candidate/candidate.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string branch_of(const Model& model, const Points& points, std::size_t k) {
+    return points.branch.empty() ? model.branches.front().name : points.branch[k];
+}
+
+// Points of a level on one branch side, from a = 0 on; missing channels are NaN.
+Curve curve_on(const Model& model, const BranchSide& way, const std::string& branch,
+               const std::vector<Channel>& all, const Comparison& outline, const Points& points) {
+    const double unit = in_unit(unit_of(way.branch.unit)), to = unit * way.branch.to;
+    const auto columns = as_they_stand(model, outline, points.columns);
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < points.a.size(); ++k)
+        if (branch_of(model, points, k) == branch && points.a[k] * to >= 0) order.push_back(k);
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return std::abs(points.a[k]); });
+    Curve curve;
+    curve.unit = unit_of(way.branch.unit);
+    for (const std::size_t k : order) {
+        std::vector<double> values(all.size(), nan);
+        for (const auto& column : columns)
+            if (const int c = find_channel(all, outline.channels[column.channel].name); c >= 0)
+                values[static_cast<std::size_t>(c)] = column.values[k];
+        append(curve, points.a[k] / unit, std::move(values));
+    }
+    return curve;
+}
+
+}  // namespace
+
+Study study_candidate(const Model& model, const std::string& name,
+                      const std::vector<CandidateLevel>& levels,
+                      const std::function<void(std::string_view)>& progress) {
+    Study result;
+    for (const auto& level : levels) result.steps.push_back(level.steps);
+    const auto refuse = [&](std::string why) {
+        result.inconclusive.push_back(fmt::format("{}: {}", name, why));
+        return result;
+    };
+    if (levels.size() < 3 ||
+        std::ranges::adjacent_find(result.steps, std::greater_equal<>{}) != result.steps.end())
+        return refuse("at least three numbers of steps are needed, positive and increasing");
+    for (const auto& level : levels) {
+        if (level.points.a.empty()) return refuse("it says no load or parameter");
+        if (level.points.branch.empty() && model.branches.size() > 1)
+            return refuse("a column 'branch' has to say where a point belongs");
+    }
+    const auto all = motion(model);
+    const Comparison by = outline(model);
+    std::vector<std::size_t> studied;
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        const auto gives = [&](const CandidateLevel& level) {
+            return std::ranges::any_of(level.points.columns, [&](const PointColumn& column) {
+                return by.channels[column.channel].name == all[c].name;
+            });
+        };
+        if (all[c].main && std::ranges::all_of(levels, gives))
+            studied.push_back(c), result.channels.push_back(all[c]);
+    }
+    if (studied.empty()) return refuse("it gives no main output");
+
+    for (const auto& branch : model.branches)
+        for (const auto& [way, steps] : ways_with_steps(model, branch, result.steps)) {
+            if (progress) progress(fmt::format("{}: references", way.name));
+            const References known = references(model, all, way.branch, {way});
+            std::ranges::move(unfit(known, way.name), std::back_inserter(result.inconclusive));
+            if (!known.failures.empty()) continue;
+            const int abscissa = default_abscissa(all, known.truth);
+            BranchStudy b{way.name,
+                          branch.name,
+                          unit_of(branch.unit),
+                          abscissa < 0 ? "" : all[static_cast<std::size_t>(abscissa)].name,
+                          steps,
+                          {}};
+            MethodStudy& study = b.methods.emplace_back();
+            study.method = name;
+            std::vector<Curve> curves;
+            for (std::size_t l = 0; l < levels.size(); ++l) {
+                study.constraint_error.push_back(nan);
+                curves.push_back(curve_on(model, way, branch.name, all, by, levels[l].points));
+                const Trend course = trend(curves.back().a);
+                bool finite = course.monotonic();
+                for (const auto& values : curves.back().values)
+                    for (const std::size_t c : studied) finite = finite && std::isfinite(values[c]);
+                study.outcomes.push_back(finite ? Outcome::converged : Outcome::not_finite);
+                if (!finite && study.not_studied.empty())
+                    study.not_studied = fmt::format(
+                        "with {} steps: {}", levels[l].steps,
+                        curves.back().a.size() < 2 ? "fewer than two points"
+                        : course.monotonic()       ? "something is no number"
+                                                   : "a load stands there twice, or is no number");
+            }
+            if (study.not_studied.empty())
+                study_levels(study, all, studied, steps, curves, known, nan);
+            result.branches.push_back(std::move(b));
+        }
+    return result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,39 @@
+#include "compare/comparison/changes.hpp"
+
+#include <map>
+#include <string_view>
+
+namespace elastocheck::compare {
+namespace {
+
+bool same(const Number& a, const Number& b) {
+    const bool both_nan = a.value != a.value && b.value != b.value;
+    return a.unit == b.unit && (a.value == b.value || both_nan);
+}
+
+using ByPath = std::map<std::string_view, const Number*>;
+
+ByPath by_path(std::span<const Number> numbers) {
+    ByPath places;
+    for (const auto& number : numbers) places.emplace(number.path, &number);
+    return places;
+}
+
+}  // namespace
+
+std::vector<Change> changes(std::span<const Number> was, std::span<const Number> is) {
+    const ByPath before = by_path(was), now = by_path(is);
+    std::vector<Change> found;
+    for (const auto& number : is) {
+        const auto at = before.find(number.path);
+        if (at == before.end())
+            found.push_back({.was = std::nullopt, .is = number});
+        else if (!same(*at->second, number))
+            found.push_back({.was = *at->second, .is = number});
+    }
+    for (const auto& number : was)
+        if (!now.contains(number.path)) found.push_back({.was = number, .is = std::nullopt});
+    return found;
+}
+
+}  // namespace elastocheck::compare

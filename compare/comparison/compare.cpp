@@ -1,0 +1,433 @@
+#include "compare/comparison/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/extrapolation.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "reference/certificate/certificate.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+Residuals worse(const Residuals& a, const Residuals& b) {
+    return {compare::worse(a.length, b.length), compare::worse(a.direction, b.direction),
+            compare::worse(a.force, b.force), compare::worse(a.moment, b.moment)};
+}
+
+// Time of a run that ignores its points. Steps as short as the recursion's take half as long again
+// when other work evicts their data from the caches.
+double seconds_alone(const std::vector<BranchSide>& ways, SolverSettings solver) {
+    solver.error_bound = false;
+    using clock = std::chrono::steady_clock;
+    const auto start = clock::now();
+    for (const auto& way : ways) walk(way, solver, [](const Equilibrium&) {});
+    return std::chrono::duration<double>(clock::now() - start).count();
+}
+
+bool asks_for_characteristics(const std::vector<Channel>& channels) {
+    return std::ranges::any_of(
+        channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
+}
+
+std::vector<Compliance> compliance_of(const Model& model, const BranchSide& way,
+                                      const SolverSettings& solver, const LegRun& run) {
+    std::vector<Compliance> list;
+    Analyses analyses;
+    for (const auto* state : {&run.landmarks.front, &run.landmarks.start, &run.landmarks.back}) {
+        if (!*state) continue;
+        const double a = in_unit(run.curve.unit) * (*state)->load;
+        if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
+        const Answers answers = answer(way, solver, steering_joint(model), **state, analyses);
+        Compliance& at = list.emplace_back();
+        at.a = a;
+        at.why_not = answers.why_not_free;
+        at.centre = compliance(way.model, WheelPoint::centre, **state, answers);
+        at.patch = compliance(way.model, WheelPoint::patch, **state, answers);
+        at.reciprocity = reciprocity(way.model, at.centre);
+    }
+    return list;
+}
+
+// The points of a path that ended early are still checked: each is an equilibrium or not.
+Tally proved(const BranchSide& way, const LegRun& run) {
+    Tally tally;
+    std::vector<double> done;
+    const auto& [front, start, middle, back] = run.landmarks;
+    for (const auto* state : {&start, &middle, &front, &back}) {
+        if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
+        done.push_back((*state)->load);
+        tally.add((*state)->load, run.curve.unit,
+                  reference::certificate::certify(way.model, way.branch, **state));
+    }
+    return tally;
+}
+
+// Tolerance of the judged method at every point. The series in place of the energy leg is a
+// reference and has none here.
+std::optional<ErrorBound> promise_of(const Model& standing, const SolverSettings& solver) {
+    if (solver.leg != Leg::recursive) return std::nullopt;
+    return promised(solver.recursion.method, recursive::diagnose(standing).length);
+}
+
+// Requests error bounds from methods with a tolerance, and from the equilibrium leg for its
+// remaining stiffness, which costs the leg a thirtieth of its time.
+SolverSettings with_account(const Model& standing, SolverSettings solver) {
+    solver.error_bound = solver.leg == Leg::equilibrium || promise_of(standing, solver);
+    return solver;
+}
+
+LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
+           const std::vector<BranchSide>& ways, const SolverSettings& solver) {
+    LegRun run;
+    run.leg = solver.leg;
+    if (solver.leg == Leg::recursive) run.method = solver.recursion.method.name;
+    const BranchSide& way = ways.front();
+    run.scale = scale_of(way.model, branch, {});
+    const auto asked = asked_for(ways, solver.every);
+    const double middle = asked[asked.size() / 2];
+    const bool both_ways = ways.size() > 1;
+    auto& marks = run.landmarks;
+    BranchErrorBounds error_bound{promise_of(way.model, solver)};
+    static_cast<Walked&>(run) =
+        walk(model, channels, branch, ways, solver, [&](const Equilibrium& state) {
+            for (const Leg by : legs) {
+                auto& worst = run.judged[static_cast<std::size_t>(by)];
+                worst = worse(worst, judge(by, way, state));
+            }
+            run.scale = larger(run.scale, scale_of(way.model, branch, {&state, 1}));
+            // The farthest point on either side comes last.
+            if (state.load == 0)
+                marks.start = state;
+            else if (both_ways && state.load * way.branch.to > 0)
+                marks.front = state;
+            else
+                marks.back = state;
+            if (state.load == middle) marks.middle = state;
+            if (solver.error_bound) add(error_bound, state);
+        });
+    run.told = told(error_bound, branch.unit);
+    if (!marks.front) marks.front = marks.start;
+    if (!marks.back) marks.back = marks.start;
+    if (!model.wheels.empty() && asks_for_characteristics(channels))
+        run.compliance = compliance_of(model, way, solver, run);
+    if (solver.leg == Leg::recursive || solver.leg == Leg::series)
+        run.seconds = seconds_alone(ways, solver);
+    return run;
+}
+
+const LegRun& run_of(const BranchComparison& branch, Leg leg) {
+    return branch.runs[static_cast<std::size_t>(leg)];
+}
+
+// Ratio to the bound; above 1 is a violation, and so is a value that is not finite.
+double share(double value, double bound) {
+    const double part = bound > 0 ? value / bound : value > 0 ? INFINITY : 0;
+    return std::isfinite(value) && std::isfinite(bound) ? part : INFINITY;
+}
+
+double bound_of(Unit unit, const Bounds& bounds) {
+    switch (unit) {
+        case Unit::mm: return bounds.length;
+        case Unit::deg: return bounds.angle;
+        case Unit::newton: return bounds.force;
+        case Unit::newton_metre: return bounds.moment;
+        case Unit::percent:
+            return 6e3 * bounds.angle;  // two cotangents at 2 deg, for a wheelbase of two tracks
+        default: return 0;              // characteristics are bounded separately
+    }
+}
+
+// Allowed difference of rates: a share of the largest on the branch, at least of a thousandth of
+// their unit.
+double bound_of_characteristic(const std::vector<double>& values) {
+    constexpr double share = 1e-6;
+    double largest = 1e-3;
+    for (const double value : values) largest = std::max(largest, std::abs(value));
+    return share * largest;
+}
+
+int count(const Reading& reading, const std::vector<bool>& determined) {
+    int sum = 0;
+    for (std::size_t c = 0; c < reading.channels.size(); ++c)
+        if (determined[c]) sum += reading.channels[c].compared;
+    return sum;
+}
+
+// Message where the two legs are at two different equilibria, at a landmark where both states are
+// proved and the boxes of the proofs are disjoint: the distance of their outputs then says nothing
+// about the error of either. Bodies with an idle motion are not compared, as their position along
+// it is arbitrary. "the energy leg is on another equilibrium than the equilibrium leg at -120 N,
+// each proved: body 'a' is 160 mm away"; empty if there is none.
+std::string on_two_branches(const Model& model, const Branch& asked, const LegRun& truth,
+                            const LegRun& other) {
+    using namespace reference::certificate;
+    const auto ways = sides_of(model, asked);
+    std::vector<bool> idle(model.bodies.size());
+    for (const auto& mode : recursive::diagnose(ways.back().model).idle)
+        for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
+            if (std::abs(entry.value()) > 1e-6)
+                idle[static_cast<std::size_t>(entry.index() / 6)] = true;
+    for (const auto landmark :
+         {&Landmarks::back, &Landmarks::front, &Landmarks::middle, &Landmarks::start}) {
+        const auto &here = truth.landmarks.*landmark, &there = other.landmarks.*landmark;
+        if (!here || !there || here->load != there->load) continue;
+        std::size_t farthest = 0;
+        double length = 0, angle = 0;
+        for (std::size_t b = 0; b < here->poses.size(); ++b) {
+            if (idle[b]) continue;
+            const double apart = (here->poses[b].r - there->poses[b].r).norm();
+            if (apart > length) length = apart, farthest = b;
+            angle = std::max(angle, here->poses[b].p.angularDistance(there->poses[b].p));
+        }
+        const auto way = std::ranges::find_if(
+            ways, [&](const BranchSide& w) { return w.branch.to * here->load >= 0; });
+        if (way == ways.end()) continue;
+        const Certificate of_here = certify(way->model, way->branch, *here);
+        if (of_here.answer != Answer::proved) continue;
+        const Certificate of_there = certify(way->model, way->branch, *there);
+        if (of_there.answer != Answer::proved) continue;
+        if (!(length > of_here.error.length + of_there.error.length ||
+              angle > of_here.error.angle + of_there.error.angle))
+            continue;
+        const Unit unit = unit_of(asked.unit);
+        return fmt::format(
+            "the {} leg is on another equilibrium than the {} leg at {:.6g} {}, each proved: body "
+            "'{}' is "
+            "{:.3g} mm away",
+            name(other.leg), name(truth.leg), in_unit(unit) * here->load, symbol(unit),
+            model.bodies[farthest].name, 1e3 * length);
+    }
+    return {};
+}
+
+// Message on the proofs of the other leg, where one leg is disproved; empty if they do not decide.
+std::string which_is_right(const LegRun& other) {
+    const Tally& t = other.proved;
+    if (t.excluded > 0 || t.points == 0) return {};
+    if (t.proved == t.points)
+        return fmt::format("; the {} leg is right, by proof", name(other.leg));
+    return fmt::format("; of the {} leg's points {} of {} are proved and none is excluded",
+                       name(other.leg), t.proved, t.points);
+}
+
+bool is_undefined_somewhere(const Channel& channel, std::size_t c,
+                            const std::vector<LegRun>& runs) {
+    return channel.may_be_undefined() && std::ranges::any_of(runs, [&](const LegRun& run) {
+               return std::ranges::any_of(
+                   run.curve.values, [&](const auto& values) { return values[c] == undefined; });
+           });
+}
+
+// First point at which only one of the two runs has a value for an output; empty if none.
+std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& one,
+                           const LegRun& other) {
+    if (!channel.may_be_undefined()) return {};
+    for (std::size_t k = 0; k < std::min(one.curve.values.size(), other.curve.values.size()); ++k) {
+        const bool by_one = one.curve.values[k][c] != undefined,
+                   by_other = other.curve.values[k][c] != undefined;
+        if (by_one != by_other)
+            return fmt::format(
+                "the reference legs disagree on whether {} has a value at {:.6g} {}: by the {} leg "
+                "it has",
+                channel.name, one.curve.a[k], symbol(one.curve.unit),
+                name(by_one ? one.leg : other.leg));
+    }
+    return {};
+}
+
+}  // namespace
+
+void Objections::add(std::string what, double share) {
+    constexpr std::size_t told = 3;
+    ++count;
+    const auto place =
+        std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
+    worst.insert(place, {std::move(what), share});
+    if (worst.size() > told) worst.pop_back();
+}
+
+std::vector<std::string> Objections::texts() const {
+    std::vector<std::string> list;
+    for (const auto& objection : worst) list.push_back(objection.what);
+    if (const int more = count - static_cast<int>(worst.size()); more > 0)
+        list.push_back(fmt::format("and {} more, none of them worse", more));
+    return list;
+}
+
+bool energy_bears_witness(const BranchComparison& branch) {
+    return branch.second != Leg::energy &&
+           run_of(branch, Leg::energy).outcome == Outcome::too_large;
+}
+
+Objections disagreements(const Model& model, const std::vector<Channel>& channels,
+                         const Branch& asked, const BranchComparison& branch, Of of) {
+    Objections objections;
+    for (const auto& run : branch.runs) {
+        if (run.leg == Leg::recursive && of == Of::references) continue;
+        if (run.leg == Leg::energy && branch.second != Leg::energy)
+            continue;  // does not apply, and is not needed
+        if (run.outcome != Outcome::converged)
+            objections.add(fmt::format("{} leg: {}: {}", name(run.leg),
+                                       elastocheck::name(run.outcome), run.detail));
+    }
+    if (!objections.empty()) return objections;
+    const LegRun &equilibrium = run_of(branch, Leg::equilibrium),
+                 &second = run_of(branch, branch.second);
+    if (const auto why = nothing_moves(model, channels, asked, equilibrium.curve); !why.empty())
+        objections.add(why);
+
+    const auto& reading = branch.uncertainty.equal_parameter;
+    if (!reading.not_compared.empty())
+        objections.add("the references were not compared: " + reading.not_compared);
+    Objections apart;
+    for (std::size_t c = 0; c < reading.channels.size(); ++c) {
+        if (!branch.determined[c]) continue;
+        const double off = reading.channels[c].max,
+                     bound = std::holds_alternative<Characteristic>(channels[c].reads)
+                                 ? bound_of_characteristic(equilibrium.curve.channel(c))
+                                 : bound_of(channels[c].unit, branch.bounds);
+        if (const double part = share(off, bound); !(part <= 1))
+            apart.add(fmt::format(
+                          "the reference legs disagree on {}: {:.3g} {}, at most {:.3g} is allowed",
+                          channels[c].name, off, symbol(channels[c].unit), bound),
+                      part);
+    }
+    if (!apart.empty())
+        if (const auto two = on_two_branches(model, asked, equilibrium, second); !two.empty())
+            objections.add(two), apart = {};
+    for (const auto& one : apart.worst) objections.add(one.what, one.share);
+    objections.count += apart.count - static_cast<int>(apart.worst.size());
+    for (const auto& [run, other] :
+         {std::pair(&equilibrium, &second), std::pair(&second, &equilibrium)})
+        if (run->proved.excluded > 0)
+            objections.add(fmt::format("the {} leg's point is provably no equilibrium: {}{}",
+                                       name(run->leg), run->proved.not_proved,
+                                       which_is_right(*other)));
+    // The references must also agree on where an output is undefined.
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (const auto where = defined_by_one(channels[c], c, equilibrium, second); !where.empty())
+            objections.add(where);
+    // A judge needs no states of its own: the series uses the equations of the recursive leg.
+    const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
+    std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge},
+                                                          {&second, Leg::equilibrium}};
+    if (energy_bears_witness(branch)) judgements.emplace_back(&equilibrium, Leg::energy);
+    for (const auto& [run, other] : judgements) {
+        const Residuals& r = run->judged[static_cast<std::size_t>(other)];
+        const Bounds& b = branch.bounds;
+        const double part =
+            std::max({share(r.force, b.residual_force), share(r.moment, b.residual_moment),
+                      share(1e3 * r.length, b.residual_length)});
+        if (!(part <= 1))
+            objections.add(
+                fmt::format("the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} "
+                            "leg's equations; "
+                            "at most {:.3g} N, {:.3g} N·m, {:.3g} mm are allowed",
+                            name(run->leg), r.force, r.moment, 1e3 * r.length, name(other),
+                            b.residual_force, b.residual_moment, b.residual_length),
+                part);
+    }
+    return objections;
+}
+
+bool Comparison::conclusive() const {
+    for (const auto& branch : branches)
+        if (!branch.inconclusive.empty()) return false;
+    return compared > 0;
+}
+
+LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion) {
+    return run(model, channels(model), branch, sides_of(model, branch, recursion.steps),
+               {.leg = leg, .recursion = recursion});
+}
+
+Comparison compare(const Model& model, const Options& options) {
+    Comparison result;
+    result.channels = channels(model);
+    std::ranges::move(characteristics(model), std::back_inserter(result.channels));
+    const int asked =
+        options.abscissa.empty() ? -1 : find_channel(result.channels, options.abscissa);
+    if (asked < 0 && !options.abscissa.empty())
+        throw std::invalid_argument(
+            fmt::format("'{}' is no output of the scene", options.abscissa));
+
+    std::vector<std::vector<BranchSide>> ways;
+    std::vector<std::vector<bool>> determined;  // per branch and joint
+    std::vector<std::vector<int>> groups;
+    for (const auto& branch : model.branches) {
+        ways.push_back(sides_of(model, branch, options.recursion.steps));
+        const auto diagnosis = recursive::diagnose(ways.back().front().model);
+        determined.push_back(diagnosis.determined);
+        for (const auto& group : diagnosis.redundant_sets)
+            if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
+    }
+    std::ranges::move(totals(model, groups), std::back_inserter(result.channels));
+
+    for (std::size_t k = 0; k < model.branches.size(); ++k) {
+        const Branch& branch = model.branches[k];
+        BranchComparison b;
+        b.branch = branch.name;
+        b.unit = unit_of(branch.unit);
+        for (const auto& way : ways[k]) b.steps += way.branch.steps;
+        b.every = options.every;
+        b.determined = determined_channels(result.channels, ways[k].front().model, determined[k]);
+        for (const Leg leg : legs) {
+            if (options.progress)
+                options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
+            b.runs.push_back(
+                run(model, result.channels, branch, ways[k],
+                    with_account(
+                        ways[k].front().model,
+                        {.leg = leg, .recursion = options.recursion, .every = options.every})));
+        }
+        if (const LegRun& energy = run_of(b, Leg::energy); is_not_asked(energy.outcome)) {
+            b.second = Leg::series;
+            b.not_asked = energy.detail;
+            if (options.progress) options.progress(fmt::format("{}: series", branch.name));
+            b.runs.push_back(run(model, result.channels, branch, ways[k],
+                                 {.leg = Leg::series, .every = options.every}));
+        }
+        if (options.prove) {
+            if (options.progress) options.progress(fmt::format("{}: proofs", branch.name));
+            for (LegRun& run : b.runs) run.proved = proved(ways[k].front(), run);
+        }
+        for (std::size_t c = 0; c < result.channels.size(); ++c)
+            b.determined[c] =
+                b.determined[c] && !is_undefined_somewhere(result.channels[c], c, b.runs);
+        const LegRun& truth = run_of(b, Leg::equilibrium);
+        b.abscissa = asked >= 0 ? asked : default_abscissa(result.channels, truth.curve);
+        const auto pair = [&](Leg a, Leg c) {
+            const Curve &of_a = run_of(b, a).curve, &of_c = run_of(b, c).curve;
+            return Pair{
+                a, c, at_equal_parameter(of_a, of_c),
+                at_equal_abscissa(of_a, of_c,
+                                  compare::abscissa(result.channels, b.abscissa, of_a, of_c))};
+        };
+        b.deviation = pair(Leg::equilibrium, Leg::recursive);
+        b.cross_check = pair(b.second, Leg::recursive);
+        b.uncertainty = pair(Leg::equilibrium, b.second);
+        b.bounds = bounds_of(options.agreement, truth.scale);
+        b.extents = extents_of(result.channels, truth.curve, truth.scale);
+        b.inconclusive = disagreements(model, result.channels, branch, b);
+        for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})
+            result.compared +=
+                count(p->equal_parameter, b.determined) + count(p->equal_abscissa, b.determined);
+        result.branches.push_back(std::move(b));
+    }
+    for (std::size_t c = 0; c < result.channels.size(); ++c) {
+        if (!std::holds_alternative<Characteristic>(result.channels[c].reads)) continue;
+        double largest = 0;
+        for (const auto& branch : result.branches)
+            if (std::isfinite(branch.extents[c])) largest = std::max(largest, branch.extents[c]);
+        for (auto& branch : result.branches) branch.extents[c] = largest;
+    }
+    return result;
+}
+
+}  // namespace elastocheck::compare

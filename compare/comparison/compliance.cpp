@@ -1,0 +1,217 @@
+#include "compare/comparison/compliance.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "compare/outputs/deformation.hpp"
+#include "compare/outputs/positions.hpp"
+#include "models/branch.hpp"
+#include "recursive/linear_response.hpp"
+#include "reference/energy/linear_response.hpp"
+#include "reference/equilibrium/linear_response.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+// A jack: a plane that carries a point of a wheel and is active only where driven.
+bool is_jack(const Model& model, std::size_t joint) {
+    const ModelJoint& j = model.joints[joint];
+    return j.active_only_where_driven && j.j == ground &&
+           std::ranges::any_of(model.constraints,
+                               [&](const Constraint& c) {
+                                   return c.joint == static_cast<int>(joint) &&
+                                          std::holds_alternative<PointInPlane>(c.kind);
+                               }) &&
+           std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
+               return wheel.body == j.i &&
+                      (wheel.centre_local == j.at.s_local || wheel.contact_local == j.at.s_local);
+           });
+}
+
+// A tyre: a bushing between ground and a wheel with stiffness in d_z only, active only where
+// driven.
+const Bushing* tyre(const Elastic& elastic) {
+    return elastic.active_only_where_driven ? std::get_if<Bushing>(&elastic.kind) : nullptr;
+}
+
+// Vertical force of a tyre on its wheel [N].
+double tyre_force(const Bushing& tyre, std::size_t element, const Branch& branch,
+                  const Equilibrium& state) {
+    double stress = tyre.preload.z();
+    for (const auto& driver : branch.drivers)
+        if (const auto* preload = std::get_if<Preload>(&driver.what);
+            preload != nullptr && preload->elastic == static_cast<int>(element))
+            stress += (driver.start + driver.rate * state.load) * preload->direction.z();
+    const auto& K = std::get<LinearStiffness>(tyre.law).K;
+    return -(stress + K(2, 2) * deformation(tyre, state).z());
+}
+
+struct Stand {
+    Model model;
+    Branch branch;
+    Equilibrium state;
+};
+
+Stand freed(const BranchSide& way, const Equilibrium& state) {
+    Stand free{way.model, way.branch, state};
+    const auto push = [&](const Point& at, double force) {
+        free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
+    };
+    std::erase_if(free.branch.drivers, [&](const Driver& driver) {
+        const auto* motion = std::get_if<Motion>(&driver.what);
+        return motion != nullptr && is_jack(way.model, static_cast<std::size_t>(motion->joint));
+    });
+    for (std::size_t k = 0; k < way.model.joints.size(); ++k)
+        if (is_jack(way.model, k)) {
+            push(way.model.joints[k].at, state.reactions[k].force.z());
+            free.state.reactions[k] = {};
+        }
+    for (std::size_t k = 0; k < way.model.elastics.size(); ++k)
+        if (const Bushing* at = tyre(way.model.elastics[k])) {
+            push({at->j.body, at->j.s_local}, tyre_force(*at, k, way.branch, state));
+            std::erase_if(free.branch.drivers, [&](const Driver& driver) {
+                const auto* preload = std::get_if<Preload>(&driver.what);
+                return preload != nullptr && preload->elastic == static_cast<int>(k);
+            });
+        }
+    free.model = on_branch(free.model, free.branch);
+    return free;
+}
+
+// Adds jacks under the first wheels, each at the height of its wheel's centre.
+Stand jacked_up(Stand stand, std::size_t wheels) {
+    for (const Wheel& wheel : std::span(stand.model.wheels).first(wheels)) {
+        const Point centre{wheel.body, wheel.centre_local};
+        const Vector3d here = position(stand.state.poses, centre);
+        const int joint = static_cast<int>(stand.model.joints.size());
+        stand.model.joints.push_back({.name = wheel.name + " jack",
+                                      .i = wheel.body,
+                                      .j = ground,
+                                      .at = centre,
+                                      .driven = static_cast<int>(stand.model.constraints.size())});
+        stand.model.constraints.push_back(
+            {joint, PointInPlane{centre, {ground, here}, {ground, Vector3d::UnitZ()}, 0}});
+        stand.state.reactions.emplace_back();
+    }
+    return stand;
+}
+
+std::vector<Disturbance> causes_at(const Model& model) {
+    std::vector<Disturbance> list;
+    for (const Wheel& wheel : model.wheels) {
+        const Point centre{wheel.body, wheel.centre_local}, patch{wheel.body, wheel.contact_local};
+        for (int k = 0; k < 3; ++k)
+            list.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
+        for (int k = 0; k < 3; ++k)
+            list.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
+        for (int k = 0; k < 3; ++k)
+            list.push_back(UnitWrench{patch, Vector3d::Unit(k), Vector3d::Zero()});
+    }
+    return list;
+}
+
+std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& all,
+                                                  std::size_t wheels) {
+    std::vector<std::array<Motions, causes>> list(wheels);
+    for (std::size_t w = 0; w < wheels; ++w)
+        for (std::size_t k = 0; k < causes; ++k) list[w][k] = all[causes * w + k];
+    return list;
+}
+
+std::string told(const Response& response) {
+    return std::string(name(response.outcome)) +
+           (response.detail.empty() ? "" : ": " + response.detail);
+}
+
+}  // namespace
+
+int steering_joint(const Model& model) {
+    for (const auto& branch : model.branches)
+        for (const auto& driver : branch.drivers)
+            if (const auto* motion = std::get_if<Motion>(&driver.what);
+                motion != nullptr && driver.rate != 0 &&
+                !is_jack(model, static_cast<std::size_t>(motion->joint)))
+                return motion->joint;
+    return -1;
+}
+
+Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
+                         const Equilibrium& state, std::span<const Disturbance> disturbances,
+                         std::optional<recursive::Analysis>& analysis) {
+    const auto recursion = [&](const recursive::Method& method) {
+        if (!analysis) analysis = recursive::analyse(model);
+        return recursive::linear_response(model, branch, state, disturbances, method, *analysis);
+    };
+    switch (solver.leg) {
+        case Leg::recursive: return recursion(solver.recursion.method);
+        case Leg::series: return recursion(recursive::find_method("series").value());
+        case Leg::equilibrium:
+            return reference::equilibrium::linear_response(model, branch, state, disturbances);
+        case Leg::energy:
+            return reference::energy::linear_response(model, branch, state, disturbances);
+    }
+    return {};
+}
+
+Answers answer(const BranchSide& way, const SolverSettings& solver, int steering,
+               const Equilibrium& state, Analyses& analyses) {
+    Answers answers;
+    const std::size_t wheels = way.model.wheels.size();
+    const Stand stand = freed(way, state);
+    const auto wrenches = causes_at(way.model);
+    if (const Response free = linear_response(solver, stand.model, stand.branch, stand.state,
+                                              wrenches, analyses.free);
+        free.outcome == Outcome::converged)
+        answers.free = by_wheel(free.increments, wheels);
+    else {
+        answers.why_not_free = told(free);
+        answers.nothing_resists =
+            free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
+    }
+
+    const std::size_t first = stand.model.joints.size();
+    const bool steers =
+        steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
+    const auto on_jacks = [&](std::size_t count, std::optional<recursive::Analysis>& analysis) {
+        const Stand up = jacked_up(stand, count);
+        std::vector<Disturbance> changes = wrenches;
+        for (std::size_t w = 0; w < count; ++w)
+            changes.push_back(Motion{static_cast<int>(first + w)});
+        if (steers) changes.push_back(Motion{steering});
+        return linear_response(solver, up.model, up.branch, up.state, changes, analysis);
+    };
+    Response jacked = on_jacks(wheels, analyses.jacked);
+    if (jacked.outcome == Outcome::inconsistent_constraints && wheels > 1)
+        if (Response one = on_jacks(1, analyses.tied); one.outcome == Outcome::converged) {
+            jacked = std::move(one);
+            answers.tied = true;
+        }
+    if (jacked.outcome != Outcome::converged) {
+        answers.why_not = told(jacked);
+        return answers;
+    }
+    if (steers) {
+        answers.steering = std::move(jacked.increments.back());
+        jacked.increments.pop_back();
+    }
+    answers.held = by_wheel(jacked.increments, wheels);
+    answers.travel.assign(
+        jacked.increments.end() - static_cast<std::ptrdiff_t>(answers.tied ? 1 : wheels),
+        jacked.increments.end());
+    answers.travel.resize(wheels, Motions(way.model.bodies.size()));
+    return answers;
+}
+
+Vector3d turned(const Motions& motions, BodyId body) {
+    return body == ground ? Vector3d::Zero() : motions[static_cast<std::size_t>(body)].dpi;
+}
+
+Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point) {
+    if (point.body == ground) return Vector3d::Zero();
+    const auto b = static_cast<std::size_t>(point.body);
+    return motions[b].dr + motions[b].dpi.cross(state.poses[b].p * point.s_local);
+}
+
+}  // namespace elastocheck::compare

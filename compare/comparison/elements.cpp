@@ -1,0 +1,236 @@
+#include "compare/comparison/elements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "compare/comparison/compare.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array axes{"x", "y", "z"};
+constexpr double nothing = 1e-6;  // [mm], [deg], [N], [N·m]: smaller values are rounding
+
+const Elastic& elastic_of(const Model& model, int k) {
+    return model.elastics[static_cast<std::size_t>(k)];
+}
+
+// ---- Evaluation
+
+bool stands(const Elastic& elastic, int k, const Branch& branch) {
+    return !elastic.active_only_where_driven ||
+           std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
+               return std::visit(overloaded{[](const Load&) { return false; },
+                                            [](const Motion&) { return false; },
+                                            [&](const FreeLength& f) { return f.elastic == k; },
+                                            [&](const Preload& p) { return p.elastic == k; }},
+                                 driver.what);
+           });
+}
+
+// s = ∂u/∂e + preload, with the driven part of the branch.
+Vector6 stress(const Bushing& bushing, int k, const Branch& branch, const Equilibrium& state,
+               const Vector6& e) {
+    Vector6 s = std::visit(overloaded{[&](const LinearStiffness& u) { return Vector6(u.K * e); },
+                                      [&](const PerAxis& u) {
+                                          Vector6 f;
+                                          for (Eigen::Index n = 0; n < 6; ++n)
+                                              f[n] =
+                                                  force(u.axis[static_cast<std::size_t>(n)], e[n]);
+                                          return f;
+                                      }},
+                           bushing.law);
+    s += bushing.preload;
+    for (const auto& driver : branch.drivers)
+        if (const auto* preload = std::get_if<Preload>(&driver.what);
+            preload != nullptr && preload->elastic == k)
+            s += (driver.start + driver.rate * state.load) * preload->direction;
+    return s;
+}
+
+// With s_z = k d_z - P - k h the tyre pushes the wheel up by -s_z, and its deflection is -s_z / k.
+double of_tyre(const Bushing& tyre, double s_z, bool is_force) {
+    const auto* law = std::get_if<LinearStiffness>(&tyre.law);
+    return is_force ? -s_z : law != nullptr && law->K(2, 2) > 0 ? -s_z / law->K(2, 2) : nan;
+}
+
+double read(const Model& model, const Branch& branch, const Equilibrium& state,
+            const OfElement& c) {
+    const Elastic& elastic = elastic_of(model, c.element);
+    if (!stands(elastic, c.element, branch)) return nan;
+    const bool is_force = c.component >= 6;
+    return std::visit(overloaded{[&](const AxialSpring& spring) {
+                                     const double x =
+                                         deformation(spring, static_cast<std::size_t>(c.element),
+                                                     branch, state);
+                                     return is_force ? -force(spring.law, x) : -x;
+                                 },
+                                 [&](const Bushing& bushing) {
+                                     const Vector6 e = deformation(bushing, state);
+                                     const Vector6 s = stress(bushing, c.element, branch, state, e);
+                                     if (elastic.written_as == WrittenAs::tyre)
+                                         return of_tyre(bushing, s[2], is_force);
+                                     return (elastic.markers_swapped ? -1 : 1) *
+                                            (is_force ? s : e)[c.component % 6];
+                                 }},
+                      elastic.kind);
+}
+
+// ---- Names
+
+std::vector<int> components(const Elastic& elastic) {
+    if (std::holds_alternative<AxialSpring>(elastic.kind)) return {0, 6};
+    if (elastic.written_as == WrittenAs::tyre) return {2, 8};
+    if (elastic.written_as == WrittenAs::torsion_spring) return {5, 11};
+    return {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+}
+
+Unit unit_of_component(int component) {
+    const bool turns = component % 6 >= 3;
+    if (component < 6) return turns ? Unit::deg : Unit::mm;
+    return turns ? Unit::newton_metre : Unit::newton;
+}
+
+struct Told {
+    std::string name, definition;
+};
+
+Told told(const Elastic& elastic, int component) {
+    const bool is_force = component >= 6, turns = component % 6 >= 3;
+    const std::string who = "'" + elastic.name + "'";
+    if (std::holds_alternative<AxialSpring>(elastic.kind))
+        return is_force
+                   ? Told{"force", fmt::format("force of {}, positive in compression", who)}
+                   : Told{"deflection",
+                          fmt::format("how much shorter {} is than free, positive in compression",
+                                      who)};
+    if (elastic.written_as == WrittenAs::tyre)
+        return is_force
+                   ? Told{"force",
+                          fmt::format("vertical force of tyre {} on the wheel, positive up", who)}
+                   : Told{"deflection",
+                          fmt::format("how much flatter tyre {} is than without load, positive "
+                                      "where it is pressed",
+                                      who)};
+    if (elastic.written_as == WrittenAs::torsion_spring)
+        return is_force
+                   ? Told{"moment",
+                          fmt::format("moment of {} about its axis, positive where it turns the "
+                                      "second body back against the axis",
+                                      who)}
+                   : Told{"angle",
+                          fmt::format("angle of {}, of the second body against the first about "
+                                      "its axis, right-handed",
+                                      who)};
+    const char* axis = axes[static_cast<std::size_t>(component % 3)];
+    if (is_force)
+        return {
+            fmt::format("elastic_{}_{}", turns ? "moment" : "force", axis),
+            fmt::format("{} of {} {} its own axis {}, positive where it pulls the second body back "
+                        "against the axis",
+                        turns ? "moment" : "force", who, turns ? "about" : "along", axis)};
+    return {
+        fmt::format("{}_{}", turns ? "rotation" : "displacement", axis),
+        fmt::format(
+            "{} of {} {} its own axis {} from where it is undeformed, of the second body against "
+            "the first, {}",
+            turns ? "rotation" : "displacement", who, turns ? "about" : "along", axis,
+            turns ? "right-handed" : "positive along the axis")};
+}
+
+// "NAME", or "NAME#2" where NAME.output is taken.
+std::string free_name(const std::string& name, const std::string& output,
+                      std::set<std::string>& taken) {
+    std::string who = name;
+    for (int n = 2; !taken.insert(who + "." + output).second; ++n)
+        who = fmt::format("{}#{}", name, n);
+    return who;
+}
+
+std::string element_of(const Channel& channel) {
+    return channel.name.substr(0, channel.name.rfind('.'));
+}
+
+}  // namespace
+
+std::vector<Channel> element_channels(const Model& model) {
+    std::vector<Channel> list;
+    std::set<std::string> taken;
+    for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
+        const Elastic& elastic = elastic_of(model, k);
+        for (const int component : components(elastic)) {
+            const auto [name, definition] = told(elastic, component);
+            list.push_back({.name = free_name(elastic.name, name, taken) + "." + name,
+                            .unit = unit_of_component(component),
+                            .main = false,
+                            .reads = OfElement{k, component},
+                            .definition = definition});
+        }
+    }
+    for (int c = 0; c < static_cast<int>(model.constraints.size()); ++c) {
+        const Constraint& constraint = model.constraints[static_cast<std::size_t>(c)];
+        if (!std::holds_alternative<DistanceBetween>(constraint.kind)) continue;
+        const std::string& name = model.joints[static_cast<std::size_t>(constraint.joint)].name;
+        list.push_back(
+            {.name = free_name(name, "axial_force", taken) + ".axial_force",
+             .unit = Unit::newton,
+             .main = false,
+             .reads = AxialForce{constraint.joint, c},
+             .definition = fmt::format("force along the link '{}', positive in tension", name)});
+    }
+    return list;
+}
+
+std::vector<double> evaluate(const Model& model, const Branch& branch,
+                             std::span<const Channel> channels, const Equilibrium& state) {
+    std::vector<double> values = evaluate(model, channels, state);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (const auto* of = std::get_if<OfElement>(&channels[c].reads))
+            values[c] = in_unit(channels[c].unit) * read(model, branch, state, *of);
+    return values;
+}
+
+std::vector<ElementValue> element_values(const Model& model, const Comparison& comparison) {
+    const auto channels = element_channels(model);
+    std::vector<ElementValue> list;
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+        const BranchComparison& branch = comparison.branches[b];
+        const auto landmarks = [&](Leg leg) -> const Landmarks& {
+            return branch.runs[static_cast<std::size_t>(leg)].landmarks;
+        };
+        for (const auto end : {&Landmarks::front, &Landmarks::back}) {
+            const auto &truth = landmarks(Leg::equilibrium).*end,
+                       &reached = landmarks(Leg::recursive).*end;
+            // A one-sided branch starts at its front; a leg that ended early is at another load.
+            if (!truth || !reached || truth->load == 0 ||
+                !(std::abs(truth->load - reached->load) <= 1e-9 * std::abs(truth->load)))
+                continue;
+            const auto values = evaluate(model, model.branches[b], channels, *truth),
+                       others = evaluate(model, model.branches[b], channels, *reached);
+            for (std::size_t c = 0; c < channels.size(); ++c) {
+                const double off = others[c] - values[c], size = std::abs(values[c]);
+                if (std::isnan(values[c])) continue;  // inactive here
+                list.push_back({.branch = branch.branch,
+                                .a = in_unit(branch.unit) * truth->load,
+                                .a_unit = branch.unit,
+                                .element = element_of(channels[c]),
+                                .output = channels[c].name,
+                                .unit = channels[c].unit,
+                                .value = values[c],
+                                .off = off,
+                                .share = size > nothing ? off / size : nan});
+            }
+        }
+    }
+    return list;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,353 @@
+#include "compare/comparison/legs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/deviation/tolerance.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "models/branch.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Whether the k-th recorded point of a branch side is requested.
+bool is_asked_for(const Branch& way, int k, int every) { return k % every == 0 || k == way.steps; }
+
+// Requested parameters of a branch side.
+std::vector<double> grid(const Branch& way, int every) {
+    std::vector<double> a;
+    for (int k = 0; k <= way.steps; ++k)
+        if (is_asked_for(way, k, every)) a.push_back(way.to * k / way.steps);
+    return a;
+}
+
+EquilibriumPath recursion(const BranchSide& way, recursive::Options options, int refine, int every,
+                          const Visit& visit) {
+    options.record = way.branch.steps;
+    options.steps = way.branch.steps * refine;
+    options.error_bound_every = every;
+    return recursive::solve(way.model, way.branch, options,
+                            [&, k = 0](const Equilibrium& state) mutable {
+                                if (is_asked_for(way.branch, k++, every)) visit(state);
+                            });
+}
+
+// Runs the leg with extrapolated curves, without a check of their ends.
+EquilibriumPath walk_anywhere(const BranchSide& way, const SolverSettings& solver,
+                              const Visit& visit) {
+    const auto& [model, branch] = std::tie(way.model, way.branch);
+    switch (solver.leg) {
+        case Leg::recursive: {
+            recursive::Options options = solver.recursion;
+            options.error_bound = solver.error_bound;
+            return recursion(way, options, solver.refine, solver.every, visit);
+        }
+        case Leg::equilibrium:
+            return reference::equilibrium::solve(model, branch, grid(branch, solver.every),
+                                                 {.error_bound = solver.error_bound}, visit);
+        case Leg::energy:
+            return reference::energy::solve(model, branch, grid(branch, solver.every),
+                                            {.error_bound = solver.error_bound}, visit);
+        case Leg::series:
+            return recursion(way,
+                             {.method = recursive::find_method("series").value(),
+                              .error_bound = solver.error_bound},
+                             1, solver.every, visit);
+    }
+    return {};
+}
+
+// Joins both sides. The points of the reversed side are buffered as `Row` until they can be handed
+// over.
+template <class Row, class Read, class HandOver>
+EquilibriumPath join(const std::vector<BranchSide>& ways, const SolverSettings& solver,
+                     const Read& read, const HandOver& hand_over) {
+    if (ways.empty()) return {Outcome::not_finite, "the branch leads nowhere", {}, {}};
+    if (ways.size() == 1)
+        return walk(ways.front(), solver,
+                    [&](const Equilibrium& state) { hand_over(read(state)); });
+    const auto tell = [](const BranchSide& way, const std::string& detail) {
+        return fmt::format("{}: {}", way.name, detail);
+    };
+    // Both sides start at a = 0 in the same settled state: the second side's start is used, if it
+    // has one.
+    std::optional<Equilibrium> start;
+    std::vector<Row> reversed;
+    EquilibriumPath joined = walk(ways.front(), solver, [&](const Equilibrium& state) {
+        if (!start)
+            start = state;
+        else
+            reversed.push_back(read(state));
+    });
+    for (; !reversed.empty(); reversed.pop_back()) hand_over(std::move(reversed.back()));
+    EquilibriumPath second = walk(ways.back(), solver, [&](const Equilibrium& state) {
+        start.reset();
+        hand_over(read(state));
+    });
+    if (start) hand_over(read(*start));
+    // A leg that does not apply to one side does not apply to either.
+    if (is_not_asked(joined.outcome) && second.outcome == joined.outcome) return second;
+    if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
+    if (second.outcome != Outcome::converged) {
+        joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
+        if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
+    }
+    joined.counts.factorisations += second.counts.factorisations;
+    joined.counts.iterations += second.counts.iterations;
+    joined.counts.evaluations += second.counts.evaluations;
+    return joined;
+}
+
+std::string label(const Branch& way) {
+    const Unit unit = unit_of(way.unit);
+    return fmt::format("{} to {:.4g} {}", way.name, in_unit(unit) * way.to, symbol(unit));
+}
+
+}  // namespace
+
+const char* name(Leg leg) {
+    switch (leg) {
+        case Leg::recursive: return "recursive";
+        case Leg::equilibrium: return "equilibrium";
+        case Leg::energy: return "energy";
+        case Leg::series: return "series";
+    }
+    return "";
+}
+
+std::vector<BranchSide> sides_of(const Model& model, Branch branch, int points) {
+    if (points > 0) branch.steps = points;
+    std::vector<BranchSide> result;
+    const auto all = ways(branch);
+    for (const auto& way : all)
+        result.push_back({all.size() > 1 ? label(way) : branch.name, on_branch(model, way), way});
+    return result;
+}
+
+std::vector<double> asked_for(const std::vector<BranchSide>& ways, int every) {
+    std::vector<double> a;
+    for (std::size_t w = 0; w < ways.size(); ++w) {
+        auto way = grid(ways[w].branch, every);
+        const bool comes_reversed = w + 1 < ways.size();
+        if (comes_reversed) std::ranges::reverse(way), way.pop_back();
+        std::ranges::copy(way, std::back_inserter(a));
+    }
+    return a;
+}
+
+EquilibriumPath walk(const BranchSide& way, const SolverSettings& solver, const Visit& visit) {
+    std::vector<Equilibrium> kept;
+    std::string ended;
+    EquilibriumPath path = walk_anywhere(way, solver, [&](const Equilibrium& state) {
+        if (!ended.empty()) return;
+        ended = ends_at_table(way.model, way.branch, state);
+        if (!ended.empty()) return;
+        if (visit)
+            visit(state);
+        else
+            kept.push_back(state);
+    });
+    if (!ended.empty()) path.outcome = Outcome::outside_table, path.detail = ended;
+    path.points = std::move(kept);
+    return path;
+}
+
+bool is_not_asked(Outcome outcome) {
+    return outcome == Outcome::not_conservative || outcome == Outcome::too_large;
+}
+
+EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver) {
+    std::vector<Equilibrium> points;
+    EquilibriumPath path = join<Equilibrium>(
+        ways, solver, [](const Equilibrium& state) { return state; },
+        [&](Equilibrium state) { points.push_back(std::move(state)); });
+    path.points = std::move(points);
+    return path;
+}
+
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
+    Row row{state.load, state.constraint_error, evaluate(model, way.branch, channels, state)};
+    std::optional<Answers> answers;
+    std::optional<bool> corner;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
+        if (characteristic == nullptr) continue;
+        // At the corner of a law a stiffness has two values; rounding would select one of them.
+        if (channels[c].unit == Unit::newton_per_mm && channels[c].may_be_undefined()) {
+            if (!corner) corner = at_corner(way.model, way.branch, state);
+            if (*corner) {
+                row.values[c] = undefined;
+                continue;
+            }
+        }
+        if (!answers) answers = answer(way, solver, steering_joint(model), state, analyses);
+        row.values[c] =
+            in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *answers);
+    }
+    return row;
+}
+
+EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver,
+                     const std::function<Row(const Equilibrium&)>& read,
+                     const std::function<void(Row)>& hand_over) {
+    return join<Row>(ways, solver, read, hand_over);
+}
+
+Walked walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
+            const std::vector<BranchSide>& ways, const SolverSettings& solver, const Visit& also) {
+    using clock = std::chrono::steady_clock;
+    Walked walked;
+    walked.curve.unit = unit_of(branch.unit);
+    clock::duration reading{};
+    Analyses analyses;
+    const auto start = clock::now();
+    const EquilibriumPath path = walk(
+        ways, solver,
+        [&](const Equilibrium& state) {
+            const auto found = clock::now();
+            if (also) also(state);
+            Row row = row_of(model, channels, ways.front(), solver, state, analyses);
+            reading += clock::now() - found;
+            return row;
+        },
+        [&](Row row) {
+            append(walked.curve, row.load, std::move(row.values));
+            walked.constraint_error.push_back(row.constraint_error);
+        });
+    walked.seconds = std::chrono::duration<double>(clock::now() - start - reading).count();
+    walked.outcome = path.outcome;
+    walked.detail = path.detail;
+    walked.counts = path.counts;
+    return walked;
+}
+
+EquilibriumPath rest(const BranchSide& way, Leg leg) {
+    constexpr std::array at_start{0.0};
+    std::optional<Equilibrium> start;
+    const Visit first = [&](const Equilibrium& state) {
+        if (!start) start = state;
+    };
+    EquilibriumPath path;
+    switch (leg) {
+        case Leg::equilibrium:
+            path = reference::equilibrium::solve(way.model, way.branch, at_start, {}, first);
+            break;
+        case Leg::energy:
+            path = reference::energy::solve(way.model, way.branch, at_start, {}, first);
+            break;
+        case Leg::recursive:
+        case Leg::series: path = walk_anywhere(way, {.leg = leg}, first); break;
+    }
+    if (!start) return path;
+    path.detail = ends_at_table(way.model, way.branch, *start);
+    // the outcome beyond this point is irrelevant
+    path.outcome = path.detail.empty() ? Outcome::converged : Outcome::outside_table;
+    if (path.outcome == Outcome::converged) path.points.push_back(std::move(*start));
+    return path;
+}
+
+Residuals judge(Leg by, const BranchSide& way, const Equilibrium& state) {
+    switch (by) {
+        case Leg::recursive:
+        case Leg::series: return recursive::residuals(way.model, way.branch, state);
+        case Leg::equilibrium:
+            return reference::equilibrium::residuals(way.model, way.branch, state);
+        case Leg::energy: return reference::energy::residuals(way.model, way.branch, state);
+    }
+    return {};
+}
+
+std::string nothing_moves(const Model& model, const std::vector<Channel>& channels,
+                          const Branch& branch, const Curve& truth) {
+    if (branch.drivers.empty()) {
+        std::string why;
+        for (const auto& omission : model.omitted)
+            if (omission.why.find("(branch '" + branch.name + "')") != std::string::npos)
+                why +=
+                    fmt::format("{}{}: {}", why.empty() ? ": " : "; ", omission.what, omission.why);
+        return fmt::format("nothing drives branch '{}'{}", branch.name, why);
+    }
+    // Movement that rounding can cause without a driver: a few units in the last place of the
+    // solved coordinates.
+    double size = 0;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (channels[c].main && channels[c].unit == Unit::mm)
+            for (const auto& point : truth.values) size = std::max(size, std::abs(point[c]));
+    const double dust_mm = 1e-12 * std::max(size, 1.0), dust_deg = 1e-12 * in_unit(Unit::deg);
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (!channels[c].main) continue;
+        for (const auto& point : truth.values)
+            if (!(std::abs(point[c] - truth.values[truth.start][c]) <=
+                  (channels[c].unit == Unit::deg ? dust_deg : dust_mm)))
+                return {};
+    }
+    return fmt::format("no asked-for output moves on branch '{}'", branch.name);
+}
+
+References references(const Model& model, const std::vector<Channel>& channels,
+                      const Branch& branch, const std::vector<BranchSide>& ways) {
+    References result;
+    const Model& standing = ways.front().model;
+    result.scale = scale_of(standing, branch, {});
+    Walked equilibrium = walk(
+               model, channels, branch, ways, {.leg = Leg::equilibrium},
+               [&](const Equilibrium&state) {
+                   result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
+               }),
+           second = walk(model, channels, branch, ways, {.leg = Leg::energy});
+    if (is_not_asked(second.outcome)) {
+        result.second_leg = Leg::series;
+        result.not_asked = second.detail;
+        second = walk(model, channels, branch, ways, {.leg = Leg::series});
+    }
+    for (const auto& [leg, walked] :
+         {std::pair{Leg::equilibrium, &equilibrium}, {result.second_leg, &second}})
+        if (walked->outcome != Outcome::converged)
+            result.failures.push_back(fmt::format(
+                "{} leg: {}: {}", name(leg), elastocheck::name(walked->outcome), walked->detail));
+    result.truth_ended = equilibrium.outcome;
+    result.truth = std::move(equilibrium.curve);
+    result.other = std::move(second.curve);
+    result.uncertainty = {nan, nan, nan};
+    if (!result.failures.empty()) return result;
+    result.extents = extents_of(channels, result.truth, result.scale);
+    const auto determined =
+        determined_channels(channels, standing, recursive::diagnose(standing).determined);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (!determined[c]) result.extents[c] = std::numeric_limits<double>::infinity();
+    result.uncertainty = worse(distance(channels, result.truth, result.other, result.extents),
+                               rounding_of(channels, result.truth, result.extents));
+    if (const auto why = nothing_moves(model, channels, branch, result.truth); !why.empty())
+        result.failures.push_back(why);
+    return result;
+}
+
+Settled settled(const Model& model, const std::vector<Channel>& channels, const Branch& branch) {
+    const BranchSide way = sides_of(model, branch).front();
+    const auto path = rest(way, Leg::equilibrium);
+    Settled result{branch.name, path.outcome, path.detail,
+                   std::vector<double>(channels.size(), nan)};
+    if (path.outcome != Outcome::converged || path.points.empty()) return result;
+    const auto drawn = evaluate(model, channels, design_state(model)),
+               rest = evaluate(model, channels, path.points.front());
+    for (std::size_t c = 0; c < channels.size(); ++c) result.displacement[c] = rest[c] - drawn[c];
+    return result;
+}
+
+}  // namespace elastocheck::compare

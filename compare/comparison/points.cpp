@@ -1,0 +1,76 @@
+#include "compare/comparison/points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace elastocheck::compare {
+namespace {
+
+// Whether two branches lie on different sides of a = 0, so that an unnamed point belongs to at most
+// one.
+bool apart(const Branch& a, const Branch& b) {
+    const auto low = [](const Branch& x) { return std::min(x.from, x.to); };
+    const auto high = [](const Branch& x) { return std::max(x.from, x.to); };
+    return high(a) <= 0 ? low(b) >= 0 : low(a) >= 0 && high(b) <= 0;
+}
+
+}  // namespace
+
+std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
+                                       std::vector<PointColumn> columns) {
+    const auto drawn = evaluate(model, comparison.channels, design_state(model));
+    for (auto& column : columns) {
+        if (column.change)
+            for (double& value : column.values) value += drawn[column.channel];
+        column.change = false;
+    }
+    return columns;
+}
+
+std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel) {
+    auto over = channel ? curve.channel(*channel) : curve.a;
+    if (!trend(over).monotonic()) over.clear();
+    return over;
+}
+
+bool reaches(const std::vector<double>& over, double x) {
+    return !over.empty() && x >= std::min(over.front(), over.back()) &&
+           x <= std::max(over.front(), over.back());
+}
+
+std::vector<int> branches_of(const Model& model, const Comparison& comparison,
+                             const std::vector<std::string>& names, const std::vector<double>& x,
+                             std::optional<std::size_t> channel) {
+    const auto& all = comparison.branches;
+    std::vector<int> result;
+    if (!names.empty()) {
+        for (const auto& name : names) {
+            const auto found = std::ranges::find(all, name, &BranchComparison::branch);
+            if (found == all.end())
+                throw std::invalid_argument(fmt::format("the scene has no branch '{}'", name));
+            result.push_back(static_cast<int>(found - all.begin()));
+        }
+        return result;
+    }
+    for (std::size_t a = 0; a < all.size(); ++a)
+        for (std::size_t b = 0; b < a; ++b)
+            if (!apart(model.branches[a], model.branches[b]))
+                throw std::invalid_argument(fmt::format(
+                    "branches '{}' and '{}' lie on the same side; a point has to say which one it "
+                    "belongs to",
+                    all[b].branch, all[a].branch));
+    std::vector<std::vector<double>> over;
+    for (const auto& branch : all)
+        over.push_back(
+            placed_by(branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve, channel));
+    for (const double at : x) {
+        const auto found = std::ranges::find_if(
+            over, [&](const std::vector<double>& of_branch) { return reaches(of_branch, at); });
+        result.push_back(found == over.end() ? -1 : static_cast<int>(found - over.begin()));
+    }
+    return result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,49 @@
+// External points, measured or computed: their branches, their positions on them, and their output
+// values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/comparison/compare.hpp"
+
+namespace elastocheck::compare {
+
+struct PointColumn {
+    std::size_t channel = 0;  // position in Comparison::channels
+    bool change = false;      // relative to the design position
+    // per point, in the channel's unit; NaN for a missing value, infinite for a value that is not a
+    // number
+    std::vector<double> values;
+};
+
+// All vectors have one entry per point, or none.
+struct Points {
+    // name of the branch; empty: of branches on different sides of a = 0, the one that reaches the
+    // point
+    std::vector<std::string> branch;
+    std::vector<double> a;                // parameter, in the branch's unit
+    std::optional<std::size_t> abscissa;  // a channel that places the points ...
+    std::vector<double> at;               // ... by its values
+    std::vector<PointColumn> columns;
+};
+
+// Converts changes to absolute positions and angles.
+std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
+                                       std::vector<PointColumn> columns);
+
+// Position in Comparison::branches of each point's branch, or -1 where none reaches it. `x` places
+// the points, by the parameter or by the channel. Throws std::invalid_argument for a branch that is
+// not in the comparison, or, without names, if two branches lie on the same side.
+std::vector<int> branches_of(const Model& model, const Comparison& comparison,
+                             const std::vector<std::string>& names, const std::vector<double>& x,
+                             std::optional<std::size_t> channel);
+
+// Values of a leg that place points: its parameter, or a channel; empty where the channel is not
+// monotonic.
+std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
+// Whether x lies within the range of a monotonic sequence.
+bool reaches(const std::vector<double>& over, double x);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,391 @@
+#include "compare/comparison/trim.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "compare/deviation/agreement.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "elastocheck/compile.hpp"
+#include "models/branch.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_iterations = 30;
+constexpr int most_halvings = 10;
+constexpr double met = 1e-12;        // [m, rad]: accuracy of a settled state
+constexpr double acceptable = 1e-9;  // [m, rad]: accepted where Newton's method stagnates
+constexpr double moves = 1e-10;      // [m, rad]: a smaller effect of a step counts as none
+constexpr double known = 1e-6;       // of the largest singular value: resolution of the differences
+
+// The trim equations for any p.
+struct Problem {
+    const Trim* trim = nullptr;
+    BranchSide way;                 // branch on which the adjustments are held
+    std::vector<Channel> channels;  // read by the conditions
+    VectorXd asked;                 // [m, rad]
+};
+
+struct Answer {
+    Outcome outcome = Outcome::converged;
+    std::string detail;
+    Equilibrium state;
+    VectorXd missed;  // c(x(p)) [m, rad]
+};
+
+Channel channel_of(const Model& model, const ConditionKind& kind) {
+    const Equilibrium drawn = design_state(model);
+    const auto counted = [&](const Point& at, int axis) {
+        Channel channel{.name = "", .reads = Coordinate{at, axis}};
+        const double from = evaluate(model, {&channel, 1}, drawn).front() / in_unit(Unit::mm);
+        std::get<Coordinate>(channel.reads).counted_from = from;
+        return channel;
+    };
+    return std::visit(
+        overloaded{[&](const WheelTravel& c) {
+                       const Wheel& wheel = model.wheels[static_cast<std::size_t>(c.wheel)];
+                       return counted({wheel.body, wheel.centre_local}, 2);
+                   },
+                   [](const WheelToe& c) {
+                       return Channel{.name = "",
+                                      .unit = Unit::deg,
+                                      .reads = Toe{static_cast<std::size_t>(c.wheel)}};
+                   },
+                   [](const WheelCamber& c) {
+                       return Channel{.name = "",
+                                      .unit = Unit::deg,
+                                      .reads = Camber{static_cast<std::size_t>(c.wheel)}};
+                   },
+                   [&](const ProbeCoordinate& c) {
+                       return counted(model.probes[static_cast<std::size_t>(c.probe)].at, c.axis);
+                   }},
+        kind);
+}
+
+VectorXd values(const Problem& problem, const Equilibrium& state) {
+    const auto shown = evaluate(problem.way.model, problem.channels, state);
+    VectorXd c(static_cast<Index>(shown.size()));
+    for (std::size_t k = 0; k < shown.size(); ++k)
+        c[static_cast<Index>(k)] = shown[k] / in_unit(problem.channels[k].unit);
+    return c;
+}
+
+// The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
+// no adjustment is left out because it starts at zero.
+Problem pose(const Scene& scene) {
+    Problem problem;
+    problem.trim = &*scene.trim;
+    Scene held = scene;
+    Branch branch{
+        .name = "trim", .from = 0, .to = 1, .steps = 1, .unit = ParameterUnit::none, .drivers = {}};
+    for (const auto& adjustment : problem.trim->adjust)
+        branch.drivers.push_back({adjustment.what, 0, 1});
+    held.branches = {branch};
+    Model model = compile(held);
+    if (model.branches.front().drivers.size() != branch.drivers.size()) {
+        std::string why;
+        for (const auto& omission : model.omitted)
+            if (omission.why.find("(branch 'trim')") != std::string::npos) why = omission.what;
+        throw std::invalid_argument(fmt::format(
+            "what is adjusted has no influence on any output{}{}", why.empty() ? "" : ": ", why));
+    }
+    for (auto& driver : model.branches.front().drivers) driver.rate = 0;
+    problem.way = {"trim", on_branch(model, model.branches.front()), model.branches.front()};
+    for (const auto& condition : problem.trim->until)
+        problem.channels.push_back(channel_of(problem.way.model, condition.what));
+    const VectorXd drawn = values(problem, design_state(problem.way.model));
+    problem.asked = drawn;
+    for (std::size_t k = 0; k < problem.trim->until.size(); ++k)
+        if (const auto& value = problem.trim->until[k].value)
+            problem.asked[static_cast<Index>(k)] = *value;
+    return problem;
+}
+
+BranchSide held_at(const Problem& problem, const VectorXd& p) {
+    BranchSide way = problem.way;
+    for (std::size_t k = 0; k < way.branch.drivers.size(); ++k)
+        way.branch.drivers[k].start = problem.trim->adjust[k].per_unit * p[static_cast<Index>(k)];
+    way.model.branches = {way.branch};
+    return way;
+}
+
+Answer settle(const Problem& problem, const VectorXd& p, Leg leg) {
+    const EquilibriumPath path = rest(held_at(problem, p), leg);
+    if (path.points.empty()) return {path.outcome, path.detail, {}, {}};
+    return {Outcome::converged, "", path.points.front(),
+            values(problem, path.points.front()) - problem.asked};
+}
+
+// h, in the unit of the adjustment.
+double step(const Trim::Adjustment& adjustment) {
+    const double of_what = std::visit(
+        overloaded{
+            [](const Load&) { return 10.0; },                                            // [N]
+            [](const Motion&) { return 1e-4; },                                          // [m, rad]
+            [](const FreeLength&) { return 1e-4; },                                      // [m]
+            [](const Preload& l) { return 10 / std::max(1e-30, l.direction.norm()); }},  // [N, N·m]
+        adjustment.what);
+    return of_what / std::abs(adjustment.per_unit);
+}
+
+// J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
+std::optional<MatrixXd> responses(const Problem& problem, const VectorXd& p, Answer& failed) {
+    const Index n = p.size();
+    MatrixXd J(static_cast<Index>(problem.channels.size()), n);
+    for (Index k = 0; k < n; ++k) {
+        const VectorXd h =
+            step(problem.trim->adjust[static_cast<std::size_t>(k)]) * VectorXd::Unit(n, k);
+        const Answer more = settle(problem, p + h, Leg::equilibrium),
+                     less = settle(problem, p - h, Leg::equilibrium);
+        for (const Answer* answer : {&more, &less})
+            if (answer->outcome != Outcome::converged) {
+                failed = *answer;
+                return std::nullopt;
+            }
+        J.col(k) = 0.5 * (more.missed - less.missed);
+    }
+    return J;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t k = 0; k < names.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+    return text;
+}
+
+// Names with a significant part in a combination.
+template <class Named>
+std::vector<std::string> taking_part(const std::vector<Named>& all, const VectorXd& share) {
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        if (std::abs(share[static_cast<Index>(k)]) > 0.05 * share.cwiseAbs().maxCoeff())
+            names.push_back(all[k].name);
+    return names;
+}
+
+// Names the adjustment or condition that makes the trim ill-posed; empty if none does.
+std::string ill_posed(const Trim& trim, const MatrixXd& J) {
+    MatrixXd scaled = J;
+    for (Index k = 0; k < J.cols(); ++k) {
+        const double size = J.col(k).norm();
+        if (!(size > moves))
+            return fmt::format(
+                "'{}' has no influence on {}: adjust something else, or ask for a condition that "
+                "it moves",
+                trim.adjust[static_cast<std::size_t>(k)].name,
+                listed(taking_part(trim.until, VectorXd::Ones(J.rows()))));
+        scaled.col(k) /= size;
+    }
+    for (Index k = 0; k < J.rows(); ++k) {
+        if (!(J.row(k).norm() > moves))
+            return fmt::format("no adjustment moves '{}': {} does not",
+                               trim.until[static_cast<std::size_t>(k)].name,
+                               listed(taking_part(trim.adjust, VectorXd::Ones(J.cols()))));
+        scaled.row(k).normalize();
+    }
+    const Eigen::JacobiSVD<MatrixXd> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const VectorXd s = svd.singularValues();
+    if (s[s.size() - 1] > known * s[0]) return {};
+    return fmt::format(
+        "ambiguous: {} move only together, whatever {} do; a condition that tells these apart is "
+        "missing",
+        listed(taking_part(trim.until, svd.matrixU().rightCols<1>())),
+        listed(taking_part(trim.adjust, svd.matrixV().rightCols<1>())));
+}
+
+// ---- Result as plain data and as text.
+
+void apply(const Trim& trim, const VectorXd& p, Scene& scene) {
+    for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
+        const double by = trim.adjust[k].per_unit * p[static_cast<Index>(k)];
+        std::visit(
+            overloaded{
+                [](const Load&) {},
+                [&](const Motion& m) {
+                    std::visit(overloaded{[&](Distance& j) { j.length += by; },
+                                          [&](InPlane& j) { j.offset += by; },
+                                          [&](Angle& j) { j.angle += by; }, [](auto&) {}},
+                               scene.joints[static_cast<std::size_t>(m.joint)].kind);
+                },
+                [&](const FreeLength& l) {
+                    std::get<AxialSpring>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind)
+                        .free_length += by;
+                },
+                [&](const Preload& l) {
+                    std::get<Bushing>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind)
+                        .preload += by * l.direction;
+                }},
+            trim.adjust[k].what);
+    }
+    scene.trim.reset();
+}
+
+// Text of the resulting value in the trimmed scene; `driven` is the driver in the model.
+std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Problem& problem,
+                          const Driven& driven, const BranchSide& held, const Equilibrium& state) {
+    return std::visit(
+        overloaded{
+            [](const Load&) { return std::string(); },
+            [&](const Motion& m) {
+                const JointKind& kind = scene.joints[static_cast<std::size_t>(m.joint)].kind;
+                return std::visit(
+                    overloaded{[](const Distance& j) {
+                                   return fmt::format("length {:.6g} mm", 1e3 * j.length);
+                               },
+                               [](const InPlane& j) {
+                                   return fmt::format("offset {:.6g} mm", 1e3 * j.offset);
+                               },
+                               [](const Angle& j) {
+                                   return fmt::format("angle {:.6g} deg",
+                                                      in_unit(Unit::deg) * j.angle);
+                               },
+                               [](const auto&) { return std::string(); }},
+                    kind);
+            },
+            [&](const FreeLength& l) {
+                const auto& spring =
+                    std::get<AxialSpring>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind);
+                const auto element = static_cast<std::size_t>(std::get<FreeLength>(driven).elastic);
+                const auto& standing =
+                    std::get<AxialSpring>(problem.way.model.elastics[element].kind);
+                const double f =
+                    force(standing.law, deformation(standing, element, held.branch, state));
+                return fmt::format("force {:.6g} N in {}, free length {:.6g} mm", std::abs(f),
+                                   f < 0 ? "compression" : "tension", 1e3 * spring.free_length);
+            },
+            [&](const Preload& l) {
+                const auto& bushing =
+                    std::get<Bushing>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind);
+                const double size = bushing.preload.dot(l.direction) / l.direction.norm();
+                return fmt::format("preload {:.6g} {} along it", size,
+                                   l.direction.head<3>().isZero(0) ? "N·m" : "N");
+            }},
+        adjusted);
+}
+
+}  // namespace
+
+Trimmed trim(const Scene& scene) {
+    Trimmed result{scene, std::nullopt};
+    if (!scene.trim) return result;
+    const Trim& trim = *scene.trim;
+    if (trim.adjust.size() != trim.until.size() || trim.adjust.empty())
+        throw std::invalid_argument(
+            fmt::format("{} adjusted until {} conditions hold; as many are needed",
+                        trim.adjust.size(), trim.until.size()));
+    const Problem problem = pose(scene);
+    TrimRecord& record = result.record.emplace();
+    const auto give_up = [&](const Answer& answer, const std::string& where) {
+        record.outcome = answer.outcome;
+        record.detail =
+            fmt::format("{}: {}: {}", where, elastocheck::name(answer.outcome), answer.detail);
+        return result;
+    };
+
+    VectorXd p = VectorXd::Zero(static_cast<Index>(trim.adjust.size())), h = p;
+    for (std::size_t k = 0; k < trim.adjust.size(); ++k)
+        h[static_cast<Index>(k)] = step(trim.adjust[k]);
+    Answer here = settle(problem, p, Leg::equilibrium);
+    if (here.outcome != Outcome::converged)
+        return give_up(here, "the scene as written does not settle");
+    std::string stuck;
+    // J is checked before convergence is accepted: conditions met by chance may leave p
+    // undetermined.
+    for (bool first = true; first || here.missed.lpNorm<2>() > met; first = false) {
+        Answer failed;
+        const auto J = responses(problem, p, failed);
+        if (!J && record.iterations == 0) return give_up(failed, "beside the state reached");
+        if (!J) {
+            stuck = fmt::format("; beside it: {}: {}", elastocheck::name(failed.outcome),
+                                failed.detail);
+            break;
+        }
+        if (const std::string why = ill_posed(trim, *J); !why.empty()) {
+            // Well-posed at an earlier iterate: the iteration has reached the limit of what can be
+            // trimmed.
+            if (record.iterations == 0 || here.missed.norm() <= acceptable)
+                throw std::invalid_argument(why);
+            stuck = "; there " + why;
+            break;
+        }
+        if (!(here.missed.norm() > met) || record.iterations == most_iterations) break;
+        const VectorXd dp = h.cwiseProduct(J->colPivHouseholderQr().solve(-here.missed));
+        Answer next;
+        double share = 1;
+        for (int halved = 0; halved <= most_halvings; ++halved, share /= 2) {
+            next = settle(problem, p + share * dp, Leg::equilibrium);
+            if (next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())
+                break;
+        }
+        if (!(next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())) {
+            // Unreachable conditions lead to a singular state, beyond which rounding decides which
+            // are met.
+            if (next.outcome != Outcome::converged)
+                stuck =
+                    fmt::format("; farther: {}: {}", elastocheck::name(next.outcome), next.detail);
+            break;
+        }
+        p += share * dp;
+        here = next;
+        ++record.iterations;
+    }
+
+    for (std::size_t k = 0; k < trim.until.size(); ++k) {
+        const Unit unit = problem.channels[k].unit;
+        const auto i = static_cast<Index>(k);
+        record.conditions.push_back({trim.until[k].name, unit, in_unit(unit) * problem.asked[i],
+                                     in_unit(unit) * here.missed[i], std::nan("")});
+    }
+    if (!(here.missed.norm() <= acceptable)) {
+        const auto worst = std::ranges::max_element(record.conditions, {}, [](const auto& c) {
+            return std::abs(c.missed) / in_unit(c.unit);
+        });
+        record.outcome = Outcome::iteration_limit;
+        record.detail = fmt::format(
+            "the conditions cannot be met: the nearest that was reached misses '{}' by {:.3g} {}{}",
+            worst->name, worst->missed, symbol(worst->unit), stuck);
+        return result;
+    }
+
+    Answer second = settle(problem, p, Leg::energy);
+    if (is_not_asked(second.outcome)) {
+        record.confirmed_by = Leg::series;
+        second = settle(problem, p, Leg::series);
+    }
+    if (second.outcome != Outcome::converged)
+        return give_up(second, fmt::format("not confirmed: the {} leg", name(record.confirmed_by)));
+    const BranchSide held = held_at(problem, p);
+    const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&here.state, 1}));
+    for (std::size_t k = 0; k < record.conditions.size(); ++k) {
+        auto& c = record.conditions[k];
+        c.confirmed = in_unit(c.unit) * second.missed[static_cast<Index>(k)];
+        const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
+        if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
+            record.detail = fmt::format(
+                "not confirmed: the {} leg misses '{}' by {:.3g} {}, at most {:.3g} is allowed",
+                name(record.confirmed_by), c.name, c.confirmed, symbol(c.unit), bound);
+    }
+    if (!record.detail.empty()) return result;
+
+    apply(trim, p, result.scene);
+    for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
+        const auto& adjusted = trim.adjust[k];
+        const Unit unit = unit_of(adjusted.unit);
+        record.adjusted.push_back(
+            {adjusted.name, unit, in_unit(unit) * p[static_cast<Index>(k)],
+             what_it_makes(result.scene, adjusted.what, problem, problem.way.branch.drivers[k].what,
+                           held, here.state)});
+    }
+    return result;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,65 @@
+// Trim: free lengths, preloads and offsets for which a scene settles, under the loads held on every
+// branch, at the requested conditions.
+//
+// x(p): the state settled by the equilibrium leg, the adjustments p held by the drivers of a branch
+// without motion. c(x): the residuals of the conditions, lengths and angles together. Newton's
+// method on c(x(p)) = 0,
+//
+//   J Δp = -c,     J e_k h_k = ½ (c(x(p + h_k e_k)) - c(x(p - h_k e_k))),
+//
+// h_k is a step that moves the element by a tenth of a millimetre or changes its stress by ten
+// newtons; Δp is halved until |c| decreases. The rank of J (every condition answered by exactly one
+// Δp) is judged on J with columns per step h and rows scaled to length one. Differences have about
+// six digits, so a singular value below 1e-6 of the largest counts as zero.
+//
+// The energy leg, which does not use p, then settles the trimmed scene, and its conditions are
+// checked too.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/comparison/legs.hpp"
+#include "compare/outputs/channels.hpp"
+#include "elastocheck/scene.hpp"
+
+namespace elastocheck::compare {
+
+struct TrimRecord {
+    struct Adjusted {
+        std::string name;  // "springs.coil.preload"
+        Unit unit = Unit::newton;
+        double by = 0;  // found change relative to the value in the scene
+        // "force 3521.4 N in compression, free length 412.3 mm": resulting values
+        std::string makes;
+    };
+    struct Met {
+        std::string name;  // "left.travel"
+        Unit unit = Unit::mm;
+        double asked = 0;
+        double missed = 0;     // residual by the equilibrium leg's state
+        double confirmed = 0;  // residual by the state of the second reference
+    };
+    std::vector<Adjusted> adjusted;
+    std::vector<Met> conditions;
+    int iterations = 0;              // of Newton's method
+    Leg confirmed_by = Leg::energy;  // or the series, where the energy leg does not apply
+    Outcome outcome = Outcome::converged;
+    // reason why there is no trim: not reached, or not confirmed; empty on success
+    std::string detail;
+    bool reached() const { return outcome == Outcome::converged && detail.empty(); }
+};
+
+struct Trimmed {
+    Scene scene;                       // with the result as plain data, and without a trim section
+    std::optional<TrimRecord> record;  // empty where the scene requests no trim and is unchanged
+};
+
+// Throws std::invalid_argument for an ill-posed trim, naming the entries: different numbers of
+// conditions and adjustments, an adjustment that moves no condition, conditions that no adjustment
+// moves or that move only together. Where no solution is reached, or the second reference does not
+// confirm it, the record has the reason and the scene is the one given.
+Trimmed trim(const Scene& scene);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,179 @@
+#include "compare/deviation/agreement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "compare/outputs/deformation.hpp"
+#include "compare/outputs/positions.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double digits = 16;       // c: number of roundings that add up in one stored force
+constexpr double no_force = 1e-12;  // [N]: smaller forces count as zero
+constexpr double metre = 1;         // least size for the share of a length
+
+double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
+
+// ---- Elastic laws, one function each: the force at a deformation, and the largest stiffness.
+
+Vector6 force(const LinearStiffness& u, const Vector6& e) { return u.K * e; }
+Vector6 force(const PerAxis& u, const Vector6& e) {
+    Vector6 F;
+    for (std::size_t k = 0; k < 6; ++k)
+        F[static_cast<Eigen::Index>(k)] =
+            compare::force(u.axis[k], e[static_cast<Eigen::Index>(k)]);
+    return F;
+}
+// [N/m]: rotating the lever L by an angle moves its end by L times the angle.
+double stiffness(const LinearStiffness& u, double L) {
+    const double K_T = u.K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff(),
+                 K_R = u.K.bottomRightCorner<3, 3>().cwiseAbs().maxCoeff(),
+                 coupled = u.K.topRightCorner<3, 3>().cwiseAbs().maxCoeff();
+    return std::max({K_T, coupled / L, K_R / (L * L)});
+}
+double stiffness(const PerAxis& u, double L) {
+    double k = 0;
+    for (std::size_t axis = 0; axis < 6; ++axis)
+        k = std::max(k, steepest(u.axis[axis]) / (axis < 3 ? 1 : L * L));
+    return k;
+}
+
+double value(const Driver& driver, double a) { return driver.start + driver.rate * a; }
+
+// Sum over the drivers of the branch that move element k: f(driver's kind, value).
+template <class Kind, class Sink>
+void moved(const Branch& branch, std::size_t k, double a, Sink&& sink) {
+    for (const auto& driver : branch.drivers)
+        if (const auto* kind = std::get_if<Kind>(&driver.what);
+            kind && kind->elastic == static_cast<int>(k))
+            sink(*kind, value(driver, a));
+}
+
+double as_force(const Vector3d& f, const Vector3d& m, double L) {
+    return larger(f.norm(), m.norm() / L);
+}
+
+double stored(const AxialSpring& e, std::size_t k, const Branch& branch, const Equilibrium& state,
+              double) {
+    return std::abs(compare::force(e.law, deformation(e, k, branch, state)));
+}
+double stored(const Bushing& e, std::size_t k, const Branch& branch, const Equilibrium& state,
+              double L) {
+    const Vector6 x = deformation(e, state);
+    Vector6 F = e.preload + std::visit([&](const auto& law) { return force(law, x); }, e.law);
+    moved<Preload>(branch, k, state.load,
+                   [&](const Preload& p, double v) { F += v * p.direction; });
+    return as_force(F.head<3>(), F.tail<3>(), L);
+}
+
+double acting(const LoadKind& load, double factor, double L) {
+    return std::abs(factor) *
+           std::visit(overloaded{[](const DeadForce& l) { return l.f.norm(); },
+                                 [&](const DeadMoment& l) { return l.m.norm() / L; },
+                                 [](const FollowerForce& l) { return l.f_local.norm(); },
+                                 [&](const FollowerMoment& l) { return l.m_local.norm() / L; }},
+                      load);
+}
+
+// Attachment points in the design position.
+std::vector<Vector3d> attachments(const Model& model) {
+    std::vector<Pose> design;
+    for (const auto& body : model.bodies) design.push_back(body.design);
+    std::vector<Vector3d> points;
+    const auto add = [&](const auto& p) { points.push_back(position(design, p.body, p.s_local)); };
+    for (const auto& body : model.bodies) points.push_back(body.design.r);
+    for (const auto& joint : model.joints) add(joint.at);
+    for (const auto& elastic : model.elastics)
+        std::visit([&](const auto& e) { add(e.i), add(e.j); }, elastic.kind);
+    for (const auto& wheel : model.wheels)
+        points.push_back(position(design, wheel.body, wheel.centre_local));
+    for (const auto& probe : model.probes) add(probe.at);
+    return points;
+}
+
+}  // namespace
+
+Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilibrium> states) {
+    Scale scale;
+    Eigen::AlignedBox3d box;
+    double reach = 0;  // X
+    for (const auto& p : attachments(model)) {
+        box.extend(p);
+        reach = larger(reach, p.norm());
+    }
+    const double size = box.isEmpty() ? 0 : box.diagonal().norm();
+    // of the coordinates: only rounding separates the points
+    constexpr double at_one_place = 1e-12;
+    scale.length = size > at_one_place * reach ? size : metre;
+    const double L = scale.length;
+
+    double k = 0;
+    for (const auto& elastic : model.elastics)
+        k = larger(k, std::visit(overloaded{[](const AxialSpring& e) { return steepest(e.law); },
+                                            [&](const Bushing& e) {
+                                                return std::visit(
+                                                    [&](const auto& u) { return stiffness(u, L); },
+                                                    e.law);
+                                            }},
+                                 elastic.kind));
+    for (const auto& load : model.static_loads)
+        scale.force = larger(scale.force, acting(load.kind, 1, L));
+    for (const auto& state : states) {
+        for (const auto& driver : branch.drivers)
+            if (const auto* load = std::get_if<Load>(&driver.what))
+                scale.force = larger(scale.force, acting(load->kind, value(driver, state.load), L));
+        for (std::size_t e = 0; e < model.elastics.size(); ++e)
+            scale.force = larger(
+                scale.force,
+                std::visit([&](const auto& kind) { return stored(kind, e, branch, state, L); },
+                           model.elastics[e].kind));
+        for (const auto& w : state.reactions)
+            scale.force = larger(scale.force, as_force(w.force, w.moment, L));
+        for (const auto& body : state.poses) reach = larger(reach, body.r.norm());
+    }
+    scale.round_off = epsilon * k * std::max(reach, L);
+    return scale;
+}
+
+Scale larger(const Scale& a, const Scale& b) {
+    return {larger(a.force, b.force), larger(a.length, b.length), larger(a.round_off, b.round_off)};
+}
+
+Bounds bounds_of(const Agreement& agreement, const Scale& scale) {
+    const double F = std::max(scale.force, no_force), rounding = digits * scale.round_off;
+    const double lengths = 1e3 * std::max(scale.length, metre);  // [mm]
+    Bounds bounds;
+    bounds.scale = scale;
+    bounds.length = agreement.length * lengths;
+    bounds.angle = agreement.angle;
+    bounds.force = agreement.wrench * F + rounding;
+    bounds.moment = bounds.force * scale.length;
+    bounds.residual_force = agreement.residual_force * F + rounding;
+    bounds.residual_moment = bounds.residual_force * scale.length;
+    bounds.residual_length = agreement.residual_length * lengths;
+    return bounds;
+}
+
+std::string describe(const Bounds& b) {
+    return fmt::format(
+        "positions to {:.2g} mm, angles to {:.2g} deg, reactions to {:.2g} N and {:.2g} N·m, "
+        "balances to "
+        "{:.2g} N "
+        "and {:.2g} N·m, constraints to {:.2g} mm (largest force {:.4g} N, size {:.3g} m, "
+        "round-off of "
+        "stiffness "
+        "times length {:.2g} N)",
+        b.length, b.angle, b.force, b.moment, b.residual_force, b.residual_moment,
+        b.residual_length, b.scale.force, b.scale.length, b.scale.round_off);
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,82 @@
+// Deviation between two curves at equal parameter and at equal abscissa (for a suspension: equal
+// load and equal travel).
+//
+// The two readings differ: an error along the path of motion (a wrong rate) appears at equal load
+// and vanishes at equal travel; an error across the path appears in both.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare/outputs/curve.hpp"
+
+namespace elastocheck::compare {
+
+struct Deviation {
+    double max = 0;         // largest |b - a|, in the channel's unit
+    double signed_max = 0;  // b - a where it is largest
+    double at = 0;          // parameter or abscissa of the maximum, in its unit
+    double end = 0;         // b - a at the last compared point, signed
+    double rms = 0;
+    double range = 0;          // of the channel over curve a
+    double interpolation = 0;  // equal abscissa: interpolation error of b, largest over the points
+    int compared = 0;          // numbers compared; 0 means no comparison
+};
+
+struct Reading {
+    std::vector<Deviation> channels;  // one per channel
+    std::string not_compared;         // reason why there is none, empty when there is
+    int outside = 0;                  // points of a that b does not reach (equal abscissa)
+};
+
+// Deviation of b from a, number by number; `at` gives the places. The caller sets `range` from the
+// whole of a.
+Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
+                       const std::vector<double>& at);
+
+// Points with the same parameter. A value that is not finite makes the deviation NaN, never zero.
+Reading at_equal_parameter(const Curve& a, const Curve& b);
+
+// b interpolated at the abscissa values of a, within the range of b.
+Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by);
+
+// Local polynomial interpolation of y over strictly monotonic x through the `nodes` samples around
+// `at`.
+double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at,
+                   int nodes);
+
+// ---- The worst of the main channels, by unit.
+
+// Lengths in mm and angles in deg: an error, an uncertainty.
+struct Accuracy {
+    double mm = 0;     // positions
+    double deg = 0;    // toe and camber; 0 where a scene has no angles
+    double share = 0;  // of forces and moments, relative to their extents; 0 where not evaluated
+};
+double worse(double a, double b);  // the larger; NaN counts as larger than any number
+Accuracy worse(const Accuracy& a, const Accuracy& b);
+
+// Point by point along a. NaN where a value is not finite or b has no such point.
+struct Profile {
+    Unit unit = Unit::newton;
+    std::vector<double> a;  // parameter [unit]
+    std::vector<Accuracy> apart;
+};
+Profile profile_at_equal_parameter(const std::vector<Channel>& channels, const Curve& a,
+                                   const Curve& b, const std::vector<double>& extents = {});
+Profile profile_at_equal_abscissa(const std::vector<Channel>& channels, const Curve& a,
+                                  const Curve& b,
+                                  const Abscissa& by);  // empty without a usable abscissa
+
+// Worst of the profile at equal parameter; NaN unless both curves have the same parameters. With
+// `extents` (tolerance.hpp; infinite: not judged) also of forces and moments.
+Accuracy distance(const std::vector<Channel>& channels, const Curve& a, const Curve& b,
+                  const std::vector<double>& extents = {});
+
+// Uncertainty due to rounding: 16 units of the last place of the largest values. Two references may
+// agree to the last bit by chance; their values, summed over a path, are not more precise than
+// this.
+Accuracy rounding_of(const std::vector<Channel>& channels, const Curve& curve,
+                     const std::vector<double>& extents = {});
+
+}  // namespace elastocheck::compare

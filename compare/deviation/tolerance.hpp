@@ -1,0 +1,52 @@
+// Tolerances of outputs: the limits of their deviations.
+#pragma once
+
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "compare/deviation/agreement.hpp"
+#include "compare/outputs/channels.hpp"
+#include "compare/outputs/curve.hpp"
+
+namespace elastocheck::compare {
+
+// Infinite: not judged.
+struct Tolerance {
+    double mm = std::numeric_limits<double>::infinity();   // of positions
+    double deg = std::numeric_limits<double>::infinity();  // of angles
+    double newton = std::numeric_limits<double>::infinity();
+    double newton_metre = std::numeric_limits<double>::infinity();
+    // Of every output that is neither a position nor an angle (joint forces and moments, drive
+    // forces, rates), as a share of its extent (extents_of): 0.01 is 1 %. Applies to forces and
+    // moments only where `newton` or `newton_metre` is infinite.
+    double share = std::numeric_limits<double>::infinity();
+};
+inline constexpr double default_share = 0.01;
+inline constexpr Tolerance default_tolerance{.mm = 0.01, .deg = 0.001, .share = default_share};
+
+// Parses "0.01mm,0.001deg,1%": a length, an angle and a share, or some of these, in any order; with
+// `forces_too` also a force (N) and a moment (Nm). A share that is not given is default_share;
+// `motion` accepts lengths and angles only, and leaves the share infinite. Throws
+// std::invalid_argument with the allowed forms.
+enum class Asks { motion, shares_too, forces_too };
+Tolerance parse_tolerance(std::string_view text, Asks asks = Asks::motion);
+
+// Whether the output is a position or an angle of the configuration: its limit is a length or an
+// angle.
+bool is_motion(const Channel& channel);
+
+// Extent of every output along a branch, in its unit: the reference of Tolerance::share. With F the
+// largest acting force, L the size, ε k X the rounding of the stiffest element (agreement.hpp):
+//
+//   largest minus smallest value of `truth`; at least a tenth of the largest |value|, for outputs
+//   that hardly change; for a rate at least the largest |value|
+//   for a component of a wrench, the extent of the component with the largest one
+//   at least F / 1000 + 1600 ε k X for a force, L times that for a moment, 0.001 otherwise
+std::vector<double> extents_of(const std::vector<Channel>& channels, const Curve& truth,
+                               const Scale& acts);
+
+// Limit of the deviation of the output, in its unit.
+double limit_of(const Channel& channel, double extent, const Tolerance& tolerance);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,450 @@
+#include "compare/gate/gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "compare/comparison/characteristics.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr int points_per_branch = 11;
+
+// Rounds to nine decimals, so that round-off of a build does not change the text of a baseline.
+// Adding zero turns -0 into 0.
+double rounded(double value) {
+    constexpr double digits = 1e9;  // mm, deg, N, N·m
+    return std::round(value * digits) / digits + 0.0;
+}
+
+auto key(const Series& s) { return std::tie(s.branch, s.quantity, s.channel); }
+
+std::string described(const std::string& branch, Quantity quantity, const std::string& channel) {
+    return fmt::format("branch '{}', {}: {}", branch, name(quantity), channel);
+}
+std::string described(const Series& s) { return described(s.branch, s.quantity, s.channel); }
+
+const Series* find(const Measurement& in, const std::string& branch, Quantity quantity,
+                   const std::string& channel) {
+    for (const auto& s : in.series)
+        if (s.branch == branch && s.quantity == quantity && s.channel == channel) return &s;
+    return nullptr;
+}
+
+const GatedBranch* find(const Measurement& in, const std::string& branch) {
+    for (const auto& b : in.branches)
+        if (b.name == branch) return &b;
+    return nullptr;
+}
+
+bool is_channel(Quantity q) { return q == Quantity::recursive || q == Quantity::equilibrium; }
+bool is_characteristic(Quantity q) {
+    return q == Quantity::characteristic_recursive || q == Quantity::characteristic_equilibrium;
+}
+bool is_compliance(Quantity q) {
+    return q == Quantity::compliance_recursive || q == Quantity::compliance_equilibrium;
+}
+
+// Indices at which a characteristic is kept: the first parameter, the one nearest to 0, the last.
+std::vector<std::size_t> landmarks(const std::vector<double>& a) {
+    const auto nearest = std::ranges::min_element(a, {}, [](double x) { return std::abs(x); });
+    std::vector<std::size_t> at;
+    for (const auto k :
+         {std::size_t{0}, static_cast<std::size_t>(nearest - a.begin()), a.size() - 1})
+        if (at.empty() || at.back() != k) at.push_back(k);
+    return at;
+}
+bool is_deviation(Quantity q) {
+    return q == Quantity::deviation_at_equal_parameter ||
+           q == Quantity::deviation_at_equal_abscissa;
+}
+
+double range(const Series& s) {
+    const auto [low, high] = std::ranges::minmax(s.values);
+    return high - low;
+}
+
+double scale(const Measurement& accepted, const Series& s) {
+    if (is_channel(s.quantity)) return range(s);
+    if (is_characteristic(s.quantity) || is_compliance(s.quantity))
+        return std::abs(
+            *std::ranges::max_element(s.values, {}, [](double v) { return std::abs(v); }));
+    if (!is_deviation(s.quantity)) return std::abs(s.values.front());
+    const Series* curve = find(accepted, s.branch, Quantity::equilibrium, s.channel);
+    return curve != nullptr && !curve->values.empty() ? range(*curve) : 0;
+}
+
+bool all_finite(const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+}
+
+const Allowance* tolerance_of(const Tolerances& tolerances, const Series& s) {
+    auto found = tolerances.find(s.channel);
+    if (found == tolerances.end() && is_characteristic(s.quantity))
+        found = tolerances.find("characteristic");
+    if (found == tolerances.end() && is_compliance(s.quantity))
+        found = tolerances.find("compliance");
+    if (found == tolerances.end()) found = tolerances.find(s.unit);
+    return found == tolerances.end() ? nullptr : &found->second;
+}
+
+bool sane(double bound) { return std::isfinite(bound) && bound >= 0; }
+bool sane(const Allowance* t) { return t != nullptr && sane(t->atol) && sane(t->rtol); }
+
+// Smallest change of a number of the series that an engineer notices: from the baseline, else the
+// default.
+double noticeable(const Baseline& baseline, const Series& s) {
+    static const Tolerances usual = default_tolerances(ToleranceClass::physical);
+    const auto own = baseline.tolerances.find(ToleranceClass::physical);
+    const Allowance* t = own == baseline.tolerances.end() ? nullptr : tolerance_of(own->second, s);
+    if (!sane(t)) t = tolerance_of(usual, s);
+    return t == nullptr ? 0 : t->atol + t->rtol * scale(baseline.accepted, s);
+}
+
+// Forces within the suspension and counters of the solver, in contrast to wheel outputs.
+bool is_inner(const Offence& o) { return o.unit == "N" || o.unit == "N·m" || o.unit == "count"; }
+
+int rank(const Offence& o) {
+    if (o.of_limit) return 0;
+    return (o.noticed() > 1 ? 1 : 3) + (is_inner(o) ? 1 : 0);
+}
+
+// Judges one accepted series against its measurement.
+void judge_series(const Baseline& baseline, const Tolerances& tolerances, const Series& was,
+                  const Measurement& measurement, Verdict& verdict) {
+    const auto cannot = [&](const std::string& why) {
+        verdict.reasons.push_back(described(was) + " " + why);
+    };
+    const Series* is = find(measurement, was.branch, was.quantity, was.channel);
+    if (is == nullptr) return cannot("is in the baseline and was not measured");
+    if (is->unit != was.unit)
+        return cannot(fmt::format("was in {} and is in {}", was.unit, is->unit));
+    if (was.values.empty()) return cannot("has no numbers in the baseline");
+    if (is->values.size() != was.values.size())
+        return cannot(fmt::format("has {} numbers in the baseline, {} were measured",
+                                  was.values.size(), is->values.size()));
+    if (!all_finite(was.values)) return cannot("is not a finite number in the baseline");
+    if (!all_finite(is->values))
+        return cannot("was measured as something that is not a finite number");
+    const GatedBranch* branch = find(baseline.accepted, was.branch);
+    if (is_channel(was.quantity) && (branch == nullptr || branch->a.size() != was.values.size()))
+        return cannot("has not as many numbers as its branch has points");
+    if (is_characteristic(was.quantity) && (branch == nullptr || branch->a.empty() ||
+                                            landmarks(branch->a).size() != was.values.size()))
+        return cannot("has not as many numbers as its branch has landmarks");
+    const Allowance* tolerance = tolerance_of(tolerances, was);
+    if (!sane(tolerance))
+        return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
+
+    const double allowed = tolerance->atol + tolerance->rtol * scale(baseline.accepted, was);
+    for (std::size_t k = 0; k < was.values.size(); ++k) {
+        ++verdict.compared;
+        const double difference = is->values[k] - was.values[k];
+        if (std::isfinite(difference) && std::abs(difference) <= allowed) continue;
+        Offence offence{.branch = was.branch,
+                        .quantity = was.quantity,
+                        .channel = was.channel,
+                        .unit = was.unit,
+                        .was = was.values[k],
+                        .is = is->values[k],
+                        .tolerance = allowed,
+                        .noticeable = noticeable(baseline, was)};
+        if (is_channel(was.quantity)) offence.a = branch->a[k], offence.a_unit = branch->unit;
+        if (is_characteristic(was.quantity))
+            offence.a = branch->a[landmarks(branch->a)[k]], offence.a_unit = branch->unit;
+        verdict.offences.push_back(offence);
+    }
+}
+
+void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& verdict) {
+    bool found = false;
+    for (const auto& s : measurement.series) {
+        if (s.quantity != limit.deviation || s.channel != limit.channel) continue;
+        found = true;
+        if (s.values.size() != 1 || !std::isfinite(s.values.front()) || !sane(limit.max)) {
+            verdict.reasons.push_back("limit on " + described(s) +
+                                      " has nothing finite to compare");
+            continue;
+        }
+        ++verdict.compared;
+        if (s.values.front() <= limit.max) continue;
+        verdict.offences.push_back({.branch = s.branch,
+                                    .quantity = s.quantity,
+                                    .channel = s.channel,
+                                    .unit = s.unit,
+                                    .of_limit = true,
+                                    .was = limit.max,
+                                    .is = s.values.front(),
+                                    .tolerance = limit.max});
+    }
+    if (!found)
+        verdict.reasons.push_back(fmt::format("limit on {}: {}: nothing of that name was measured",
+                                              name(limit.deviation), limit.channel));
+}
+
+std::string described(const GatedBranch& branch) {
+    if (branch.a.empty()) return "nowhere";
+    return fmt::format("{} points, {:g} to {:g} {}", branch.a.size(), branch.a.front(),
+                       branch.a.back(), branch.unit);
+}
+
+// Branches present on both sides at the same parameters. Series of the other branches are not
+// compared, since numbers at other parameters are not comparable.
+std::vector<std::string> common_branches(const Baseline& baseline, const Measurement& measurement,
+                                         Verdict& verdict) {
+    std::vector<std::string> common;
+    const auto cannot = [&](const std::string& branch, const std::string& why) {
+        verdict.reasons.push_back(fmt::format("branch '{}' {}", branch, why));
+    };
+    for (const auto& was : baseline.accepted.branches) {
+        const GatedBranch* is = find(measurement, was.name);
+        if (is == nullptr)
+            cannot(was.name, "is in the baseline and was not measured");
+        else if (is->unit != was.unit)
+            cannot(was.name, fmt::format("is driven in {} and was in {}", is->unit, was.unit));
+        else if (is->a != was.a)
+            cannot(was.name,
+                   fmt::format("is measured elsewhere than the accepted one ({} instead of {})",
+                               described(*is), described(was)));
+        else
+            common.push_back(was.name);
+    }
+    for (const auto& is : measurement.branches)
+        if (find(baseline.accepted, is.name) == nullptr)
+            cannot(is.name, "is new: the baseline does not have it");
+    return common;
+}
+
+// Compliance matrices at the start of the first branch, one series per row.
+void add_compliance(const Model& model, const Comparison& comparison, std::vector<Series>& series) {
+    if (comparison.branches.empty()) return;
+    const auto& branch = comparison.branches.front();
+    for (const auto& [quantity, leg] : {std::pair{Quantity::compliance_recursive, Leg::recursive},
+                                        {Quantity::compliance_equilibrium, Leg::equilibrium}})
+        for (const auto& at : branch.runs[static_cast<std::size_t>(leg)].compliance) {
+            if (at.a != 0) continue;
+            for (const auto& [point, C] :
+                 {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
+                for (Eigen::Index r = 0; r < C->rows(); ++r) {
+                    Series row{branch.branch,
+                               quantity,
+                               answer_name(model, point, r),
+                               r % 6 < 3 ? "mm" : "deg",
+                               {}};
+                    for (Eigen::Index c = 0; c < C->cols(); ++c)
+                        row.values.push_back(rounded(in_table_units(*C, r, c)));
+                    series.push_back(std::move(row));
+                }
+        }
+}
+
+void add_counters(const std::string& branch, Quantity quantity, const LegRun& run,
+                  std::vector<Series>& series) {
+    const auto add = [&](const char* counter, double value) {
+        series.push_back({branch, quantity, counter, "count", {value}});
+    };
+    add("steps", static_cast<double>(run.curve.a.size()) - 1);
+    add("factorisations", static_cast<double>(run.counts.factorisations));
+    add("iterations", static_cast<double>(run.counts.iterations));
+    add("evaluations", static_cast<double>(run.counts.evaluations));
+}
+
+}  // namespace
+
+const char* name(ToleranceClass kind) {
+    switch (kind) {
+        case ToleranceClass::same_build: return "same-build";
+        case ToleranceClass::cross_build: return "cross-build";
+        case ToleranceClass::physical: return "physical";
+    }
+    return "";
+}
+
+const char* name(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::recursive: return "recursive";
+        case Quantity::equilibrium: return "equilibrium";
+        case Quantity::characteristic_recursive: return "characteristic of recursive";
+        case Quantity::characteristic_equilibrium: return "characteristic of equilibrium";
+        case Quantity::compliance_recursive: return "compliance of recursive";
+        case Quantity::compliance_equilibrium: return "compliance of equilibrium";
+        case Quantity::deviation_at_equal_parameter: return "deviation at equal parameter";
+        case Quantity::deviation_at_equal_abscissa: return "deviation at equal abscissa";
+        case Quantity::work_recursive: return "work of recursive";
+        case Quantity::work_equilibrium: return "work of equilibrium";
+        case Quantity::work_energy: return "work of energy";
+    }
+    return "";
+}
+
+const char* name(Judgement judgement) {
+    switch (judgement) {
+        case Judgement::passed: return "passed";
+        case Judgement::failed: return "FAILED";
+        case Judgement::could_not_judge: return "COULD NOT JUDGE";
+    }
+    return "";
+}
+
+double Offence::share() const {
+    const double part = of_limit ? std::abs(is) : std::abs(difference());
+    return tolerance > 0 ? part / tolerance : std::numeric_limits<double>::infinity();
+}
+
+double Offence::noticed() const {
+    if (of_limit) return share();
+    return noticeable > 0 ? std::abs(difference()) / noticeable
+                          : std::numeric_limits<double>::infinity();
+}
+
+bool comes_before(const Offence& a, const Offence& b) {
+    return rank(a) != rank(b) ? rank(a) < rank(b) : a.noticed() > b.noticed();
+}
+
+Judgement Verdict::judgement() const {
+    if (!offences.empty()) return Judgement::failed;
+    return reasons.empty() && compared > 0 ? Judgement::passed : Judgement::could_not_judge;
+}
+
+Tolerances default_tolerances(ToleranceClass kind) {
+    switch (kind) {
+        case ToleranceClass::same_build:  // the last digit of the file
+            return {{"mm", {2e-9, 0}},
+                    {"deg", {2e-9, 0}},
+                    {"N", {2e-9, 0}},
+                    {"N·m", {2e-9, 0}},
+                    {"%", {2e-9, 0}},
+                    {"count", {0, 0}},
+                    {"characteristic", {2e-9, 1e-12}},
+                    {"compliance", {2e-9, 1e-12}}};
+        case ToleranceClass::cross_build:  // five times the worst of tests/gate/README.md
+            return {{"mm", {5e-9, 0}},
+                    {"deg", {5e-9, 0}},
+                    {"N", {7e-8, 0}},
+                    {"N·m", {5e-9, 0}},
+                    // of a cotangent at 2 deg: 5e-9 deg changes it by 800 times as much, in percent
+                    {"%", {2e-5, 0}},
+                    {"count", {1, 0.012}},
+                    {"characteristic", {1e-8, 1e-8}},
+                    {"compliance", {1e-8, 1e-8}}};
+        case ToleranceClass::physical:
+            return {{"mm", {0.01, 1e-3}},
+                    {"deg", {0.001, 1e-3}},
+                    {"N", {1, 1e-3}},
+                    {"N·m", {0.1, 1e-3}},
+                    {"%", {0.5, 1e-3}},
+                    {"count", {2, 0.5}},
+                    {"characteristic", {1e-3, 5e-3}},
+                    {"compliance", {1e-3, 5e-3}}};
+    }
+    return {};
+}
+
+Measurement measure(const Model& model, const Comparison& comparison) {
+    Measurement result;
+    result.scene = model.name;
+    for (const auto& branch : comparison.branches) {
+        for (const auto& reason : branch.inconclusive.texts())
+            result.inconclusive.push_back(fmt::format("branch '{}': {}", branch.branch, reason));
+        const LegRun& recursive = branch.runs[static_cast<std::size_t>(Leg::recursive)];
+        const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
+        const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
+
+        // Range that both runs reached, around their start.
+        const Curve &of_r = recursive.curve, &of_e = equilibrium.curve;
+        const std::size_t before = std::min(of_r.start, of_e.start);
+        const std::size_t points =
+            before + std::min(of_r.a.size() - of_r.start, of_e.a.size() - of_e.start);
+        GatedBranch kept{branch.branch, symbol(branch.unit), {}};
+        std::vector<std::size_t> at;
+        const std::size_t count = std::min<std::size_t>(points, points_per_branch);
+        for (std::size_t k = 0; k < count; ++k)
+            at.push_back(count == 1 ? 0 : (k * (points - 1) + (count - 1) / 2) / (count - 1));
+        for (const std::size_t k : at) kept.a.push_back(rounded(of_e.a[of_e.start - before + k]));
+
+        for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
+            if (!branch.determined[c]) continue;
+            const auto& channel = comparison.channels[c];
+            const std::string unit = symbol(channel.unit);
+            if (std::holds_alternative<Characteristic>(channel.reads)) {
+                for (const auto& [quantity, run] :
+                     {std::pair{Quantity::characteristic_recursive, &recursive},
+                      {Quantity::characteristic_equilibrium, &equilibrium}}) {
+                    Series few{branch.branch, quantity, channel.name, unit, {}};
+                    for (const std::size_t k : landmarks(kept.a))
+                        few.values.push_back(
+                            rounded(run->curve.values[run->curve.start - before + at[k]][c]));
+                    result.series.push_back(std::move(few));
+                }
+                continue;
+            }
+            for (const auto& [quantity, run] : {std::pair{Quantity::recursive, &recursive},
+                                                {Quantity::equilibrium, &equilibrium}}) {
+                Series curve{branch.branch, quantity, channel.name, unit, {}};
+                for (const std::size_t k : at)
+                    curve.values.push_back(
+                        rounded(run->curve.values[run->curve.start - before + k][c]));
+                result.series.push_back(std::move(curve));
+            }
+            for (const auto& [quantity, reading] :
+                 {std::pair{Quantity::deviation_at_equal_parameter,
+                            &branch.deviation.equal_parameter},
+                  {Quantity::deviation_at_equal_abscissa, &branch.deviation.equal_abscissa}})
+                if (c < reading->channels.size())
+                    result.series.push_back({branch.branch,
+                                             quantity,
+                                             channel.name,
+                                             unit,
+                                             {rounded(reading->channels[c].max)}});
+        }
+        add_counters(branch.branch, Quantity::work_recursive, recursive, result.series);
+        add_counters(branch.branch, Quantity::work_equilibrium, equilibrium, result.series);
+        add_counters(branch.branch, Quantity::work_energy, energy, result.series);
+        result.branches.push_back(std::move(kept));
+    }
+    add_compliance(model, comparison, result.series);
+    std::ranges::sort(result.series,
+                      [](const Series& a, const Series& b) { return key(a) < key(b); });
+    return result;
+}
+
+Verdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind) {
+    Verdict verdict;
+    verdict.kind = kind;
+    verdict.reasons = measurement.inconclusive;
+    if (baseline.reason.find_first_not_of(" \t\r\n") == std::string::npos)
+        verdict.reasons.push_back("the baseline gives no reason for its acceptance");
+    if (baseline.accepted.scene != measurement.scene)
+        verdict.reasons.push_back(fmt::format("the baseline is of scene '{}', this is '{}'",
+                                              baseline.accepted.scene, measurement.scene));
+    const auto common = common_branches(baseline, measurement, verdict);
+    // A series of a branch that neither side lists is compared too, so that none is skipped
+    // silently.
+    const auto looked_at = [&](const std::string& branch) {
+        return std::ranges::find(common, branch) != common.end() ||
+               (find(baseline.accepted, branch) == nullptr && find(measurement, branch) == nullptr);
+    };
+
+    const auto tolerances = baseline.tolerances.find(kind);
+    static const Tolerances none;
+    for (const auto& was : baseline.accepted.series)
+        if (looked_at(was.branch))
+            judge_series(baseline,
+                         tolerances == baseline.tolerances.end() ? none : tolerances->second, was,
+                         measurement, verdict);
+    for (const auto& is : measurement.series)
+        if (looked_at(is.branch) &&
+            find(baseline.accepted, is.branch, is.quantity, is.channel) == nullptr)
+            verdict.reasons.push_back(described(is) + " is new: the baseline does not have it");
+    for (const auto& limit : baseline.limits) judge_limit(limit, measurement, verdict);
+    if (verdict.compared == 0) verdict.reasons.emplace_back("nothing was compared");
+
+    std::ranges::stable_sort(verdict.offences, comes_before);
+    return verdict;
+}
+
+}  // namespace elastocheck::compare

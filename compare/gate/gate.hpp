@@ -1,0 +1,151 @@
+// Regression gate: compares the measurement of one run of a scene with its accepted baseline.
+//
+// Both are lists of series of numbers with a key. Every accepted series must be present again, no
+// other series may be present, and every number must lie within its tolerance. A series that cannot
+// be compared is never a pass.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/comparison/compare.hpp"
+
+namespace elastocheck::compare {
+
+// Similarity of the build that made the baseline and the judged build.
+enum class ToleranceClass {
+    same_build,   // same compiler, flags, libraries and CPU: only rounding of the file
+    cross_build,  // any of them differs: round-off, measured over compilers and flags
+    physical,     // other methods or libraries: differences that an engineer would notice
+};
+inline constexpr std::array tolerance_classes{
+    ToleranceClass::same_build, ToleranceClass::cross_build, ToleranceClass::physical};
+const char* name(ToleranceClass kind);  // "same-build", ...
+
+// Quantity of a series on a branch.
+enum class Quantity {
+    recursive,    // a channel of the recursion along the branch
+    equilibrium,  // ... of the equilibrium leg
+    // kinematics and compliance at the start and the ends of the branch, by the recursion
+    characteristic_recursive,
+    characteristic_equilibrium,  // ... by the equilibrium leg
+    // row of the compliance matrix at the start of the first branch, by the recursion
+    compliance_recursive,
+    compliance_equilibrium,
+    // the largest |recursion - equilibrium leg| over all points, one number
+    deviation_at_equal_parameter,
+    deviation_at_equal_abscissa,  // likewise
+    work_recursive,  // counters of a leg: steps, factorisations, iterations, evaluations
+    work_equilibrium,
+    work_energy,
+};
+inline constexpr std::array quantities{Quantity::recursive,
+                                       Quantity::equilibrium,
+                                       Quantity::characteristic_recursive,
+                                       Quantity::characteristic_equilibrium,
+                                       Quantity::compliance_recursive,
+                                       Quantity::compliance_equilibrium,
+                                       Quantity::deviation_at_equal_parameter,
+                                       Quantity::deviation_at_equal_abscissa,
+                                       Quantity::work_recursive,
+                                       Quantity::work_equilibrium,
+                                       Quantity::work_energy};
+// "recursive", "deviation at equal parameter", "work of recursive", ...
+const char* name(Quantity quantity);
+
+struct Series {
+    std::string branch;
+    Quantity quantity = Quantity::recursive;
+    std::string channel;  // or name of the counter
+    std::string unit;     // "mm", "deg", "N", "N·m", "count"
+    // per kept parameter of the branch for a channel; for a characteristic at the first, the one
+    // nearest to 0 and the last; a row of a matrix; else one value
+    std::vector<double> values;
+};
+
+struct GatedBranch {
+    std::string name;
+    std::string unit;       // of the parameter: "N", "mm", ...
+    std::vector<double> a;  // parameters at which channel values are kept
+};
+
+struct Measurement {
+    std::string scene;
+    std::vector<GatedBranch> branches;
+    std::vector<Series> series;  // sorted by branch, quantity, channel
+    // reasons why the run itself is inconclusive, else empty: per branch the worst three and the
+    // number of the others
+    std::vector<std::string> inconclusive;
+};
+
+// Keeps up to eleven evenly spaced points per branch, both ends included. Values are rounded to the
+// digits of a baseline file.
+Measurement measure(const Model& model, const Comparison& comparison);
+
+// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve for a channel; the
+// largest entry for a characteristic or a row of compliances; the range of the equilibrium leg's
+// curve for a deviation; the accepted number for a counter, so that rtol 0.1 is 10 %.
+struct Allowance {
+    double atol = 0, rtol = 0;
+};
+
+// Keys: the channel where listed, else "characteristic", "compliance", else the unit.
+using Tolerances = std::map<std::string, Allowance>;
+Tolerances default_tolerances(ToleranceClass kind);
+
+// Absolute bound on a deviation over every branch, in the channel's unit: it limits the error, not
+// the change.
+struct Limit {
+    Quantity deviation = Quantity::deviation_at_equal_abscissa;
+    std::string channel;
+    double max = 0;
+};
+
+struct Baseline {
+    Measurement accepted;
+    std::map<ToleranceClass, Tolerances> tolerances;
+    std::vector<Limit> limits;
+    std::string reason;  // reason given by the user for the last acceptance
+};
+
+struct Offence {
+    std::string branch;
+    Quantity quantity = Quantity::recursive;
+    std::string channel, unit;
+    std::optional<double> a = {};  // parameter of a channel value, ...
+    std::string a_unit = {};       // ... in the unit of the branch parameter
+    bool of_limit = false;         // an absolute limit is exceeded; `was` is that limit
+    double was = 0, is = 0;        // accepted, measured
+    double tolerance = 0;
+    // tolerance in class `physical`: the smallest change that an engineer notices
+    double noticeable = 0;
+
+    double difference() const { return is - was; }
+    double share() const;    // ratio to the tolerance, or to the limit; infinite for tolerance zero
+    double noticed() const;  // ratio to `noticeable`, or to the limit
+};
+
+// Report order of two offences: exceeded limits first, then changes above `noticeable`, then the
+// others; within each class, wheel outputs before inner forces and counters of work; then the
+// larger ratio to `noticeable`. The ratio to the tolerance does not decide: 0.18 N of a joint
+// reaction may be 10⁸ round-off tolerances and still be irrelevant.
+bool comes_before(const Offence& a, const Offence& b);
+
+enum class Judgement { passed, failed, could_not_judge };
+const char* name(Judgement judgement);  // "passed", "FAILED", "COULD NOT JUDGE"
+
+struct Verdict {
+    ToleranceClass kind = ToleranceClass::same_build;
+    int compared = 0;                  // numbers compared
+    std::vector<Offence> offences;     // in the order of comes_before
+    std::vector<std::string> reasons;  // reasons why all or part of it could not be judged
+
+    // An exceeded limit fails whatever else could not be judged; nothing compared is not a pass.
+    Judgement judgement() const;
+};
+
+Verdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind);
+
+}  // namespace elastocheck::compare

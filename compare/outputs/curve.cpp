@@ -1,0 +1,102 @@
+#include "compare/outputs/curve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace elastocheck::compare {
+namespace {
+
+// A smaller movement is rounding of coordinates in metres.
+constexpr double still = 1e-9;  // [mm], [deg], [N], [N·m]
+
+double range_of(const std::vector<double>& x) {
+    const auto [low, high] = std::ranges::minmax(x);
+    return high - low;
+}
+
+}  // namespace
+
+std::vector<double> Curve::channel(std::size_t c) const {
+    std::vector<double> y;
+    y.reserve(values.size());
+    for (const auto& point : values) y.push_back(point[c]);
+    return y;
+}
+
+void append(Curve& curve, double load, std::vector<double> values) {
+    const double a = in_unit(curve.unit) * load;
+    if (!curve.a.empty() && std::abs(a) < std::abs(curve.a[curve.start]))
+        curve.start = curve.a.size();
+    curve.a.push_back(a);
+    curve.values.push_back(std::move(values));
+}
+
+Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
+            const std::vector<Equilibrium>& points) {
+    Curve result;
+    result.unit = unit_of(branch.unit);
+    for (const auto& point : points) append(result, point.load, evaluate(model, channels, point));
+    return result;
+}
+
+Trend trend(std::span<const double> x) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+        if (!std::isfinite(x[k])) return {Course::not_finite, k};
+    if (x.size() < 2) return {};
+    const auto [low, high] = std::ranges::minmax(x);
+    if (!(high - low > still)) return {Course::still, 0};
+    const bool up = x[1] > x[0];
+    for (std::size_t k = 1; k < x.size(); ++k)
+        if (!(up ? x[k] > x[k - 1] : x[k] < x[k - 1])) return {Course::turning, k - 1};
+    return {up ? Course::rising : Course::falling, 0};
+}
+
+int default_abscissa(std::span<const Channel> channels, const Curve& curve) {
+    int best = -1;
+    double farthest = -1;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const auto* coordinate = std::get_if<Coordinate>(&channels[c].reads);
+        if (coordinate == nullptr) continue;
+        if (!channels[c].main) return static_cast<int>(c);  // travel
+        const auto y = curve.channel(c);
+        const double range = y.empty() ? 0 : range_of(y);
+        if (range > farthest) farthest = range, best = static_cast<int>(c);
+    }
+    return best;
+}
+
+Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a, const Curve& b) {
+    if (channel < 0) return {-1, "the scene has no position to read by"};
+    const Channel& by = channels[static_cast<std::size_t>(channel)];
+    std::string why;
+    Course first = Course::rising;
+    for (const Curve* curve : {&a, &b}) {
+        const auto x = curve->channel(static_cast<std::size_t>(channel));
+        const Trend found = trend(x);
+        switch (found.course) {
+            case Course::rising:
+            case Course::falling: break;
+            case Course::still: why = fmt::format("{} does not move", by.name); break;
+            case Course::turning:
+                why = fmt::format("{} turns back at {:.4g} {} (at {:.4g} {})", by.name,
+                                  curve->a[found.at], symbol(curve->unit), x[found.at],
+                                  symbol(by.unit));
+                break;
+            case Course::not_finite:
+                why = fmt::format("{} is not a number at {:.4g} {}", by.name, curve->a[found.at],
+                                  symbol(curve->unit));
+                break;
+            case Course::too_short: why = "a curve has fewer than two points"; break;
+        }
+        if (!why.empty()) return {channel, why};
+        if (curve == &a) first = found.course;
+        if (curve == &b && found.course != first)
+            return {channel, fmt::format("{} goes opposite ways", by.name)};
+    }
+    return {channel, ""};
+}
+
+}  // namespace elastocheck::compare

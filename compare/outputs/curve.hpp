@@ -1,0 +1,49 @@
+// Output curves of one leg along one branch, and the channels that can serve as abscissa.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/outputs/channels.hpp"
+
+namespace elastocheck::compare {
+
+struct Curve {
+    Unit unit = Unit::newton;                 // of the parameter
+    std::vector<double> a;                    // [unit], in the order of the points
+    std::size_t start = 0;                    // point at a = 0
+    std::vector<std::vector<double>> values;  // [point][channel]
+
+    std::vector<double> channel(std::size_t c) const;
+};
+
+// Appends one point; `load` in SI.
+void append(Curve& curve, double load, std::vector<double> values);
+
+Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
+            const std::vector<Equilibrium>& points);
+
+// Direction of a sequence. Only a rising or falling sequence can be inverted.
+enum class Course { rising, falling, still, turning, not_finite, too_short };
+struct Trend {
+    Course course = Course::too_short;
+    std::size_t at = 0;  // index where it first reverses, or is not finite
+    bool monotonic() const { return course == Course::rising || course == Course::falling; }
+};
+Trend trend(std::span<const double> x);
+
+// Abscissa of a comparison other than the parameter: a channel that is monotonic on both curves.
+struct Abscissa {
+    int channel = -1;  // -1: there is none
+    // reason why not, "travel turns back at 1230 N (at 35.2 mm)", "travel does not move"; empty if
+    // usable
+    std::string why_not;
+};
+// Default abscissa: the first wheel's travel; without a wheel the main position channel with the
+// largest range; -1 without a position.
+int default_abscissa(std::span<const Channel> channels, const Curve& curve);
+// Whether both curves are monotonic in this channel.
+Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a, const Curve& b);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,202 @@
+#include "compare/outputs/deformation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "compare/outputs/channels.hpp"
+#include "compare/outputs/positions.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Vector3d rotation_vector(const Eigen::Quaterniond& B) {
+    const Eigen::AngleAxisd turn(B);  // the shorter rotation
+    return turn.angle() * turn.axis();
+}
+
+// The three angles θ of B. With B = R_x R_y R_z its last column is
+// (sin θ_y, -sin θ_x cos θ_y, cos θ_x cos θ_y), its first row
+// (cos θ_y cos θ_z, -cos θ_y sin θ_z, sin θ_y).
+Vector3d angles(const Eigen::Quaterniond& B, Formulation::Angles kind) {
+    const Matrix3d R = B.toRotationMatrix();
+    switch (kind) {
+        case Formulation::Angles::rotation_vector: return rotation_vector(B);
+        case Formulation::Angles::cardan:
+            return {std::atan2(-R(1, 2), R(2, 2)),
+                    std::atan2(R(0, 2), std::hypot(R(0, 0), R(0, 1))),
+                    std::atan2(-R(0, 1), R(0, 0))};
+        case Formulation::Angles::projected:
+            return {std::atan2(-R(1, 2), R(2, 2)), std::atan2(R(0, 2), R(2, 2)),
+                    std::atan2(R(1, 0), R(0, 0))};
+    }
+    return Vector3d::Constant(std::nan(""));
+}
+
+// Piece of the curve that contains x, and x relative to its knot.
+std::pair<const std::array<double, 4>*, double> piece_at(const elastocheck::Curve& curve,
+                                                         double x) {
+    const auto behind =
+        static_cast<std::size_t>(std::ranges::upper_bound(curve.knots, x) - curve.knots.begin());
+    return {&curve.pieces[behind], x - curve.knots[behind > 0 ? behind - 1 : 0]};
+}
+
+double slope(const std::array<double, 4>& c, double h) {
+    return c[1] + h * (2 * c[2] + h * 3 * c[3]);
+}
+
+// The end of the table that x exceeds, or NaN.
+double end_passed(const ScalarLaw& law, double x) {
+    const auto* curve = std::get_if<elastocheck::Curve>(&law);
+    if (curve == nullptr || curve->known_outside) return std::nan("");
+    if (x < curve->knots.front()) return curve->knots.front();
+    if (x > curve->knots.back()) return curve->knots.back();
+    return std::nan("");
+}
+
+constexpr double at_a_knot = 1e-9;    // [m, rad], larger than the error of a state
+constexpr double slopes_jump = 1e-6;  // of the steeper slope: beyond rounding
+
+bool is_corner(const ScalarLaw& law, double x) {
+    const auto* curve = std::get_if<elastocheck::Curve>(&law);
+    if (curve == nullptr) return false;
+    const auto& knots = curve->knots;
+    const auto near =
+        static_cast<std::size_t>(std::ranges::lower_bound(knots, x - at_a_knot) - knots.begin());
+    if (near == knots.size() || knots[near] > x + at_a_knot) return false;
+    const double h = near == 0 ? 0 : knots[near] - knots[near - 1];
+    const double before = slope(curve->pieces[near], h), behind = slope(curve->pieces[near + 1], 0);
+    return std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind));
+}
+
+constexpr std::array axes{"x", "y", "z"};
+
+std::string told(const std::string& what, double x, double end, Unit unit) {
+    return fmt::format("{} is deformed by {:.6g} {}, and its curve ends at {:.6g} {}", what,
+                       in_unit(unit) * x, symbol(unit), in_unit(unit) * end, symbol(unit));
+}
+
+}  // namespace
+
+double deformation(const AxialSpring& spring, std::size_t element, const Branch& branch,
+                   const Equilibrium& state) {
+    double free_length = spring.free_length;
+    for (const auto& driver : branch.drivers)
+        if (const auto* moved = std::get_if<FreeLength>(&driver.what);
+            moved != nullptr && moved->elastic == static_cast<int>(element))
+            free_length += driver.start + driver.rate * state.load;
+    return (position(state.poses, spring.j) - position(state.poses, spring.i)).norm() - free_length;
+}
+
+Vector6 deformation(const Bushing& bushing, const Equilibrium& state) {
+    const Eigen::Quaterniond A_i = pose(state.poses, bushing.i.body).p * bushing.i.A_local,
+                             A_j = pose(state.poses, bushing.j.body).p * bushing.j.A_local;
+    const Eigen::Quaterniond B = A_i.conjugate() * A_j;
+    Vector3d d = A_i.conjugate() * (position(state.poses, bushing.j.body, bushing.j.s_local) -
+                                    position(state.poses, bushing.i.body, bushing.i.s_local));
+    if (bushing.formulation.frame == Formulation::Frame::middle) {
+        const Vector3d theta = rotation_vector(B);  // A_f = A_i B^½
+        d = Eigen::AngleAxisd(-theta.norm() / 2, theta.stableNormalized()) * d;
+    }
+    Vector6 e;
+    e << d, angles(B, bushing.formulation.angles);
+    return e - bushing.undeformed;
+}
+
+double force(const ScalarLaw& law, double x) {
+    return std::visit(overloaded{[&](const LinearRate& u) { return u.k * x; },
+                                 [&](const elastocheck::Curve& u) {
+                                     const auto [c, h] = piece_at(u, x);
+                                     return (*c)[0] + h * ((*c)[1] + h * ((*c)[2] + h * (*c)[3]));
+                                 }},
+                      law);
+}
+
+double steepest(const ScalarLaw& law) {
+    return std::visit(
+        overloaded{[](const LinearRate& u) { return u.k; },
+                   [](const elastocheck::Curve& u) {
+                       double k = 0;
+                       for (std::size_t n = 0; n < u.pieces.size(); ++n) {
+                           const auto& c = u.pieces[n];
+                           k = std::max(k,
+                                        std::abs(c[1]));  // slope at the knot; constant if linear
+                           if (n == 0 || n == u.knots.size()) continue;
+                           const double h = u.knots[n] - u.knots[n - 1], top = -c[2] / (3 * c[3]);
+                           k = std::max(k, std::abs(slope(c, h)));
+                           if (top > 0 && top < h) k = std::max(k, std::abs(slope(c, top)));
+                       }
+                       return k;
+                   }},
+        law);
+}
+
+bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state) {
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const bool found = std::visit(
+            overloaded{[&](const AxialSpring& e) {
+                           return std::holds_alternative<elastocheck::Curve>(e.law) &&
+                                  is_corner(e.law, deformation(e, k, branch, state));
+                       },
+                       [&](const Bushing& e) {
+                           const auto* law = std::get_if<PerAxis>(&e.law);
+                           if (law == nullptr) return false;
+                           const Vector6 x = deformation(e, state);
+                           for (std::size_t axis = 0; axis < 6; ++axis)
+                               if (is_corner(law->axis[axis], x[static_cast<Eigen::Index>(axis)]))
+                                   return true;
+                           return false;
+                       }},
+            model.elastics[k].kind);
+        if (found) return true;
+    }
+    return false;
+}
+
+std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state) {
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const Elastic& elastic = model.elastics[k];
+        std::string found = std::visit(
+            overloaded{
+                [&](const AxialSpring& e) -> std::string {
+                    if (std::holds_alternative<LinearRate>(e.law)) return {};
+                    const double x = deformation(e, k, branch, state), end = end_passed(e.law, x);
+                    if (std::isnan(end)) return {};
+                    return told(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm);
+                },
+                [&](const Bushing& e) -> std::string {
+                    const auto* law = std::get_if<PerAxis>(&e.law);
+                    if (law == nullptr) return {};
+                    const Vector6 x = deformation(e, state);
+                    for (std::size_t axis = 0; axis < 6; ++axis) {
+                        const double value = x[static_cast<Eigen::Index>(axis)],
+                                     end = end_passed(law->axis[axis], value);
+                        if (std::isnan(end)) continue;
+                        return told(fmt::format("bushing '{}' {} {}", elastic.name,
+                                                axis < 3 ? "along" : "about", axes[axis % 3]),
+                                    value, end, axis < 3 ? Unit::mm : Unit::deg);
+                    }
+                    return {};
+                }},
+            elastic.kind);
+        if (!found.empty()) return found;
+    }
+    return {};
+}
+
+std::string ends_at_table(const Model& model, const Branch& branch, const Equilibrium& state) {
+    const std::string where = outside_table(model, branch, state);
+    if (where.empty()) return {};
+    const Unit unit = unit_of(branch.unit);
+    return fmt::format("branch '{}' at {:.6g} {}: {}", branch.name, in_unit(unit) * state.load,
+                       symbol(unit), where);
+}
+
+}  // namespace elastocheck::compare

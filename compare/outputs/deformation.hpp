@@ -1,0 +1,39 @@
+// Deformation and force of the elastic elements in a state: compare/'s own evaluation, used for
+// scales and ranges, not for a solution.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
+
+namespace elastocheck::compare {
+
+// ℓ - ℓ₀ [m], with the branch's part of ℓ₀ at state.load; `element` is the position in
+// Model::elastics.
+double deformation(const AxialSpring& spring, std::size_t element, const Branch& branch,
+                   const Equilibrium& state);
+
+// e - e₀ = (d, θ) - e₀ [m, rad], in the frame and angles of the bushing's formulation, frame on i
+// or in the middle. Pre: frame not on j; compile() exchanges the markers of such a bushing.
+Vector6 deformation(const Bushing& bushing, const Equilibrium& state);
+
+// f(x) = u'(x), and the largest |f'| over the whole law.
+double force(const ScalarLaw& law, double x);
+double steepest(const ScalarLaw& law);
+
+// Whether the deformation of an element is, to 1e-9 m or rad, at a knot where the slope of its law
+// jumps: the tangent stiffness of the model then differs between the two sides.
+bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state);
+
+// First element that is deformed beyond the end of a curve that is not extrapolated
+// (Curve::known_outside), with its axis and value: "spring 'coil' is deformed by 61.2 mm, and its
+// curve ends at 60 mm". Empty where there is none.
+std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state);
+
+// The same message with the position on the branch: the detail of a path that ends before this
+// state.
+std::string ends_at_table(const Model& model, const Branch& branch, const Equilibrium& state);
+
+}  // namespace elastocheck::compare

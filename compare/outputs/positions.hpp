@@ -1,0 +1,23 @@
+// Positions of bodies and points in a state, as computed by compare/.
+#pragma once
+
+#include <vector>
+
+#include "elastocheck/mechanism.hpp"
+
+namespace elastocheck::compare {
+
+inline const Pose& pose(const std::vector<Pose>& poses, BodyId body) {
+    static const Pose at_rest;
+    return body == ground ? at_rest : poses[static_cast<std::size_t>(body)];
+}
+
+inline Eigen::Vector3d position(const std::vector<Pose>& poses, BodyId body,
+                                const Eigen::Vector3d& s_local) {
+    return pose(poses, body).r + pose(poses, body).p * s_local;
+}
+inline Eigen::Vector3d position(const std::vector<Pose>& poses, const Point& point) {
+    return position(poses, point.body, point.s_local);
+}
+
+}  // namespace elastocheck::compare

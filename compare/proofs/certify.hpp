@@ -1,0 +1,62 @@
+// Interval proofs (reference/certificate) of the points of a path, and of the path as one curve.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/comparison/legs.hpp"
+#include "compare/deviation/proof.hpp"
+#include "compare/studies/work_precision.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
+#include "reference/certificate/certificate.hpp"
+
+namespace elastocheck::compare {
+
+using reference::certificate::LimitPoint;
+using reference::certificate::Tube;
+
+// Default accuracy that is to be proved.
+inline constexpr const char* claimed_accuracy = "1e-6mm,1e-6deg";
+// Parses "1e-8mm"; a quantity that is not given takes its default. Throws std::invalid_argument as
+// parse_tolerance does.
+Tolerance claim(std::string_view text);
+
+// One solver along one side of a branch.
+struct CertifiedWay {
+    std::string branch;        // of the branch side
+    Unit unit = Unit::newton;  // of its parameter
+    double to = 0;             // end of the branch side, in that unit
+    std::string solver;        // "equilibrium", "energy", or a method of the recursion
+    Outcome outcome = Outcome::converged;
+    std::string detail = {};
+    Tally tally = {};
+    std::optional<Tube> curve = {};        // of the equilibrium leg
+    std::optional<LimitPoint> limit = {};  // where the path ends in a limit point
+};
+
+struct CertifyOptions {
+    std::vector<SolverSettings> solvers;  // empty: both references and the series
+    Tolerance tolerance;
+    // least number of points per branch side besides the start, as far as it has as many steps
+    int points = 20;
+    std::function<void(std::string_view)> progress = {};
+};
+
+struct CertifyStudy {
+    Tolerance tolerance;
+    std::vector<CertifiedWay> ways;
+
+    int points() const;
+    int proved() const;
+    bool excluded() const;  // some point is proved wrong
+    // Every solver reached the end or a proved limit point, and every point is proved.
+    bool conclusive() const;
+};
+
+CertifyStudy certify(const Model& model, const CertifyOptions& options);
+
+}  // namespace elastocheck::compare

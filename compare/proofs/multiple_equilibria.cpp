@@ -1,0 +1,241 @@
+#include "compare/proofs/multiple_equilibria.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <random>
+#include <ranges>
+#include <span>
+#include <utility>
+
+#include "compare/comparison/legs.hpp"
+#include "reference/equilibrium/continuation/from_start.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using reference::certificate::Answer;
+
+// Two states are the same within this share of the scene's size, or of a radian.
+constexpr double one_state = 1e-6;
+
+// Distance of a start along a soft motion, as a share of the scene's size, or of a radian.
+constexpr std::array along{0.03, 0.3, 1.0};
+
+// Larger models are not searched: `beside` has no motions for them, and the many starts take long.
+constexpr std::size_t most_bodies = 100;
+
+// Attempts from one start, each with the newly found states deflated.
+constexpr int tries = 4;
+
+// The branch side that contains a.
+BranchSide way_to(const Model& model, const Branch& branch, double a) {
+    auto all = sides_of(model, branch);
+    const auto there =
+        std::ranges::find_if(all, [&](const BranchSide& way) { return way.branch.to * a > 0; });
+    return there != all.end() ? *there : all.back();
+}
+
+// Uniform in [-1, 1], reproducible with any standard library.
+double draw(std::minstd_rand& random) { return 2 * static_cast<double>(random()) / 2147483647 - 1; }
+
+std::vector<Pose> drawn(const Model& model) {
+    std::vector<Pose> poses;
+    for (const auto& body : model.bodies) poses.push_back(body.design);
+    return poses;
+}
+
+// Mirrors every body's displacement about its design position.
+std::vector<Pose> mirrored(const Model& model, const std::vector<Pose>& poses) {
+    std::vector<Pose> other;
+    for (std::size_t b = 0; b < poses.size(); ++b) {
+        const Pose& design = model.bodies[b].design;
+        const Quaterniond turn = poses[b].p * design.p.conjugate();
+        other.push_back({2 * design.r - poses[b].r, turn.conjugate() * design.p});
+    }
+    return other;
+}
+
+std::vector<Pose> at_random(std::vector<Pose> poses, double size, std::minstd_rand& random) {
+    const double share = 0.5 * (1 + draw(random));  // of the size, and of a radian
+    for (Pose& pose : poses) {
+        const double x = draw(random), y = draw(random), z = draw(random);
+        const double u = draw(random), v = draw(random), w = draw(random);
+        pose.r += share * size * Vector3d(x, y, z);
+        pose.p = (Quaterniond(1, share * u, share * v, share * w) * pose.p).normalized();
+    }
+    return poses;
+}
+
+void measure(const Model& model, const std::vector<Pose>& from, FoundEquilibrium& found) {
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const double length = (found.state.poses[b].r - from[b].r).norm(),
+                     angle = found.state.poses[b].p.angularDistance(from[b].p);
+        if (length > found.length || found.body.empty())
+            found.length = length, found.body = model.bodies[b].name;
+        found.angle = std::max(found.angle, angle);
+    }
+}
+
+// Whether the boxes of two proofs are disjoint: some body's poses are separated by more than both
+// bounds.
+bool are_two(const FoundEquilibrium& a, const FoundEquilibrium& b) {
+    for (std::size_t k = 0; k < a.state.poses.size(); ++k) {
+        const Pose &p = a.state.poses[k], &q = b.state.poses[k];
+        if ((p.r - q.r).norm() > a.proof.error.length + b.proof.error.length) return true;
+        if (p.p.angularDistance(q.p) > a.proof.error.angle + b.proof.error.angle) return true;
+    }
+    return false;
+}
+
+// Whether a joint is assembled in reverse. Two perpendicular directions u_i ⟂ v_j, w_j keep the
+// axis u_i along ±v_j × w_j, and three fix the rotation up to half turns; the design position
+// selects the sign.
+bool is_other_way_round(const Model& model, const Equilibrium& state) {
+    const auto axes = [&](BodyId body, bool drawn) {
+        if (body == ground) return Quaterniond::Identity();
+        const auto b = static_cast<std::size_t>(body);
+        return drawn ? model.bodies[b].design.p : state.poses[b].p;
+    };
+    std::vector<std::vector<const PerpendicularDirections*>> held(model.joints.size());
+    for (const auto& constraint : model.constraints)
+        if (const auto* row = std::get_if<PerpendicularDirections>(&constraint.kind))
+            held[static_cast<std::size_t>(constraint.joint)].push_back(row);
+    for (const auto& rows : held) {
+        if (rows.size() < 2) continue;
+        const BodyId i = rows[0]->i.body, j = rows[0]->j.body;
+        const Quaterniond drawn = axes(j, true).conjugate() * axes(i, true),
+                          now = axes(j, false).conjugate() * axes(i, false);
+        if (rows.size() > 2 ? now.angularDistance(drawn) > 1.5 : [&] {
+                const Vector3d across = rows[0]->j.u_local.cross(rows[1]->j.u_local),
+                               &u = rows[0]->i.u_local;
+                return (drawn * u).dot(across) * (now * u).dot(across) < 0;
+            }())
+            return true;
+    }
+    return false;
+}
+
+std::string meaning_of(const AllEquilibria& all, const FoundEquilibrium& one) {
+    const std::string away = fmt::format("{:.4g} mm away ('{}')", 1e3 * one.length, one.body);
+    if (one.on_branch)
+        return one.stable ? "the branch as it is walked"
+                          : "on the branch as it is walked, and unstable there";
+    if (!all.begins)
+        return fmt::format("{}, {} from the drawing, from which no branch begins",
+                           one.stable ? "stable" : "unstable", away);
+    if (!one.stable)
+        return fmt::format("unstable, {}: what is pushed past it does not come back", away);
+    if (all.outcome == Outcome::converged)
+        return fmt::format("another stable equilibrium, {}: it can snap over to it", away);
+    return fmt::format("stable, {} from where the branch ends: it may {} it there", away,
+                       all.outcome == Outcome::limit_point ? "snap over to" : "go over to");
+}
+
+}  // namespace
+
+int AllEquilibria::stable() const {
+    return static_cast<int>(std::ranges::count(list, true, &FoundEquilibrium::stable));
+}
+
+AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a,
+                              const FindOptions& options) {
+    namespace leg = reference::equilibrium;
+    const BranchSide way = way_to(model, branch, a);
+    AllEquilibria all{branch.name, unit_of(branch.unit), a};
+    const auto say = [&](const std::string& what) {
+        if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what));
+    };
+
+    if (model.bodies.size() > most_bodies) {
+        all.outcome = Outcome::too_large;
+        all.detail = fmt::format("{} bodies, equilibria are searched for up to {}",
+                                 model.bodies.size(), most_bodies);
+        return all;
+    }
+
+    // The equilibria on the branch as it is traced.
+    say("the branch");
+    std::vector<double> values;
+    constexpr int pieces = 8;
+    for (int k = 0; k <= pieces; ++k) values.push_back(a * k / pieces);
+    EquilibriumPath path = leg::solve(way.model, way.branch, values);
+    all.outcome = path.outcome, all.detail = path.detail;
+    const bool arrives = path.outcome == Outcome::converged;
+    std::vector<Equilibrium> known;
+
+    const auto is_known = [&](const Equilibrium& state) {
+        return std::ranges::any_of(known, [&](const Equilibrium& other) {
+            return leg::apart(way.model, way.branch, other, state) <= one_state;
+        });
+    };
+    const std::vector<Pose> reached =
+        path.points.empty() ? drawn(way.model) : path.points.back().poses;
+    std::deque<std::vector<Pose>> starts;
+    const auto add = [&](const leg::FromStart& found, bool on_branch) {
+        if (found.outcome != Outcome::converged || is_known(found.state)) return;
+        known.push_back(found.state);
+        if (is_other_way_round(way.model, found.state)) {
+            ++all.other_way_round;
+            return;
+        }
+        bool over = false;
+        for (std::size_t b = 0; b < reached.size(); ++b)
+            over = over || found.state.poses[b].p.angularDistance(reached[b].p) > options.turn;
+        if (over && !on_branch) {
+            ++all.turned_over;
+            return;
+        }
+        FoundEquilibrium one{found.state, {}, found.stable, found.stiffness, on_branch};
+        all.list.push_back(std::move(one));
+        for (auto& start : leg::beside(way.model, way.branch, found.state, options.motions, along))
+            starts.push_back(std::move(start));
+        say(fmt::format("{} found", known.size()));
+    };
+    if (arrives) add(leg::solve_from(way.model, way.branch, a, path.points.back().poses), true);
+    for (auto point = path.points.rbegin(); point != path.points.rend(); ++point) {
+        starts.push_back(point->poses);
+        starts.push_back(mirrored(way.model, point->poses));
+    }
+    starts.push_back(drawn(way.model));
+    const double size = scale_of(way.model, way.branch, path.points).length;
+    std::minstd_rand random(static_cast<unsigned>(options.seed));
+
+    for (int k = 0; k < options.at_random; ++k) starts.push_back(at_random(reached, size, random));
+    for (; !starts.empty(); starts.pop_front()) {
+        const auto start = starts.front();
+        // The first attempt is without deflation, which lengthens steps, possibly across the knot
+        // of a stop and away.
+        for (int k = 0; k < tries; ++k) {
+            const std::size_t before = known.size();
+            ++all.starts;
+            const std::span<const Equilibrium> away_from(known.data(), k == 0 ? 0 : known.size());
+            add(leg::solve_from(way.model, way.branch, a, start, away_from), false);
+            if (k > 0 && known.size() == before) break;
+        }
+    }
+
+    all.begins = !path.points.empty();
+    all.proved = !all.list.empty();
+    for (auto& one : all.list) {
+        say("proof");
+        one.proof = reference::certificate::certify(way.model, way.branch, one.state);
+        all.proved &= one.proof.answer == Answer::proved;
+        measure(way.model, reached, one);
+        one.meaning = meaning_of(all, one);
+    }
+    for (std::size_t i = 0; i < all.list.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) all.proved &= are_two(all.list[i], all.list[j]);
+    std::ranges::stable_sort(all.list, [](const auto& one, const auto& other) {
+        return std::pair(!one.on_branch, one.length) < std::pair(!other.on_branch, other.length);
+    });
+    say("");
+    return all;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,73 @@
+// Multiple equilibria at one value of a branch parameter: multi-start search with deflation, each
+// equilibrium proved by interval arithmetic.
+//
+// A branch is one curve. Other equilibria may exist at its end and beside it: at snap-through a
+// suspension has two stable equilibria at one load and an unstable one between them. The
+// equilibrium leg starts from the points of the branch, from both sides of every equilibrium along
+// its softest motions, from the mirror image of the branch's displacement, and from random poses.
+// Deflation removes the known equilibria from the equations, so that Newton's method converges to
+// others. Every listed equilibrium is proved; completeness of the list is not claimed.
+//
+// The constraints of a joint also hold with an axis or a slide reversed by half a turn. Such
+// assemblies are not built: these states are counted and left out. So are states with a body turned
+// over, of which rigid bodies on springs have hundreds.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/outputs/curve.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
+#include "reference/certificate/certificate.hpp"
+
+namespace elastocheck::compare {
+
+struct FindOptions {
+    // [rad] states with a body rotated further than this are left out
+    double turn = 1.5707963267948966;
+    int at_random = 24;      // number of random poses
+    int motions = 3;         // number of softest motions tried per equilibrium
+    unsigned long seed = 1;  // of the random poses
+    std::function<void(std::string_view)> progress = {};
+};
+
+struct FoundEquilibrium {
+    Equilibrium state;
+    reference::certificate::Certificate proof;
+    bool stable = false;  // by the sign of its smallest stiffness
+    // smallest stiffness of the motions that are free and resisted, scaled by the leg
+    double stiffness = 0;
+    bool on_branch = false;  // lies on the branch as it is continued from the design position
+    // Largest displacement of any body from the branch's own equilibrium; from the last one before
+    // the branch's end; or, if no branch starts, from the design position.
+    double length = 0;      // [m]
+    double angle = 0;       // [rad]
+    std::string body = {};  // body with that displacement
+    std::string meaning = {};
+};
+
+struct AllEquilibria {
+    std::string branch;
+    Unit unit = Unit::newton;
+    double a = 0;                          // SI
+    Outcome outcome = Outcome::converged;  // outcome of the equilibrium leg on the branch up to a
+    std::string detail = {};
+    bool begins = true;  // the first point of the branch is a stable equilibrium
+    std::vector<FoundEquilibrium> list = {};  // the branch's own first, then by distance
+    int other_way_round = 0;                  // equilibria with a reversed joint: not in the list
+    // equilibria with a body rotated by more than FindOptions::turn: not in the list
+    int turned_over = 0;
+    int starts = 0;       // number of start poses
+    bool proved = false;  // every equilibrium is proved, and every two are proved distinct
+
+    int stable() const;
+};
+
+// Thread-safe.
+AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a,
+                              const FindOptions& options = {});
+
+}  // namespace elastocheck::compare

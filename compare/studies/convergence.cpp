@@ -1,0 +1,298 @@
+#include "compare/studies/convergence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <valarray>
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = StepConvergence::nan;
+using Levels = std::span<const Level>;
+
+void check_steps(Levels levels) {
+    for (std::size_t k = 0; k < levels.size(); ++k)
+        if (levels[k].steps <= 0 || (k > 0 && levels[k].steps <= levels[k - 1].steps))
+            throw std::invalid_argument("step counts must be positive and strictly increasing");
+}
+
+using Numbers = std::valarray<double>;
+double dot(const Numbers& a, const Numbers& b) { return (a * b).sum(); }
+double mean(const Numbers& a) { return a.sum() / static_cast<double>(a.size()); }
+
+bool all_finite(Levels levels) {
+    return std::all_of(levels.begin(), levels.end(), [](const Level& level) {
+        return std::isfinite(level.steps) && std::isfinite(level.value);
+    });
+}
+
+double spread(Levels levels) {
+    const auto [low, high] =
+        std::minmax_element(levels.begin(), levels.end(),
+                            [](const Level& a, const Level& b) { return a.value < b.value; });
+    return high->value - low->value;
+}
+
+// ---- Fit
+//
+// With x = h / h_finest >= 1 and l = ln x the law value = L + C h^p is written
+//
+//     value = a + b φ,   φ = (x^p - 1) / p,   L = a - b/p,   C x^p = (b/p) x^p,
+//
+// which is regular at p = 0 (φ = l: logarithmic drift) and continues to p < 0 (divergence), so the
+// order keeps its sign. For given p the fit is linear (variable projection), so only p is searched:
+//
+//     R(p) = Σ r²,   r = value - a - b φ,     dR/dp = -2 b Σ r ψ,   ψ = ∂φ/∂p = (l x^p - φ) / p,
+//
+// because Σ r = Σ r φ = 0. With ψ⊥ the part of ψ orthogonal to 1 and φ, the standard error of p is
+// σ / (|b| |ψ⊥|). That of L: at given p, the one of a straight line at φ = -1/p, plus the part of p
+// through dL/dp.
+struct Line {
+    double limit = 0, C = 0;                    // C: error of the finest level
+    double R = 0, slope = 0;                    // slope: dR/dp, but for a factor 2
+    double p_variance = 0, limit_variance = 0;  // for σ = 1; limit_variance at given p
+};
+
+Line line(Levels levels, double p) {
+    const std::size_t n = levels.size();
+    Numbers phi(n), psi(n), value(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        const double l = std::log(levels.back().steps / levels[k].steps);
+        phi[k] = std::abs(p) < 1e-9 ? l : std::expm1(p * l) / p;
+        psi[k] =
+            std::abs(p) < 1e-4 ? l * l * (0.5 + p * l / 3) : (l * std::exp(p * l) - phi[k]) / p;
+        value[k] = levels[k].value;
+    }
+    const double phi_mean = mean(phi), value_mean = mean(value);
+    phi -= phi_mean;
+    const double b = dot(value - value_mean, phi) / dot(phi, phi);
+    const Numbers r = value - value_mean - b * phi;
+    psi -= mean(psi);
+    psi -= dot(psi, phi) / dot(phi, phi) * phi;
+    return {.limit = value_mean - b * (phi_mean + 1 / p),
+            .C = b / p,
+            .R = dot(r, r),
+            .slope = -b * dot(r, psi),
+            .p_variance = 1 / (b * b * dot(psi, psi)),
+            .limit_variance =
+                1 / static_cast<double>(n) + std::pow(phi_mean + 1 / p, 2) / dot(phi, phi)};
+}
+
+struct Fit {
+    double p = nan, limit = nan, C = nan;                  // C: error of the finest level
+    double sigma = nan, p_error = nan, limit_error = nan;  // standard errors; NaN with three levels
+};
+constexpr double lowest = -2, highest = 10;
+
+Fit fit(Levels levels) {
+    constexpr int cells = 240;
+    const auto grid = [](int k) { return lowest + (highest - lowest) * k / cells; };
+    int best = 0;
+    double least = line(levels, grid(0)).R;
+    for (int k = 1; k <= cells; ++k)
+        if (const double R = line(levels, grid(k)).R; R < least) best = k, least = R;
+    double low = grid(std::max(best - 1, 0)), high = grid(std::min(best + 1, cells));
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = (low + high) / 2;
+        (line(levels, middle).slope < 0 ? low : high) = middle;
+    }
+    Fit result;
+    result.p = (low + high) / 2;
+    const Line at = line(levels, result.p);
+    result.limit = at.limit;
+    result.C = at.C;
+    if (levels.size() < 4) return result;
+    result.sigma = std::sqrt(at.R / static_cast<double>(levels.size() - 3));
+    result.p_error = result.sigma * std::sqrt(at.p_variance);
+    const double delta = 1e-3 * result.p;
+    const double dL_dp =
+        (line(levels, result.p + delta).limit - line(levels, result.p - delta).limit) / (2 * delta);
+    result.limit_error =
+        std::hypot(result.sigma * std::sqrt(at.limit_variance), dL_dp * result.p_error);
+    return result;
+}
+
+// ---- Behaviour and window
+
+// Under a law L + C h^p the difference per unit of ln h falls with refinement exactly if p > 0, in
+// any ratio of steps. True if it grows by more than the floor explains from levels k, k+1 to k+1,
+// k+2.
+bool grows(Levels levels, std::size_t k, double floor) {
+    const auto difference = [&](std::size_t j) {
+        return std::abs(levels[j + 1].value - levels[j].value);
+    };
+    const auto stretch = [&](std::size_t j) {
+        return std::log(levels[j + 1].steps / levels[j].steps);
+    };
+    return (difference(k + 1) - floor) / stretch(k + 1) > (difference(k) + floor) / stretch(k);
+}
+
+// First level of the monotonic stretch that ends at the finest level, and the number of turns
+// before it.
+struct Monotone {
+    std::size_t first = 0;
+    int turns = 0;
+};
+
+Monotone monotone_end(Levels levels, double floor) {
+    Monotone result;
+    double last = 0;
+    for (std::size_t k = 0; k + 1 < levels.size(); ++k) {
+        const double difference = levels[k + 1].value - levels[k].value;
+        if (std::abs(difference) <= floor) continue;
+        if (last * difference < 0) result = {k, result.turns + 1};
+        last = std::copysign(1.0, difference);
+    }
+    return result;
+}
+
+// Excludes coarse levels that are not yet asymptotic, as long as each excluded level at least
+// halves the scatter about the law, four levels remain (three always fit) and the floor does not
+// explain the scatter.
+std::size_t asymptotic_start(Levels levels, double floor) {
+    if (levels.size() <= 4) return 0;
+    std::size_t first = 0;
+    double least = fit(levels).sigma;
+    for (std::size_t k = 1; k + 4 <= levels.size() && least > floor / 2; ++k) {
+        const double sigma = fit(levels.subspan(k)).sigma;
+        if (sigma <= std::ldexp(least, static_cast<int>(first) - static_cast<int>(k)))
+            first = k, least = sigma;
+    }
+    return first;
+}
+
+StepConvergence at_floor(Behaviour behaviour, Levels levels, std::size_t first, double floor) {
+    const double error = std::max(floor, spread(levels.subspan(first)));
+    return {.behaviour = behaviour,
+            .limit = levels.back().value,
+            .band = error,
+            .finest_error = error,
+            .first = static_cast<int>(first),
+            .count = static_cast<int>(levels.size() - first)};
+}
+
+}  // namespace
+
+const char* name(Behaviour behaviour) {
+    switch (behaviour) {
+        case Behaviour::converging: return "converging";
+        case Behaviour::oscillating: return "oscillating";
+        case Behaviour::diverging: return "diverging";
+        case Behaviour::round_off_floor: return "at the round-off floor";
+        case Behaviour::reference_floor: return "at the reference floor";
+        case Behaviour::not_finite: return "not finite";
+        case Behaviour::too_few_levels: return "too few levels";
+    }
+    return "?";
+}
+
+StepConvergence step_convergence(Levels levels, double formal_order, const Floors& floors) {
+    if (!all_finite(levels)) return {.behaviour = Behaviour::not_finite};
+    check_steps(levels);
+    if (levels.size() < 3) return {.behaviour = Behaviour::too_few_levels};
+
+    double largest = 0;
+    for (const Level& level : levels) largest = std::max(largest, std::abs(level.value));
+    const double floor =
+        std::max(4 * std::numeric_limits<double>::epsilon() * largest, floors.round_off);
+
+    // Excludes the finest levels while they differ by round-off only. Three such levels give a
+    // limit, even if the levels before do not converge.
+    std::size_t used = levels.size();
+    while (used > 1 && std::abs(levels[used - 1].value - levels[used - 2].value) <= floor) --used;
+    const auto at_round_off = [&] {
+        return at_floor(Behaviour::round_off_floor, levels, used - 1, floor);
+    };
+    const auto without_order = [&](Behaviour behaviour) {
+        return levels.size() - used >= 2 ? at_round_off() : StepConvergence{.behaviour = behaviour};
+    };
+    if (used < 3) return at_round_off();
+    if (spread(levels) <= floors.reference)
+        return at_floor(Behaviour::reference_floor, levels, 0, floors.reference);
+
+    // One turn is common where coarse errors cancel; after several turns a longer monotonic stretch
+    // is required.
+    const auto [turn, turns] = monotone_end(levels.first(used), floor);
+    if (used - turn < (turns > 1 ? 4u : 3u)) return without_order(Behaviour::oscillating);
+    std::size_t first = turn;
+    while (used - first > 3 && grows(levels, first, floor)) ++first;
+    if (grows(levels, used - 3, floor)) return without_order(Behaviour::diverging);
+    first += asymptotic_start(levels.subspan(first, used - first), floor);
+    const Fit law = fit(levels.subspan(first, used - first));
+    if (!(law.p > 0)) return without_order(Behaviour::diverging);
+
+    StepConvergence result;
+    result.behaviour = Behaviour::converging;
+    result.order = law.p;
+    result.order_error = law.p < highest - 1e-6 ? law.p_error : nan;
+    result.first = static_cast<int>(first);
+    result.count = static_cast<int>(used - first);
+
+    // The order agrees with the formal one within a tenth or two standard errors, at most a quarter
+    // of an order.
+    const double two_errors = std::isfinite(result.order_error) ? 2 * result.order_error : 0;
+    result.as_formal =
+        std::abs(law.p - formal_order) <= std::min(0.25, std::max(0.1 * formal_order, two_errors));
+
+    // Error of the law at the finest level. The finest value may lie on the fitted limit by chance,
+    // so the larger of both counts. Where levels lie at round-off, the finest value is the limit,
+    // better than an extrapolation.
+    const bool extrapolated = used == levels.size();
+    const double law_error =
+        std::abs(law.C) * std::pow(levels[used - 1].steps / levels.back().steps, law.p);
+    result.limit = extrapolated ? law.limit : levels.back().value;
+    result.finest_error =
+        std::max({law_error, std::abs(levels.back().value - result.limit), floor});
+
+    // Band: the grid convergence index (Roache 1994), and the scatter about the law. An order above
+    // the formal one may mean that higher-order terms still dominate the leading one; then the
+    // finest three levels are also evaluated at the formal order.
+    const double safety = result.as_formal && result.count >= 4 ? 1.25 : 3;
+    const double scatter = std::isfinite(law.limit_error) ? 2 * law.limit_error : 0;
+    double hidden = 0;
+    if (law.p > formal_order && !result.as_formal && extrapolated)
+        hidden = spread(levels.subspan(used - 3, 3)) /
+                 (std::pow(levels[used - 1].steps / levels[used - 3].steps, formal_order) - 1);
+    result.band = std::max({safety * result.finest_error, safety * hidden, scatter});
+    return result;
+}
+
+double steps_for(const StepConvergence& convergence, Levels levels, double error) {
+    if (convergence.behaviour != Behaviour::converging || !(error > 0)) return nan;
+    const auto first = static_cast<std::size_t>(convergence.first);
+    const auto count = static_cast<std::size_t>(convergence.count);
+    const Levels window = levels.subspan(first, count);
+    const double finest_error = std::abs(line(window, convergence.order).C);  // of the window
+    return std::max(1.0,
+                    window.back().steps * std::pow(finest_error / error, 1 / convergence.order));
+}
+
+OrderFit order_of(Levels errors, double floor) {
+    OrderFit result;
+    if (!all_finite(errors)) return result;
+    check_steps(errors);
+    const auto above = [&](std::size_t k) { return std::abs(errors[k].value) > floor; };
+    std::size_t end = errors.size();
+    while (end > 0 && !above(end - 1)) --end;
+    std::size_t first = end;
+    while (first > 0 && above(first - 1)) --first;
+    result.first = static_cast<int>(first);
+    result.count = static_cast<int>(end - first);
+    if (result.count < 2) return result;
+
+    Numbers x(end - first), y(end - first);  // ln h, ln |error|: p is the slope
+    for (std::size_t k = first; k < end; ++k) {
+        x[k - first] = -std::log(errors[k].steps);
+        y[k - first] = std::log(std::abs(errors[k].value));
+    }
+    x -= mean(x);
+    y -= mean(y);
+    result.order = dot(x, y) / dot(x, x);
+    y -= result.order * x;
+    if (result.count > 2)
+        result.order_error = std::sqrt(dot(y, y) / (result.count - 2) / dot(x, x));
+    return result;
+}
+
+}  // namespace elastocheck::compare

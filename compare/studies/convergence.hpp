@@ -1,0 +1,69 @@
+// Step-size convergence of one output: behaviour, observed order, limit and its uncertainty.
+//
+// The limit is the method's own limit (Richardson extrapolation). Its error is limit minus
+// reference. The behaviour is classified first; only a converging sequence gets an order.
+#pragma once
+
+#include <limits>
+#include <span>
+
+namespace elastocheck::compare {
+
+enum class Behaviour {
+    converging,       // differences fall with refinement, at the finest levels all with one sign
+    oscillating,      // differences still change sign at the finest levels
+    diverging,        // differences grow with refinement
+    round_off_floor,  // too few differences are above round-off for an order
+    reference_floor,  // all levels lie within the reference's uncertainty
+    not_finite,       // a NaN or infinity somewhere
+    too_few_levels,   // fewer than three
+};
+const char* name(Behaviour behaviour);  // "converging", "at the round-off floor", ...
+
+struct Level {
+    double steps = 0;  // h = 1 / steps
+    double value = 0;  // value of one output with that many steps
+};
+
+// Differences up to these values are not significant. A few units in the last place of the largest
+// value always count as round-off; zero or NaN adds nothing to that. A reference of zero or NaN
+// means no reference.
+struct Floors {
+    double round_off = 0;
+    double reference = 0;
+};
+
+// NaN where a number does not exist. A limit exists when converging and at either floor.
+struct StepConvergence {
+    static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    Behaviour behaviour = Behaviour::too_few_levels;
+    double order = nan;  // p of value = limit + C·h^p, converging only; 10 reads "10 or more"
+    // its standard error from the scatter; NaN with three levels and at order 10
+    double order_error = nan;
+    double limit = nan;         // value at h = 0
+    double band = nan;          // half-width of the limit's uncertainty
+    double finest_error = nan;  // estimate of |value of the finest level - limit|
+    int first = 0, count = 0;   // window of levels used
+    bool as_formal = false;     // the order agrees with the formal order
+};
+
+// Pre: steps strictly increasing, in any ratio, else std::invalid_argument. Formal order: NaN if
+// unknown.
+StepConvergence step_convergence(std::span<const Level> levels, double formal_order,
+                                 const Floors& floors);
+
+// Number of steps for a step error of this size (> 0) by the fitted law; not rounded, at least 1;
+// else NaN.
+double steps_for(const StepConvergence& convergence, std::span<const Level> levels, double error);
+
+// Order p of errors against a known truth, |error| = C·steps^-p: slope of a straight line through
+// the logarithms. The order is negative when the errors grow. NaN with fewer than two errors above
+// the floor; its standard error is NaN with fewer than three.
+struct OrderFit {
+    double order = std::numeric_limits<double>::quiet_NaN();
+    double order_error = std::numeric_limits<double>::quiet_NaN();
+    int first = 0, count = 0;  // window used: the finest run of errors above the floor
+};
+OrderFit order_of(std::span<const Level> errors, double floor);
+
+}  // namespace elastocheck::compare

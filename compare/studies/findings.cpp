@@ -1,0 +1,251 @@
+#include "compare/studies/findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/outputs/positions.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are rounding
+
+const LegRun& run_of(const BranchComparison& branch, Leg leg) {
+    return branch.runs[static_cast<std::size_t>(leg)];
+}
+
+std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& reading) {
+    std::optional<Worst> worst;
+    for (const auto& branch : comparison.branches) {
+        const Reading& found = reading(branch);
+        for (std::size_t c = 0; c < found.channels.size(); ++c) {
+            const Channel& channel = comparison.channels[c];
+            if (!channel.main || channel.unit != unit) continue;
+            const Deviation& d = found.channels[c];
+            if (worst && (std::isnan(worst->max) || d.max <= worst->max)) continue;
+            worst = Worst{.branch = branch.branch,
+                          .channel = channel.name,
+                          .unit = unit,
+                          .max = d.max,
+                          .end = d.end,
+                          .range = d.range};
+        }
+    }
+    return worst;
+}
+
+// ---- What a branch does to a wheel.
+
+bool vertical(const Eigen::Vector3d& v) { return v.head<2>().norm() <= 1e-9 * std::abs(v.z()); }
+
+Eigen::Vector3d at_design(const Model& model, const Direction& u) {
+    return u.body == ground ? u.u_local
+                            : model.bodies[static_cast<std::size_t>(u.body)].design.p * u.u_local;
+}
+
+enum class Lift { none, load, jack, road };
+struct Lifted {
+    Lift by = Lift::none;
+    int joint = -1;     // of the jack
+    double force = 0;   // of the load, per unit of the parameter [N]
+    double height = 0;  // of the road per unit of the parameter [m]
+};
+
+// Road height per unit of the driven preload, if the element is the tyre under this wheel, which
+// pushes the wheel up by P - k_t (d_z - h): its preload is -P - k_t h.
+double road_height(const Elastic& elastic, const Preload& driven, const Wheel& wheel) {
+    const auto* tyre = std::get_if<Bushing>(&elastic.kind);
+    const bool is_tyre = tyre != nullptr && elastic.active_only_where_driven &&
+                         wheel.tyre_rate > 0 && tyre->i.body == ground &&
+                         tyre->j.body == wheel.body &&
+                         (tyre->j.s_local - wheel.contact_local).norm() <= 1e-9;
+    return is_tyre ? -driven.direction[2] / wheel.tyre_rate : 0;
+}
+
+// The only driver that moves, if it is vertical and acts on this wheel's body.
+Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
+    Lifted found;
+    for (const auto& driver : branch.drivers) {
+        if (driver.rate == 0) {  // held
+            const auto* road = std::get_if<Preload>(&driver.what);
+            if (road != nullptr &&
+                road_height(model.elastics[static_cast<std::size_t>(road->elastic)], *road,
+                            wheel) != 0)
+                return {};  // a wheel lifted off its tyre also carries the tyre force
+            continue;
+        }
+        const Lifted one = std::visit(
+            overloaded{[&](const Load& load) {
+                           const auto* force = std::get_if<DeadForce>(&load.kind);
+                           const bool lifts = force != nullptr && force->at.body == wheel.body &&
+                                              vertical(force->f);
+                           return Lifted{lifts ? Lift::load : Lift::none, -1,
+                                         lifts ? driver.rate * force->f.z() : 0, 0};
+                       },
+                       [&](const Motion& motion) {
+                           const ModelJoint& joint =
+                               model.joints[static_cast<std::size_t>(motion.joint)];
+                           if (joint.driven < 0 || joint.i != wheel.body) return Lifted{};
+                           const auto* plane = std::get_if<PointInPlane>(
+                               &model.constraints[static_cast<std::size_t>(joint.driven)].kind);
+                           const bool lifts =
+                               plane != nullptr && vertical(at_design(model, plane->normal_j));
+                           return Lifted{lifts ? Lift::jack : Lift::none, motion.joint, 0, 0};
+                       },
+                       [](const FreeLength&) { return Lifted{}; },
+                       [&](const Preload& preload) {
+                           const Elastic& elastic =
+                               model.elastics[static_cast<std::size_t>(preload.elastic)];
+                           const double height = driver.rate * road_height(elastic, preload, wheel);
+                           return Lifted{height != 0 ? Lift::road : Lift::none, -1, 0, height};
+                       }},
+            driver.what);
+        if (one.by == Lift::none || found.by != Lift::none) return {};
+        found = one;
+    }
+    return found;
+}
+
+}  // namespace
+
+const Reading& reading_of(const Pair& pair, ReadingKind kind) {
+    return kind == ReadingKind::equal_parameter ? pair.equal_parameter : pair.equal_abscissa;
+}
+
+bool is_readable(const Comparison& comparison, const BranchComparison& branch) {
+    if (branch.abscissa < 0) return false;
+    const auto c = static_cast<std::size_t>(branch.abscissa);
+    // an output of a mechanism, whose range may be small; not a wheel's travel
+    if (comparison.channels[c].main) return true;
+    const Curve& truth = run_of(branch, Leg::equilibrium).curve;
+    if (truth.values.empty()) return false;
+    const auto x = truth.channel(c);
+    const auto [low, high] = std::ranges::minmax(x);
+    return high - low >= least_travel;
+}
+
+std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit) {
+    static const Reading none{};
+    return worst_of(comparison, unit, [&](const BranchComparison& branch) -> const Reading& {
+        return kind == ReadingKind::equal_parameter || is_readable(comparison, branch)
+                   ? reading_of(branch.deviation, kind)
+                   : none;
+    });
+}
+
+std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit) {
+    return worst_of(comparison, unit, [](const BranchComparison& branch) -> const Reading& {
+        return branch.uncertainty.equal_parameter;
+    });
+}
+
+std::vector<RateError> rate_errors(const Model& model, const Comparison& comparison) {
+    std::vector<RateError> list;
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const BranchComparison& branch = comparison.branches[b];
+        const LegRun &reference = run_of(branch, Leg::equilibrium),
+                     &recursion = run_of(branch, Leg::recursive);
+        const Curve &truth = reference.curve, &fast = recursion.curve;
+        if (truth.a.empty() || truth.a.size() != fast.a.size() || truth.start != fast.start)
+            continue;
+        for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+            const Wheel& wheel = model.wheels[w];
+            const Lifted by = lifted(model, model.branches[b], wheel);
+            if (by.by == Lift::none) continue;
+            const auto channel = [&](auto&& wanted) {
+                const auto found = std::ranges::find_if(comparison.channels, wanted);
+                return static_cast<std::size_t>(found - comparison.channels.begin());
+            };
+            const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
+            const std::size_t travel =
+                channel([&](const Channel& c) { return c.name == prefix + "travel"; });
+            const std::size_t force = channel([&](const Channel& c) {
+                const auto* effort = std::get_if<Effort>(&c.reads);
+                return effort != nullptr && effort->joint == by.joint;
+            });
+            const auto gained = [](const Curve& curve, std::size_t c, std::size_t end) {
+                return curve.values[end][c] - curve.values[curve.start][c];
+            };
+            for (const std::size_t end : {std::size_t{0}, truth.a.size() - 1}) {
+                if (end == truth.start) continue;
+                RateError error{branch.branch, wheel.name, truth.a[end], branch.unit};
+                error.over = gained(truth, travel, end);
+                if (std::abs(error.over) < least_travel) continue;
+                error.travel = fast.values[end][travel] - truth.values[end][travel];
+                const double change = (truth.a[end] - truth.a[truth.start]) / in_unit(branch.unit);
+                // Lifting force [N]: of the load; of the jack; of the tyre on the road, k_t
+                // (Δh - Δz) with z of the patch
+                const auto lifting = [&](const LegRun& run) {
+                    if (by.by == Lift::load) return by.force * change;
+                    if (by.by == Lift::jack) return gained(run.curve, force, end);
+                    const auto z = [&](const std::optional<Equilibrium>& at) {
+                        return at ? position(at->poses, wheel.body, wheel.contact_local).z() : NAN;
+                    };
+                    const auto& [front, start, middle, back] = run.landmarks;
+                    return wheel.tyre_rate *
+                           (by.height * change - (z(end == 0 ? front : back) - z(start)));
+                };
+                // [N/mm]: under a load, equal force over different travel; on a jack, different
+                // forces
+                const auto rate = [&](const LegRun& run) {
+                    return lifting(run) / gained(run.curve, travel, end);
+                };
+                error.wheel_rate = rate(reference);
+                error.off = rate(recursion) / error.wheel_rate - 1;
+                if (by.by == Lift::jack)
+                    error.force = fast.values[end][force] - truth.values[end][force];
+                if (wheel.tyre_rate > 0) {
+                    const double tyre = 1e-3 * wheel.tyre_rate;
+                    const auto ride = [&](const LegRun& run) {
+                        return by.by == Lift::road ? 1e-3 * lifting(run) / (by.height * change)
+                                                   : 1 / (1 / rate(run) + 1 / tyre);
+                    };
+                    error.ride_rate = ride(reference);
+                    error.ride_off = ride(recursion) / error.ride_rate - 1;
+                }
+                if (std::isfinite(error.off)) list.push_back(error);
+            }
+        }
+    }
+    return list;
+}
+
+std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study,
+                                const std::string& method) {
+    std::optional<GapPart> found;
+    for (const auto& branch : comparison.branches) {
+        const BranchStudy* way = nullptr;  // the study of the branch side with the same end
+        for (const auto& candidate : study.branches)
+            if (candidate.belongs_to == branch.branch) way = &candidate;
+        if (way == nullptr) continue;
+        for (const auto& m : way->methods) {
+            if (m.method != method || run_of(branch, Leg::recursive).method != method) continue;
+            for (std::size_t k = 0; k < m.equal_parameter.size(); ++k) {
+                if (study.channels[k].unit != Unit::mm) continue;
+                const int c = find_channel(comparison.channels, study.channels[k].name);
+                if (c < 0 || branch.deviation.equal_parameter.channels.empty()) continue;
+                const double end =
+                    branch.deviation.equal_parameter.channels[static_cast<std::size_t>(c)].end;
+                const ChannelStudy& s = m.equal_parameter[k];
+                if (!std::isfinite(s.gap) ||
+                    !(std::abs(end) > std::max(nothing, found ? std::abs(found->deviation) : 0)))
+                    continue;
+                found = GapPart{branch.branch, study.channels[k].name, end, s.gap, s.end.band};
+            }
+        }
+    }
+    if (!found) return std::nullopt;
+    const double share = found->gap / found->deviation;
+    found->role =
+        std::abs(found->gap) <= std::max(std::isnan(found->band) ? 0 : found->band, nothing)
+            ? GapRole::none
+        : share < 0   ? GapRole::opposite
+        : share > 1.1 ? GapRole::hidden
+        : share > 0.9 ? GapRole::nearly_all
+        : share < 0.1 ? GapRole::hardly_any
+                      : GapRole::part;
+    return found;
+}
+
+}  // namespace elastocheck::compare

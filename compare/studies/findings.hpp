@@ -1,0 +1,78 @@
+// Key figures of a comparison, from which the verdict is made.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/comparison/compare.hpp"
+#include "compare/studies/study.hpp"
+
+namespace elastocheck::compare {
+
+// An abscissa that moves less than this [mm] is not used: a longitudinal force lifts the wheel by
+// some tenths of a millimetre, over which a camber curve has no meaning.
+inline constexpr double least_travel = 1;
+
+enum class ReadingKind { equal_parameter, equal_abscissa };
+const Reading& reading_of(const Pair& pair, ReadingKind kind);
+
+// Largest deviation of a main channel in this unit over all branches; NaN counts as largest. Empty
+// without a comparison.
+struct Worst {
+    std::string branch, channel;
+    Unit unit = Unit::mm;
+    double max = 0, end = 0, range = 0;
+    double limit = std::numeric_limits<double>::infinity();  // in `unit`, where it is judged
+    double extent = 0;  // `max` is shown as a share of this; 0: not shown as a share
+};
+// Whether outputs are compared at equal abscissa on a branch: a wheel's travel must change by at
+// least `least_travel`; a main output is always accepted.
+bool is_readable(const Comparison& comparison, const BranchComparison& branch);
+// of the recursion
+std::optional<Worst> worst_deviation(const Comparison& comparison, ReadingKind kind, Unit unit);
+// of the references
+std::optional<Worst> worst_disagreement(const Comparison& comparison, Unit unit);
+
+// Wheel rate (force over travel from a = 0) at one end of a branch, and its error in the recursion.
+// Only for branches that move nothing but a vertical load on that wheel, a jack under it, or the
+// road under its tyre, with a wheel travel of a millimetre or more: the quotient is meaningless
+// below.
+struct RateError {
+    std::string branch, wheel;
+    double to = 0;  // end of the branch, in `unit`
+    Unit unit = Unit::newton;
+    // rate of the recursion over that of the reference, minus 1: positive is too stiff
+    double off = 0;
+    double over = 0;        // travel of the reference from a = 0 to the end [mm]
+    double travel = 0;      // travel at the end, recursion minus reference [mm]
+    double force = 0;       // jack force at the end, likewise [N]
+    double wheel_rate = 0;  // k_w of the reference from a = 0 to the end: force over travel [N/mm]
+    // Ride rate with the tyre rate k_t in series, 1 / (1/k_w + 1/k_t), of the reference [N/mm],
+    // where the road moves: tyre force over road height; and the error of the recursion. NaN for a
+    // wheel without a tyre.
+    double ride_rate = std::numeric_limits<double>::quiet_NaN();
+    double ride_off = std::numeric_limits<double>::quiet_NaN();
+};
+std::vector<RateError> rate_errors(const Model& model, const Comparison& comparison);
+
+// Share of the formulation gap in the deviation at the end of a branch, for the position with the
+// largest deviation there.
+enum class GapRole {
+    none,        // the gap is below its own uncertainty
+    nearly_all,  // within a tenth
+    part,
+    hardly_any,  // less than a tenth
+    hidden,      // the gap is larger: step errors cancel part of it
+    opposite,    // the gap points the other way
+};
+struct GapPart {
+    std::string branch, channel;
+    double deviation = 0, gap = 0, band = 0;  // [mm], signed; band: uncertainty of the gap
+    GapRole role = GapRole::none;
+};
+std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study,
+                                const std::string& method);
+
+}  // namespace elastocheck::compare

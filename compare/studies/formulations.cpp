@@ -1,0 +1,158 @@
+#include "compare/studies/formulations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/outputs/deformation.hpp"
+#include "elastocheck/compile.hpp"
+#include "models/curve.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nothing = 1e-9;  // [mm], [deg]: smaller spreads are rounding
+
+bool is_zero(const ScalarLaw& law) { return !(steepest(law) > 0); }
+
+// Number of the six deformations that have a stiffness.
+int axes_resisted(const SpatialLaw& law) {
+    return std::visit(
+        overloaded{[](const LinearStiffness& u) {
+                       return static_cast<int>((u.K.array() != 0).rowwise().any().count());
+                   },
+                   [](const PerAxis& u) {
+                       return static_cast<int>(std::ranges::count_if(
+                           u.axis,
+                           [](const ScalarLaw& law_of_axis) { return !is_zero(law_of_axis); }));
+                   }},
+        law);
+}
+
+struct Solved {
+    std::string name;
+    Curve curve;
+};
+
+std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::size_t channel) {
+    FormulationSpread found{.channel = channel, .spread = -1, .at = 0, .lowest = {}, .highest = {}};
+    // Range that every curve reaches, around the start points.
+    std::size_t before = all.front().curve.start, after = all.front().curve.a.size();
+    for (const auto& one : all) {
+        before = std::min(before, one.curve.start);
+        after = std::min(after, one.curve.a.size() - one.curve.start);
+    }
+    for (std::size_t k = 0; k < before + after; ++k) {
+        const auto value = [&](const Solved& one) {
+            return one.curve.values[one.curve.start - before + k][channel];
+        };
+        const auto [low, high] = std::ranges::minmax_element(all, {}, value);
+        const double spread = value(*high) - value(*low);
+        if (!std::isfinite(spread)) return std::nullopt;
+        if (spread <= found.spread) continue;
+        found.spread = spread;
+        found.at = all.front().curve.a[all.front().curve.start - before + k];
+        found.lowest = low->name;
+        found.highest = high->name;
+    }
+    if (found.spread < 0) return std::nullopt;
+    if (found.spread < nothing) found.lowest.clear(), found.highest.clear();
+    return found;
+}
+
+}  // namespace
+
+bool is_reformulated(const Elastic& elastic) {
+    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+    return bushing != nullptr && bushing->formulation.frame != Formulation::Frame::middle &&
+           axes_resisted(bushing->law) > 1;
+}
+
+Scene reformulated(const Scene& scene, const Formulation& formulation) {
+    Scene result = scene;
+    for (auto& elastic : result.elastics)
+        if (is_reformulated(elastic)) std::get<Bushing>(elastic.kind).formulation = formulation;
+    return result;
+}
+
+FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& scenes, int steps,
+                              int every, const std::function<void(std::string_view)>& progress) {
+    FormulationStudy study;
+    std::vector<std::pair<std::string, Model>> models;
+    for (const auto& [name, scene] : scenes) models.emplace_back(name, compile(scene));
+    for (const auto& channel : channels(models.front().second))
+        if (channel.main) study.channels.push_back(channel);
+
+    const auto& branches = models.front().second.branches;
+    for (std::size_t b = 0; b < branches.size(); ++b) {
+        BranchSpread spread{.branch = branches[b].name,
+                            .unit = unit_of(branches[b].unit),
+                            .solved = {},
+                            .not_solved = {},
+                            .outputs = {}};
+        std::vector<Solved> solved;
+        for (const auto& [name, model] : models) {
+            if (progress) progress(fmt::format("{}: {}", branches[b].name, name));
+            const Branch& branch = model.branches[b];
+            Walked walked = walk(model, study.channels, branch, sides_of(model, branch, steps),
+                                 {.leg = Leg::equilibrium, .every = every});
+            if (walked.outcome != Outcome::converged) {
+                spread.not_solved.push_back(fmt::format(
+                    "{}: {}: {}", name, elastocheck::name(walked.outcome), walked.detail));
+                continue;
+            }
+            spread.solved.push_back(name);
+            solved.push_back({name, std::move(walked.curve)});
+        }
+        if (solved.size() < 2)
+            study.inconclusive.push_back(fmt::format(
+                "{}: fewer than two formulations were solved{}{}", spread.branch,
+                spread.not_solved.empty() ? "" : "; ", fmt::join(spread.not_solved, "; ")));
+        else
+            for (std::size_t c = 0; c < study.channels.size(); ++c)
+                if (const auto found = spread_of(solved, c))
+                    spread.outputs.push_back(*found);
+                else
+                    study.inconclusive.push_back(fmt::format(
+                        "{}: '{}' is not a number", spread.branch, study.channels[c].name));
+        study.branches.push_back(std::move(spread));
+    }
+    return study;
+}
+
+FormulationStudy formulation_study(const Scene& scene, int steps, int every,
+                                   const std::function<void(std::string_view)>& progress) {
+    std::vector<std::string> bushings;
+    for (const auto& elastic : scene.elastics)
+        if (is_reformulated(elastic)) bushings.push_back(elastic.name);
+    if (bushings.empty()) {
+        FormulationStudy none;
+        none.inconclusive.emplace_back("the scene has no bushing that leaves a choice");
+        return none;
+    }
+    std::vector<std::pair<std::string, Scene>> scenes;
+    for (const auto& [name, formulation] : formulations)
+        scenes.emplace_back(name, formulation ? reformulated(scene, *formulation) : scene);
+    FormulationStudy study = spread_among(scenes, steps, every, progress);
+    study.bushings = std::move(bushings);
+    return study;
+}
+
+Conversion converted(const Scene& scene, const Formulation& formulation) {
+    Conversion result{scene, {}};
+    for (Elastic& elastic : result.scene.elastics) {
+        auto* bushing = std::get_if<Bushing>(&elastic.kind);
+        if (bushing == nullptr || elastic.active_only_where_driven ||
+            elastic.written_as == WrittenAs::torsion_spring ||
+            bushing->formulation == formulation ||
+            markers_swapped(*bushing).formulation == formulation)
+            continue;
+        bushing->formulation = formulation;
+        result.bushings.push_back(elastic.name);
+    }
+    return result;
+}
+
+}  // namespace elastocheck::compare

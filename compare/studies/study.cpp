@@ -1,0 +1,370 @@
+#include "compare/studies/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "compare/comparison/legs.hpp"
+#include "compare/deviation/agreement.hpp"
+#include "models/branch.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double round_off = 1e-9;  // [mm], [deg]: smaller differences are rounding
+constexpr int stations = 30;        // along a branch, where curves are compared
+constexpr int reference_points = 300;
+
+// Abscissa of a curve: its parameter, or a channel.
+constexpr int parameter = -1;
+std::vector<double> over(const Curve& curve, int by) {
+    return by == parameter ? curve.a : curve.channel(static_cast<std::size_t>(by));
+}
+
+// Range that every curve reaches.
+struct Span {
+    double from = nan, to = nan;
+};
+Span common_span(int by, const std::vector<const Curve*>& curves) {
+    Span span;
+    for (const Curve* curve : curves) {
+        const auto x = over(*curve, by);
+        const bool up = x.back() > x.front();
+        const auto farther = [&](double a, double b) { return up ? a > b : a < b; };
+        if (std::isnan(span.from) || farther(x.front(), span.from)) span.from = x.front();
+        if (std::isnan(span.to) || farther(span.to, x.back())) span.to = x.back();
+    }
+    return span;
+}
+
+// One channel of a curve at equally spaced stations 1 ... S of the span.
+std::vector<double> at_stations(const Curve& curve, std::size_t channel, int by, const Span& span) {
+    const auto x = over(curve, by), y = curve.channel(channel);
+    std::vector<double> values;
+    for (int s = 1; s <= stations; ++s)
+        values.push_back(
+            s == stations && x.back() == span.to
+                ? y.back()
+                : interpolate(x, y, span.from + (span.to - span.from) * s / stations, 6));
+    return values;
+}
+
+// The channel in which all curves are monotonic, or the reason why there is none.
+Abscissa common_abscissa(const std::vector<Channel>& channels,
+                         const std::vector<const Curve*>& curves) {
+    const int by = default_abscissa(channels, *curves.front());
+    for (const Curve* curve : curves)
+        if (const Abscissa found = abscissa(channels, by, *curves.front(), *curve);
+            !found.why_not.empty())
+            return found;
+    return {by, ""};
+}
+
+double rms(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double v : values) sum += v * v;
+    return values.empty() ? nan : std::sqrt(sum / static_cast<double>(values.size()));
+}
+double largest(const std::vector<double>& values) {
+    double worst = 0;
+    for (const double v : values) {
+        if (std::isnan(v)) return nan;
+        worst = std::max(worst, std::abs(v));
+    }
+    return worst;
+}
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> d;
+    for (std::size_t k = 0; k < a.size(); ++k) d.push_back(a[k] - b[k]);
+    return d;
+}
+
+// Own limit at every station: its Richardson limit where the sequence converges there, else the
+// finest value.
+std::vector<double> own_limit(const std::vector<int>& steps,
+                              const std::vector<std::vector<double>>& levels, double formal) {
+    std::vector<double> limit;
+    for (std::size_t s = 0; s < levels.front().size(); ++s) {
+        std::vector<Level> sequence;
+        for (std::size_t l = 0; l < levels.size(); ++l)
+            sequence.push_back({static_cast<double>(steps[l]), levels[l][s]});
+        const auto c = step_convergence(sequence, formal, {round_off, 0});
+        limit.push_back(c.behaviour == Behaviour::converging ? c.limit : levels.back()[s]);
+    }
+    return limit;
+}
+
+ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curve>& levels,
+                           const References& references, std::size_t channel, double formal, int by,
+                           const Span& span) {
+    ChannelStudy result;
+    const auto truth = at_stations(references.truth, channel, by, span);
+    result.uncertainty =
+        largest(difference(at_stations(references.other, channel, by, span), truth));
+    const auto [low, high] = std::ranges::minmax(truth);
+    const double start = references.truth.values.front()[channel];
+    result.range = std::max(high, start) - std::min(low, start);
+
+    std::vector<std::vector<double>> values;
+    std::vector<Level> sequence;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        values.push_back(at_stations(levels[l], channel, by, span));
+        sequence.push_back({static_cast<double>(steps[l]), values.back().back()});
+    }
+    result.end = step_convergence(sequence, formal, {round_off, result.uncertainty});
+    const auto limit = own_limit(steps, values, formal);
+    for (const auto& level : values) {
+        const auto error = difference(level, limit);
+        result.step_error_end.push_back(error.back());
+        result.step_error_max.push_back(largest(error));
+        result.step_error_rms.push_back(rms(error));
+    }
+    const auto gap = difference(limit, truth);
+    result.gap = gap.back();
+    result.gap_max = largest(gap);
+    result.gap_rms = rms(gap);
+    std::vector<Level> growth;  // on the far half of the branch, where it is largest
+    for (int s = stations / 2; s < stations; ++s)
+        growth.push_back({static_cast<double>(s + 1), gap[static_cast<std::size_t>(s)]});
+    const double floor = std::max({10 * result.end.band, 10 * result.uncertainty, 10 * round_off});
+    result.gap_exponent = result.gap_max > floor ? -order_of(growth, floor).order : nan;
+    return result;
+}
+
+std::vector<std::size_t> main_channels(const std::vector<Channel>& all) {
+    std::vector<std::size_t> list;
+    for (std::size_t c = 0; c < all.size(); ++c)
+        if (all[c].main) list.push_back(c);
+    return list;
+}
+
+std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
+    const int by = default_abscissa(all, truth);
+    return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
+}
+
+Walked walk_with_steps(const Model& model, const std::vector<Channel>& channels, BranchSide way,
+                       int steps, const recursive::Method& method) {
+    way.branch.steps = steps;
+    return walk(model, channels, way.branch, {way}, {.recursion = {.method = method}});
+}
+
+// All levels of one method on one branch side.
+MethodStudy study_method(const Model& model, const std::vector<Channel>& channels,
+                         const BranchSide& way, const References& references,
+                         const recursive::Method& method, const std::vector<int>& steps,
+                         const std::function<void(std::string_view)>& progress) {
+    MethodStudy m;
+    m.method = method.name;
+    std::vector<Curve> levels;
+    std::vector<Level> Phi;
+    for (const int N : steps) {
+        if (progress) progress(fmt::format("{}: {} with {} steps", way.name, method.name, N));
+        Walked walked = walk_with_steps(model, channels, way, N, method);
+        m.outcomes.push_back(walked.outcome);
+        if (walked.outcome != Outcome::converged) {
+            m.not_studied = fmt::format("with {} steps: {}: {}", N,
+                                        elastocheck::name(walked.outcome), walked.detail);
+            m.constraint_error.push_back(nan);
+            continue;
+        }
+        m.constraint_error.push_back(walked.constraint_error.back());
+        Phi.push_back({static_cast<double>(N), m.constraint_error.back()});
+        levels.push_back(std::move(walked.curve));
+    }
+    m.constraint_order = order_of(Phi, 1e-12);
+    if (!m.not_studied.empty()) return m;
+
+    study_levels(m, channels, main_channels(channels), steps, levels, references,
+                 std::max(method.formal_order, 1.0));  // to its own limit
+    return m;
+}
+
+}  // namespace
+
+std::vector<Channel> motion(const Model& model) {
+    auto list = channels(model);
+    std::erase_if(list, [](const Channel& channel) { return !channel.kinematic(); });
+    return list;
+}
+
+std::vector<std::pair<BranchSide, std::vector<int>>> ways_with_steps(
+    const Model& model, const Branch& branch, const std::vector<int>& steps) {
+    std::vector<std::pair<BranchSide, std::vector<int>>> result;
+    for (const auto& way : sides_of(model, branch, reference_points))
+        result.emplace_back(way, std::vector<int>{});
+    for (const int N : steps) {
+        Branch whole = branch;
+        whole.steps = N;
+        const auto shares = ways(whole);
+        for (std::size_t w = 0; w < shares.size(); ++w) result[w].second.push_back(shares[w].steps);
+    }
+    return result;
+}
+
+void study_levels(MethodStudy& study, const std::vector<Channel>& all,
+                  const std::vector<std::size_t>& studied, const std::vector<int>& steps,
+                  const std::vector<Curve>& levels, const References& references,
+                  double formal_order) {
+    std::vector<const Curve*> curves{&references.truth, &references.other};
+    for (const auto& level : levels) curves.push_back(&level);
+    const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
+        const Span span = common_span(by, curves);
+        for (const std::size_t c : studied)
+            reading.push_back(study_channel(steps, levels, references, c, formal_order, by, span));
+    };
+    read(parameter, study.equal_parameter);
+    const Abscissa by = common_abscissa(all, curves);
+    study.no_abscissa = by.why_not;
+    if (by.why_not.empty()) read(by.channel, study.equal_abscissa);
+}
+
+std::vector<std::string> unfit(const References& known, const std::string& way) {
+    std::vector<std::string> reasons;
+    for (const auto& why : known.failures) reasons.push_back(fmt::format("{}: {}", way, why));
+    if (!reasons.empty()) return reasons;
+    const Bounds bounds = bounds_of({}, known.scale);
+    if (!(known.uncertainty.mm <= bounds.length && known.uncertainty.deg <= bounds.angle))
+        reasons.push_back(fmt::format(
+            "{}: the references are {:.2g} mm and {:.2g} deg apart, at most {:.2g} mm and {:.2g} "
+            "deg are "
+            "allowed",
+            way, known.uncertainty.mm, known.uncertainty.deg, bounds.length, bounds.angle));
+    return reasons;
+}
+
+bool Study::conclusive() const {
+    if (!inconclusive.empty()) return false;
+    for (const auto& branch : branches)
+        for (const auto& method : branch.methods)
+            if (!method.equal_parameter.empty()) return true;
+    return false;
+}
+
+Study study(const Model& model, const StudyOptions& options) {
+    if (options.steps.size() < 5 || options.steps.front() < 1 ||
+        std::ranges::adjacent_find(options.steps, std::greater_equal<>{}) != options.steps.end())
+        throw std::invalid_argument(
+            "step counts: at least five are needed, positive and increasing");
+    Study result;
+    result.steps = options.steps;
+    const auto all = motion(model);
+    for (const std::size_t c : main_channels(all)) result.channels.push_back(all[c]);
+
+    for (const auto& branch : model.branches)
+        for (const auto& [way, steps] : ways_with_steps(model, branch, options.steps)) {
+            if (options.progress) options.progress(fmt::format("{}: references", way.name));
+            const References known = references(model, all, way.branch, {way});
+            std::ranges::move(unfit(known, way.name), std::back_inserter(result.inconclusive));
+            if (!known.failures.empty()) continue;
+            if (std::ranges::adjacent_find(steps, std::greater_equal<>{}) != steps.end()) {
+                result.inconclusive.push_back(
+                    fmt::format("{}: its share of the steps is too small for levels", way.name));
+                continue;
+            }
+            BranchStudy b{
+                way.name, branch.name, unit_of(branch.unit), abscissa_name(all, known.truth),
+                steps,    {}};
+            for (const auto& method : options.methods) {
+                if (!recursive::has_steps(method)) continue;  // has no steps
+                b.methods.push_back(
+                    study_method(model, all, way, known, method, steps, options.progress));
+            }
+            result.branches.push_back(std::move(b));
+        }
+    return result;
+}
+
+namespace {
+
+// Gaps of a branch side with every combination of following forces; bit 0 lever, 1 axis, 2 load.
+constexpr unsigned combinations = 8;
+
+BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& channels,
+                                const BranchSide& way, const std::string& branch,
+                                const std::vector<int>& steps) {
+    BranchAttribution attribution;
+    attribution.branch = way.name;
+    attribution.belongs_to = branch;
+    attribution.unit = unit_of(way.branch.unit);
+    const References known = references(model, channels, way.branch, {way});
+    if (!known.failures.empty()) {
+        attribution.not_attributed = known.failures.front();
+        return attribution;
+    }
+    attribution.abscissa = abscissa_name(channels, known.truth);
+    std::vector<std::vector<Curve>> levels(combinations);
+    std::vector<const Curve*> curves{&known.truth, &known.other};
+    for (unsigned bits = 0; bits < combinations; ++bits) {
+        const recursive::Method method{
+            .kind =
+                recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
+        for (const int N : steps) {
+            Walked walked = walk_with_steps(model, channels, way, N, method);
+            if (walked.outcome != Outcome::converged) {
+                attribution.not_attributed = fmt::format(
+                    "with {} steps: {}: {}", N, elastocheck::name(walked.outcome), walked.detail);
+                return attribution;
+            }
+            levels[bits].push_back(std::move(walked.curve));
+        }
+    }
+    for (const auto& combination : levels)
+        for (const auto& level : combination) curves.push_back(&level);
+
+    const auto read = [&](int by, std::vector<GapShare>& reading) {
+        const Span span = common_span(by, curves);
+        for (const std::size_t c : main_channels(channels)) {
+            GapShare share;
+            for (unsigned bits = 0; bits < combinations; ++bits) {
+                const auto s = study_channel(steps, levels[bits], known, c, 1, by, span);
+                share.combinations.push_back(s.gap);
+                // At the round-off floor the limit is the finest value; without a convergence
+                // estimate the spread is the band.
+                const double spread = std::abs(s.step_error_end.front() - s.step_error_end.back());
+                share.band = std::max(
+                    share.band, (std::isnan(s.end.band) ? spread : s.end.band) + s.uncertainty);
+            }
+            const auto& g = share.combinations;
+            // Mean over the orders of adding: alone (1/3), after one other (1/6 each), after both
+            // (1/3).
+            const auto effect = [&](unsigned term) {
+                const unsigned a = 1u << ((term + 1) % 3), b = 1u << ((term + 2) % 3),
+                               t = 1u << term;
+                return (g[0] - g[t]) / 3 + (g[a] - g[a | t] + g[b] - g[b | t]) / 6 +
+                       (g[a | b] - g[7]) / 3;
+            };
+            share.whole = g[0];
+            share.lever = effect(0);
+            share.axis = effect(1);
+            share.load = effect(2);
+            share.rest = g[7];
+            reading.push_back(share);
+        }
+    };
+    read(parameter, attribution.equal_parameter);
+    const Abscissa by = common_abscissa(channels, curves);
+    attribution.no_abscissa = by.why_not;
+    if (by.why_not.empty()) read(by.channel, attribution.equal_abscissa);
+    return attribution;
+}
+
+}  // namespace
+
+std::vector<BranchAttribution> attribute_gap(
+    const Model& model, const std::function<void(std::string_view)>& progress) {
+    const std::vector<int> steps{300, 600, 1200, 2400};
+    const auto all = motion(model);
+    std::vector<BranchAttribution> result;
+    for (const auto& branch : model.branches)
+        for (const auto& [way, shares] : ways_with_steps(model, branch, steps)) {
+            if (progress) progress(fmt::format("{}: gap attribution", way.name));
+            result.push_back(attribute_way(model, all, way, branch.name, shares));
+        }
+    return result;
+}
+
+}  // namespace elastocheck::compare

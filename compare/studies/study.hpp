@@ -1,0 +1,131 @@
+// Error decomposition of a stepping method: step error, formulation gap and reference uncertainty.
+//
+//   value(N) - truth = [value(N) - own limit]  +  [own limit - reference]  +  [reference - truth]
+//                       step error                formulation gap             reference uncertainty
+//
+// The own limit is the Richardson limit per channel (convergence.hpp). Both readings are used:
+// equal parameter and equal abscissa (curve.hpp). |Φ| of eq. (31) is reported beside them: it falls
+// with the steps whatever the limit of the method is.
+//
+// The two sides of a branch are studied separately, since each has an end of its own.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/outputs/channels.hpp"
+#include "compare/outputs/curve.hpp"
+#include "compare/studies/convergence.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/model.hpp"
+#include "elastocheck/recursive_method.hpp"
+
+namespace elastocheck::compare {
+
+struct StudyOptions {
+    std::vector<recursive::Method> methods{recursive::Method{}};  // with fixed steps
+    // per branch, shared by its sides; increasing, at least five
+    std::vector<int> steps{75, 150, 300, 600, 1200, 2400};
+    std::function<void(std::string_view)> progress = {};
+};
+
+// One channel of one method over one branch, in the channel's unit.
+struct ChannelStudy {
+    StepConvergence end;                                 // at the end of the branch
+    std::vector<double> step_error_end;                  // per level: value - own limit, signed
+    std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
+    double gap = 0;                                      // own limit - reference at the end, signed
+    double gap_max = 0, gap_rms = 0;                     // over the branch
+    double gap_exponent = 0;  // of |gap| over the parameter or abscissa; NaN at the floor
+    double uncertainty = 0;   // largest difference of the references over the branch
+    double range = 0;         // of the reference over the branch
+};
+
+struct MethodStudy {
+    std::string method;
+    std::vector<Outcome> outcomes;         // per level
+    std::vector<double> constraint_error;  // |Φ| at the end, eq. (31), per level
+    OrderFit constraint_order;             // order at which it falls
+    // one per main channel; empty when a level did not converge
+    std::vector<ChannelStudy> equal_parameter;
+    std::vector<ChannelStudy> equal_abscissa;  // the same; empty without an abscissa
+    std::string not_studied;                   // reason why there is no study, else empty
+    std::string no_abscissa;                   // reason why there is no equal abscissa
+};
+
+struct BranchStudy {
+    std::string branch;      // name of the branch, or of one side: "bounce to -80 mm"
+    std::string belongs_to;  // the name of the branch
+    Unit unit{};             // display unit of the parameter
+    std::string abscissa;    // name of the channel, empty where there is none
+    std::vector<int> steps;  // of this branch side
+    std::vector<MethodStudy> methods;
+};
+
+struct Study {
+    std::vector<int> steps;
+    std::vector<Channel> channels;  // the main channels
+    std::vector<BranchStudy> branches;
+    std::vector<std::string> inconclusive;  // references that failed or disagree
+
+    bool conclusive() const;  // also requires that something was studied
+};
+
+// Throws std::invalid_argument when the step counts are not at least five, positive and increasing.
+Study study(const Model& model, const StudyOptions& options = {});
+
+// Studies one method on one branch side from given levels: curves of `all` channels in the order of
+// `steps`, made by any solver. `studied`: positions in `all` of the main channels to study. Formal
+// order: NaN if unknown.
+struct References;
+void study_levels(MethodStudy& study, const std::vector<Channel>& all,
+                  const std::vector<std::size_t>& studied, const std::vector<int>& steps,
+                  const std::vector<Curve>& levels, const References& references,
+                  double formal_order);
+
+// Reasons why the references cannot be used in a study: a failure, or too large a distance between
+// them.
+std::vector<std::string> unfit(const References& references, const std::string& way);
+
+// The branch sides as the references of a study run them, each with its share of every step count.
+struct BranchSide;
+std::vector<std::pair<BranchSide, std::vector<int>>> ways_with_steps(const Model& model,
+                                                                     const Branch& branch,
+                                                                     const std::vector<int>& steps);
+
+// The studied channels: positions and angles, no reactions.
+std::vector<Channel> motion(const Model& model);
+
+// ---- Attribution of the formulation gap.
+//
+// The published recursion never rotates the stored forces. Three quantities can be made to follow
+// the bodies (include/elastocheck/recursive_method.hpp): the lever of the stored elastic force, its axis and law, and
+// the lever of the load. Every combination has its own limit; with all three the limit is
+// equilibrium. The contribution of a term is its mean effect over all orders of adding it (Shapley
+// value, 1953), so that the three contributions add up to the whole gap.
+
+struct GapShare {
+    double whole = 0;  // gap of the recursion in which none of the three follows, signed
+    double lever = 0, axis = 0, load = 0;  // contributions; whole = lever + axis + load + rest
+    double rest = 0;                       // remainder with all three: 0 within `band`
+    double band = 0;                       // uncertainty of the limits and the reference
+    // gap of each of the 8 combinations; bit 0 lever, 1 axis, 2 load
+    std::vector<double> combinations;
+};
+
+struct BranchAttribution {
+    std::string branch, belongs_to;  // as in BranchStudy
+    Unit unit{};                     // likewise
+    std::string abscissa;            // likewise
+    // per main channel; empty without an abscissa
+    std::vector<GapShare> equal_parameter, equal_abscissa;
+    std::string not_attributed;  // reason why there is none
+    std::string no_abscissa;     // reason why there is no equal abscissa
+};
+
+std::vector<BranchAttribution> attribute_gap(
+    const Model& model, const std::function<void(std::string_view)>& progress = {});
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,387 @@
+#include "compare/studies/work_precision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "compare/comparison/legs.hpp"
+#include "compare/studies/timing.hpp"
+#include "elastocheck/recursive.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+// Ratio of the tolerances of `adaptive` [rad/m]: 0.001 deg for 0.01 mm.
+constexpr double angle_per_length = 1.745;
+
+bool within(double value, double limit) { return std::isfinite(value) && value <= limit; }
+Accuracy plus(const Accuracy& a, const Accuracy& b) {
+    return {a.mm + b.mm, a.deg + b.deg, a.share + b.share};
+}
+
+// ---- One configuration
+
+// The same output points with `factor` intermediate points each.
+std::vector<BranchSide> refined(std::vector<BranchSide> ways, int factor) {
+    for (auto& way : ways) way.branch.steps *= factor;
+    return ways;
+}
+
+// Every `stride`-th point.
+Curve every(const Curve& curve, std::size_t stride) {
+    Curve result{.unit = curve.unit, .a = {}, .start = curve.start / stride, .values = {}};
+    for (std::size_t k = curve.start % stride; k < curve.a.size(); k += stride) {
+        result.a.push_back(curve.a[k]);
+        result.values.push_back(curve.values[k]);
+    }
+    return result;
+}
+
+// Curve of a complete path; of an incomplete one an empty curve, whose errors are NaN.
+Curve curve_of(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
+               const EquilibriumPath& path) {
+    if (path.outcome != Outcome::converged) return {};
+    return curve(model, channels, branch, path.points);
+}
+
+std::vector<TradePoint> configurations(const Model& model, const TradeOptions& options) {
+    std::vector<TradePoint> all;
+    all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium)});
+    const double unknowns = coordinates(model) + constraint_rows(model);
+    const double per_step = std::pow(unknowns, 3) * static_cast<double>(model.branches.size());
+    for (const auto& method : recursive::methods) {
+        const std::string label(method.name);
+        if (!options.methods.empty() &&
+            std::ranges::find(options.methods, label) == options.methods.end())
+            continue;
+        if (!recursive::has_steps(method)) {
+            const bool series = std::holds_alternative<recursive::Series>(method.kind);
+            for (int digits = 3; digits <= (series ? 12 : 9); ++digits)
+                all.push_back({.method = label, .own_tolerance = std::pow(10.0, -digits)});
+            continue;
+        }
+        const auto affordable = [&](long steps) {
+            return steps <= options.most_steps &&
+                   static_cast<double>(steps) * per_step <= options.work_budget;
+        };
+        for (long steps = options.points; steps == options.points || affordable(steps); steps *= 2)
+            all.push_back({.method = label, .steps = static_cast<int>(steps)});
+    }
+    all.push_back({.leg = Leg::energy, .method = name(Leg::energy)});
+    all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium), .again = true});
+    return all;
+}
+
+// ---- Ranking
+
+void rank(Trade& trade) {
+    const double least = share_of(trade.tolerance, trade.uncertainty);
+    for (auto& point : trade.points) {
+        point.share = share_of(trade.tolerance, point.error);
+        if (point.again)
+            point.not_ranked = "the same leg again: noise of the time";
+        else if (point.leg == Leg::equilibrium)
+            point.not_ranked = "what errors are read from";
+        else if (point.outcome != Outcome::converged)
+            point.not_ranked = name(point.outcome);
+        else if (!std::isfinite(point.share))
+            point.not_ranked = "no number";
+        else if (!(point.share > least))
+            point.not_ranked = "below the reference uncertainty";
+        point.ranked = point.not_ranked.empty();
+    }
+    const auto price = [](const TradePoint& point, std::size_t kind) {
+        return kind == 0   ? static_cast<double>(point.work.solves)
+               : kind == 1 ? static_cast<double>(point.work.factorisations + point.work.evaluations)
+                           : point.ratio;
+    };
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+        std::vector<WorkError> flat;
+        for (const auto& point : trade.points)
+            flat.push_back({price(point, kind), point.ranked ? point.share : nan});
+        const auto front = pareto_front(flat);
+        for (std::size_t k = 0; k < front.size(); ++k) trade.points[k].on_front[kind] = front[k];
+    }
+}
+
+// ---- Recommendation
+
+bool good_enough(const Trade& trade, const Accuracy& error) {
+    const Accuracy at_most = plus(error, trade.uncertainty);
+    return within(share_of(trade.tolerance, at_most), 1) &&
+           within(at_most.share, trade.tolerance.share);
+}
+
+bool same_ladder(const TradePoint& a, const TradePoint& b) {
+    return a.leg == b.leg && a.method == b.method && a.again == b.again;
+}
+
+// Whether the method's own tolerance is at most the required one; otherwise it meets the required
+// one only by chance.
+bool told_enough(const Trade& trade, const TradePoint& point) {
+    const double deg = in_unit(Unit::deg) * angle_per_length * point.own_tolerance;
+    return 1e3 * point.own_tolerance <= trade.tolerance.mm && deg <= trade.tolerance.deg;
+}
+
+// Meets the tolerance, and so do all finer configurations of the same method: errors that cancel,
+// or too few steps to show an instability, would meet it only by chance.
+bool eligible(const Trade& trade, std::size_t k) {
+    if (trade.points[k].again || !told_enough(trade, trade.points[k])) return false;
+    for (std::size_t finer = k;
+         finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]);
+         ++finer) {
+        const TradePoint& point = trade.points[finer];
+        if (point.outcome != Outcome::converged || !good_enough(trade, point.error)) return false;
+    }
+    return true;
+}
+
+// Cheapest by price; the first of equal ones, which has the loosest tolerance or the fewest steps.
+std::optional<std::size_t> cheapest(const Trade& trade,
+                                    const std::vector<std::size_t>& candidates) {
+    const auto price = [&](std::size_t k) { return trade.points[k].work.price; };
+    const auto best = std::ranges::min_element(candidates, {}, price);
+    if (best == candidates.end()) return std::nullopt;
+    return *best;
+}
+
+// Misfit factor of the law C·h^p: between the rungs h/2 and 2h it predicts the geometric mean at
+// the middle one, at an end of the ladder the extrapolation of the two next rungs. The same factor
+// is the uncertainty of the error elsewhere. The band also contains the result of the confirming
+// run.
+double misfit(double error, double neighbour, double other, bool between) {
+    const double expected = between ? std::sqrt(neighbour * other) : neighbour * neighbour / other;
+    return std::max(error / expected, expected / error);
+}
+
+void band(const Trade& trade, Recommendation& found) {
+    const auto k = static_cast<std::ptrdiff_t>(found.point);
+    const Accuracy &e = trade.points[found.point].error, &u = trade.uncertainty;
+    found.expected = e;
+    const auto usable = [&](std::ptrdiff_t i) {
+        return i >= 0 && i < static_cast<std::ptrdiff_t>(trade.points.size()) &&
+               same_ladder(trade.points[found.point], trade.points[static_cast<std::size_t>(i)]) &&
+               trade.points[static_cast<std::size_t>(i)].ranked;
+    };
+    std::ptrdiff_t a = k, b = k;
+    if (!trade.points[found.point].ranked)
+        found.band_from = "below the reference uncertainty: only that is known";
+    else if (usable(k - 1) && usable(k + 1))
+        a = k - 1, b = k + 1, found.band_from = "from the rungs on either side";
+    else if (usable(k + 1) && usable(k + 2))
+        a = k + 1, b = k + 2, found.band_from = "from the two finer rungs";
+    else if (usable(k - 1) && usable(k - 2))
+        a = k - 1, b = k - 2, found.band_from = "from the two coarser rungs";
+    else
+        found.band_from =
+            "no two neighbouring rungs above the reference uncertainty: only that is known";
+    const auto one = [&](double Accuracy::*unit) {
+        double factor = 1;
+        if (a != b)
+            factor = misfit(e.*unit, trade.points[static_cast<std::size_t>(a)].error.*unit,
+                            trade.points[static_cast<std::size_t>(b)].error.*unit,
+                            a == k - 1 && b == k + 1);
+        if (!std::isfinite(factor)) factor = 1;
+        found.low.*unit = std::max(0.0, e.*unit / factor - u.*unit);
+        found.high.*unit = std::max(e.*unit * factor, found.confirmed.*unit) + u.*unit;
+    };
+    one(&Accuracy::mm);
+    one(&Accuracy::deg);
+    one(&Accuracy::share);
+}
+
+// Runs the configuration again at output points that were not used for its selection: finer ones,
+// and those of branches that end half a step earlier, against a reference with three times as many
+// points.
+Accuracy confirm(const Model& model, const std::vector<Channel>& channels,
+                 const std::vector<std::vector<double>>& extents, const TradePoint& point,
+                 int points, int& compared) {
+    int finer = 7;  // refinement factor of the output points
+    if (point.steps > 0) {
+        finer = 1;
+        while (2 * finer * points <= std::min(point.steps, 100)) finer *= 2;
+    }
+    const TradePoint reference{.leg =
+                                   point.leg == Leg::equilibrium ? Leg::energy : Leg::equilibrium};
+    Accuracy worst;
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const Branch& branch = model.branches[b];
+        std::size_t outputs = 0;
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            outputs +=
+                channels[c].main || (!is_motion(channels[c]) && std::isfinite(extents[b][c]));
+        for (const double end : {1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer * points)}) {
+            Branch shorter = branch;
+            shorter.to *= end;
+            shorter.from *= end;
+            const auto ways = refined(sides_of(model, shorter, points), finer);
+            const Curve truth = curve_of(model, channels, shorter,
+                                         walk(refined(ways, 3), gait_of(reference, points))),
+                        found = curve_of(model, channels, shorter,
+                                         walk(ways, gait_of(point, finer * points)));
+            worst = worse(worst, distance(channels, every(truth, 3), found, extents[b]));
+            compared += static_cast<int>(outputs * found.a.size());
+        }
+    }
+    return worst;
+}
+
+void recommend(const Model& model, const std::vector<Channel>& channels,
+               const std::vector<std::vector<double>>& extents, Trade& trade) {
+    std::vector<std::size_t> candidates;
+    for (std::size_t k = 0; k < trade.points.size(); ++k)
+        if (eligible(trade, k)) candidates.push_back(k);
+    while (const auto k = cheapest(trade, candidates)) {
+        Recommendation found;
+        found.point = *k;
+        found.confirmed = confirm(model, channels, extents, trade.points[*k],
+                                  trade.points_per_branch, found.confirmed_numbers);
+        band(trade, found);
+        const bool holds = found.confirmed_numbers > 0 && good_enough(trade, found.confirmed);
+        if (holds && good_enough(trade, found.high)) {
+            trade.recommendation = found;
+            return;
+        }
+        const Accuracy& worst = holds ? found.high : found.confirmed;
+        trade.rejected.push_back(fmt::format(
+            "{}: {}{:.3g} mm, {:.3g} deg and {:.3g} % of forces and moments{}",
+            describe(trade.points[*k]), holds ? "up to " : "", worst.mm, worst.deg,
+            100 * worst.share, holds ? ", as far as its rungs obey their law" : " when run again"));
+        std::erase(candidates, *k);
+    }
+}
+
+}  // namespace
+
+double share_of(const Tolerance& tolerance, const Accuracy& error) {
+    // A quantity without a tolerance does not count, except for a NaN.
+    const double mm = std::isinf(tolerance.mm) ? 0 * error.mm : error.mm / tolerance.mm;
+    const double deg = std::isinf(tolerance.deg) ? 0 * error.deg : error.deg / tolerance.deg;
+    return worse(mm, deg);
+}
+
+SolverSettings gait_of(const TradePoint& point, int points) {
+    SolverSettings solver{.leg = point.leg};
+    if (point.leg != Leg::recursive) return solver;
+    solver.recursion.method = *recursive::find_method(point.method);
+    std::visit(
+        overloaded{[&](const recursive::Linear&) { solver.refine = point.steps / points; },
+                   [&](const recursive::Consistent&) { solver.refine = point.steps / points; },
+                   [&](recursive::Adaptive& adaptive) {
+                       adaptive.length_tolerance = point.own_tolerance;
+                       adaptive.angle_tolerance = angle_per_length * point.own_tolerance;
+                   },
+                   [&](recursive::Series& series) { series.tolerance = point.own_tolerance; }},
+        solver.recursion.method.kind);
+    return solver;
+}
+
+std::string describe(const TradePoint& point) {
+    if (point.leg != Leg::recursive)
+        return fmt::format("{} leg{}", name(point.leg), point.again ? " again" : "");
+    if (point.steps == 0) return fmt::format("{} at {:.0e} m", point.method, point.own_tolerance);
+    return fmt::format("{}, {} steps", point.method, point.steps);
+}
+
+std::vector<bool> pareto_front(std::span<const WorkError> points) {
+    const auto finite = [](const WorkError& p) {
+        return std::isfinite(p.work) && std::isfinite(p.error);
+    };
+    const auto dominates = [](const WorkError& a, const WorkError& b) {
+        return a.work <= b.work && a.error <= b.error && (a.work < b.work || a.error < b.error);
+    };
+    std::vector<bool> front;
+    for (const auto& point : points)
+        front.push_back(finite(point) && std::ranges::none_of(points, [&](const WorkError& other) {
+                            return finite(other) && dominates(other, point);
+                        }));
+    return front;
+}
+
+Trade trade(const Model& model, const TradeOptions& options) {
+    if (options.points < 1 || options.rounds < 0)
+        throw std::invalid_argument("trade: points must be positive and rounds not negative");
+    const auto tell = [&](std::string_view what) {
+        if (options.progress) options.progress(what);
+    };
+    const auto all_channels = channels(model);
+    Trade result;
+    result.points_per_branch = options.points;
+    result.rounds = options.rounds;
+    for (const auto& channel : all_channels)
+        result.angles = result.angles || (channel.main && channel.unit == Unit::deg);
+    result.tolerance = options.tolerance;
+    if (!result.angles) result.tolerance.deg = std::numeric_limits<double>::infinity();
+
+    if (model.branches.empty()) result.inconclusive.push_back("the scene has no branch");
+    if (std::isinf(result.tolerance.mm) && std::isinf(result.tolerance.deg))
+        result.inconclusive.push_back(std::isfinite(options.tolerance.deg)
+                                          ? "only an angle is asked for, and the scene has none"
+                                          : "neither a position nor an angle is asked for");
+    if (!result.inconclusive.empty()) return result;
+
+    std::vector<std::vector<BranchSide>> ways;
+    std::vector<Curve> truth;
+    std::vector<std::vector<double>> extents;  // per branch
+    for (const auto& branch : model.branches) {
+        tell(fmt::format("{}: the references", branch.name));
+        ways.push_back(sides_of(model, branch, options.points));
+        References known = references(model, all_channels, branch, ways.back());
+        for (const auto& why : known.failures)
+            result.inconclusive.push_back(fmt::format("{}: {}", branch.name, why));
+        result.uncertainty = worse(result.uncertainty, known.uncertainty);
+        truth.push_back(known.truth_ended == Outcome::converged ? std::move(known.truth) : Curve{});
+        extents.push_back(std::move(known.extents));
+    }
+
+    result.points = configurations(model, options);
+    const double unknowns = coordinates(model) + constraint_rows(model);
+    std::vector<std::function<void()>> jobs;
+    std::vector<std::size_t> timed;
+    for (std::size_t k = 0; k < result.points.size(); ++k) {
+        TradePoint& point = result.points[k];
+        tell(describe(point));
+        for (std::size_t b = 0; b < model.branches.size(); ++b) {
+            const auto path = walk(ways[b], gait_of(point, options.points));
+            point.work.solves += path.counts.iterations;
+            point.work.factorisations += path.counts.factorisations;
+            point.work.evaluations += path.counts.evaluations;
+            point.error =
+                worse(point.error,
+                      distance(all_channels, truth[b],
+                               curve_of(model, all_channels, model.branches[b], path), extents[b]));
+            if (path.outcome != Outcome::converged && point.outcome == Outcome::converged) {
+                point.outcome = path.outcome;
+                point.detail = path.detail;
+            }
+        }
+        point.work.price = unknowns / 3 * static_cast<double>(point.work.factorisations) +
+                           static_cast<double>(point.work.solves + point.work.evaluations);
+        if (point.outcome != Outcome::converged) continue;
+        timed.push_back(k);
+        jobs.emplace_back([&ways, &options, point] {
+            for (const auto& way : ways) (void)walk(way, gait_of(point, options.points));
+        });
+    }
+
+    if (options.rounds > 0 && result.points.front().outcome == Outcome::converged) {
+        tell("times");
+        const Times times = take_turns(jobs, options.rounds);
+        for (std::size_t j = 0; j < timed.size(); ++j) {
+            TradePoint& point = result.points[timed[j]];
+            point.work.seconds = median(times[j]);
+            point.ratio = median(ratios(times[j], times.front()));
+        }
+        result.noise = noise_of(ratios(times.back(), times.front()));
+    }
+    rank(result);
+    tell("the recommendation, again");
+    if (result.inconclusive.empty()) recommend(model, all_channels, extents, result);
+    return result;
+}
+
+}  // namespace elastocheck::compare

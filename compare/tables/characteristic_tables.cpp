@@ -1,0 +1,114 @@
+// Kinematics and compliance as tables.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/tables/table.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Column words(std::string name, std::string description = "") {
+    return {std::move(name), "", std::move(description), true};
+}
+
+double finite(double value) { return std::isfinite(value) ? value : nan; }
+
+// At a = 0, as a leg has it.
+double at_start(const LegRun& run, std::size_t channel) {
+    return run.curve.values.empty() ? nan : run.curve.values[run.curve.start][channel];
+}
+
+constexpr std::array directions{"x", "y", "z"};
+std::string component(const char* what, Eigen::Index k) {
+    return fmt::format("{} {}", what, directions[static_cast<std::size_t>(k % 3)]);
+}
+
+}  // namespace
+
+Table characteristic_table(const Comparison& comparison) {
+    Table table{
+        "characteristics",
+        {words("output"),
+         words("unit"),
+         {"value", "",
+          "at a = 0 of the first branch, by the equilibrium leg; none where it is undefined"},
+         {"references apart", "", "second reference less equilibrium leg"},
+         {"recursion", "", "by the matrix that the recursion factorises there"},
+         {"off", "", "recursion less equilibrium leg"},
+         {"off %", "%", "of the value"},
+         words("undefined", "what it means where there is no value"),
+         words("definition")},
+        {}};
+    if (comparison.branches.empty()) return table;
+    const BranchComparison& branch = comparison.branches.front();
+    const auto run = [&](Leg leg) -> const LegRun& {
+        return branch.runs[static_cast<std::size_t>(leg)];
+    };
+    for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
+        const Channel& channel = comparison.channels[c];
+        if (!std::holds_alternative<Characteristic>(channel.reads)) continue;
+        const double is = at_start(run(Leg::equilibrium), c),
+                     second = at_start(run(branch.second), c),
+                     recursion = at_start(run(Leg::recursive), c);
+        table.rows.push_back({channel.name, symbol(channel.unit), finite(is), finite(second - is),
+                              finite(recursion), finite(recursion - is),
+                              finite(100 * (recursion - is) / std::abs(is)),
+                              is == undefined ? channel.undefined : "", channel.definition});
+    }
+    return table;
+}
+
+Table compliance_table(const Model& model, const Comparison& comparison) {
+    Table table{
+        "compliance",
+        {words("branch"),
+         {"a", "", "parameter of the branch"},
+         words("unit", "of a"),
+         words("leg"),
+         words("point",
+               "where forces act and displacements are read: wheel centre or contact patch"),
+         words("wheel", "that answers"),
+         words("answer",
+               "displacement of the point in mm, rotation of the wheel in deg, ground axes"),
+         words("loaded wheel", "on which forces and moments act, all jacks and tyres taken away")},
+        {}};
+    for (Eigen::Index k = 0; k < 6; ++k)
+        table.columns.push_back({component(k < 3 ? "force" : "moment", k), "",
+                                 k < 3 ? "answer per kN" : "answer per 100 N·m"});
+    table.columns.push_back({"reciprocity", "",
+                             "|C - Cᵀ| / |C| of the whole matrix at the wheel centres, rotations "
+                             "counted by the tyre's radius"});
+    for (const auto& branch : comparison.branches)
+        for (const auto& run : branch.runs)
+            for (const auto& at : run.compliance)
+                for (const auto& [point, C] :
+                     {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
+                    for (Eigen::Index r = 0; r < C->rows(); ++r)
+                        for (Eigen::Index loaded = 0; loaded < C->cols(); loaded += 6) {
+                            const auto wheel = [&](Eigen::Index k) {
+                                return model.wheels[static_cast<std::size_t>(k / 6)].name;
+                            };
+                            const bool moves = r % 6 < 3;
+                            std::vector<Cell> row{branch.branch,
+                                                  at.a,
+                                                  symbol(run.curve.unit),
+                                                  name(run.leg),
+                                                  point,
+                                                  wheel(r),
+                                                  component(moves ? "displacement" : "rotation", r),
+                                                  wheel(loaded)};
+                            for (Eigen::Index k = 0; k < 6; ++k)
+                                row.emplace_back(in_table_units(*C, r, loaded + k));
+                            row.emplace_back(at.reciprocity);
+                            table.rows.push_back(std::move(row));
+                        }
+    return table;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,238 @@
+// Plain data of a suspension mechanism: bodies, joints, elastic elements, loads.
+//
+// Units are SI (m, N, rad), axes ISO 8855 (x forward, y left, z up). A name ending in _local is in
+// body axes; no suffix means ground axes. models/ contains no mechanics, not even r + A s: each leg
+// has its own.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace elastocheck {
+
+using BodyId = int;  // position in Scene::bodies or Model::bodies
+inline constexpr BodyId ground = -1;
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+struct Pose {
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();            // origin of the body [m]
+    Eigen::Quaterniond p = Eigen::Quaterniond::Identity();  // body axes to ground axes, unit
+};
+
+struct Body {
+    std::string name;
+    Pose design;
+};
+
+struct Point {
+    BodyId body = ground;
+    Eigen::Vector3d s_local = Eigen::Vector3d::Zero();  // from the body's origin [m]
+};
+
+struct Direction {
+    BodyId body = ground;
+    Eigen::Vector3d u_local = Eigen::Vector3d::UnitZ();  // unit
+};
+
+struct Marker {
+    BodyId body = ground;
+    Eigen::Vector3d s_local = Eigen::Vector3d::Zero();            // from the body's origin [m]
+    Eigen::Quaterniond A_local = Eigen::Quaterniond::Identity();  // marker axes to body axes
+};
+
+// ---- Joints, under their usual names. `i` is the first body, `j` the second. lowering.hpp lists
+// their constraints.
+
+struct Spherical {
+    Point i, j;
+};
+struct Revolute {
+    Point i, j;
+    Direction axis_i, axis_j;
+};
+struct Universal {
+    Point i, j;
+    Direction axis_i, axis_j;
+};  // the two axes of the cross, perpendicular
+struct Cylindrical {
+    Point i, j;
+    Direction axis_i, axis_j;
+};
+struct Translational {
+    Point i, j;
+    Direction axis_i, axis_j;
+};
+struct Planar {
+    Point i, j;
+    Direction normal_i, normal_j;
+};
+struct Fixed {
+    Point i, j;
+    Direction x_i, y_i, x_j, y_j;
+};  // x, y: the same two perpendicular directions on each
+struct Distance {
+    Point i, j;
+    double length = 0;
+};  // [m] > 0
+struct InPlane {
+    Point i, j;
+    Direction normal_j;
+    double offset = 0;  // of the plane from j along its normal [m]
+};                      // i stays in the plane
+struct InLine {
+    Point i, j;
+    Direction axis_j;
+};  // i stays on the line through j
+struct Perpendicular {
+    Direction i, j;
+};
+struct Parallel {
+    Direction i, j;
+};
+
+// i stays in the plane of x_j = j and y_j at this angle from x_j towards y_j, provided that it is
+// in that plane already: the drive of a revolute or cylindrical joint, never a joint by itself.
+struct Angle {
+    Direction i;
+    Direction j, y_j;  // perpendicular
+    double angle = 0;  // [rad]
+};
+
+using JointKind = std::variant<Spherical, Revolute, Universal, Cylindrical, Translational, Planar,
+                               Fixed, Distance, InPlane, InLine, Perpendicular, Parallel, Angle>;
+struct Joint {
+    std::string name;
+    JointKind kind;
+    bool active_only_where_driven = false;  // a jack: active only on the branches that drive it
+};
+
+// ---- Elastic elements: geometry times law. The geometry defines the deformation, the law its
+// energy; all forces follow from the energy.
+
+// Laws of one deformation x.
+struct LinearRate {
+    double k = 0;  // [N/m] or [N·m/rad] ≥ 0
+};                 // u(x) = ½ k x²
+
+// Force over a deformation, a piecewise cubic polynomial:
+//
+//   f(x) = Σ c_kn (x - x_k)ⁿ, n = 0 ... 3,  on the pieces  x < x_0 | x_0 ≤ x < x_1 | ... | x ≥ x_K
+//   u(x) = ∫₀ˣ f
+//
+// The pieces before the first and behind the last knot are linear and unbounded. f is continuous.
+// Its slope is continuous for a smooth interpolant; it jumps at the rows of a piecewise linear
+// table and where a stop closes.
+struct Curve {
+    std::vector<double> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
+    std::vector<std::array<double, 4>>
+        pieces;                 // c [N, N/m, ...] of the piece before the first knot, about it,
+                                // then of the piece behind each knot, about that knot
+    bool known_outside = true;  // false: undefined beyond the end knots, and a branch ends there
+};
+using ScalarLaw = std::variant<LinearRate, Curve>;
+
+// Laws of six deformations e = (d, θ).
+struct LinearStiffness {
+    Matrix6 K = Matrix6::Zero();  // symmetric, positive semidefinite, [N/m  N; N  N·m/rad]
+};                                // u(e) = ½ eᵀ K e;  K = diag(K_T', K_R') is eqs. (8)-(9)
+struct PerAxis {
+    std::array<ScalarLaw, 6> axis;
+};  // u(e) = Σ u_k(e_k), x y z of d, x y z of θ
+using SpatialLaw = std::variant<LinearStiffness, PerAxis>;
+
+// Two points:  U = u(ℓ - ℓ₀),  ℓ = |p_j - p_i|
+struct AxialSpring {
+    Point i, j;
+    ScalarLaw law;
+    double free_length = 0;  // ℓ₀ [m]
+};
+
+// Deformation measure of a bushing and the direction of its forces. Programs differ here and all
+// choices are valid. The default is eqs. (10)-(11) as an energy. B = A_iᵀ A_j is the rotation from
+// marker axes i to j.
+struct Formulation {
+    // The axes A_f of d:  on_i: A_i   middle: A_i B^½   on_j: A_j. A frame on j equals a frame on i
+    // of the same bushing with its markers swapped and the signs of its deformations reversed:
+    // compile() does that, so that no leg sees it.
+    enum class Frame { on_i, on_j, middle } frame = Frame::on_i;
+    // The three angles θ of B:
+    //   rotation_vector  log(B)
+    //   cardan           B = R_x(θ_x) R_y(θ_y) R_z(θ_z)
+    //   projected        θ_x = atan2(-B_12, B_22)   θ_y = atan2(B_02, B_22)
+    //                    θ_z = atan2(B_10, B_00), indices from 0: each axis of j projected along an
+    //                    axis of i, the small angles of a commercial code
+    enum class Angles { rotation_vector, cardan, projected } angles = Angles::rotation_vector;
+    // true:  forces and moments are conjugate to (d, θ): -∂U/∂q. They have an energy.
+    // false: (F', M') = ∂u/∂e + preload along the axes A_f: F = A_f F', M = A_f M', F acting at p_j
+    //        on both bodies. In general no energy. Not defined with the frame in the middle.
+    bool conjugate = true;
+    // false: F acts on each body at its own marker. The moment D × F of the offset between the
+    // points is left out, and in the middle also its part on j: M = A_i (∂θ/∂φ)ᵀ M' alone, φ the
+    // rotation of j relative to i. No energy.
+    bool offset_moment = true;
+
+    friend bool operator==(const Formulation&, const Formulation&) = default;
+};
+constexpr bool has_energy(const Formulation& f) { return f.conjugate && f.offset_moment; }
+
+// Two markers:  U = u(e - e₀) + preloadᵀ e,  e = (d, θ),  d = A_fᵀ (p_j - p_i),  θ = log(A_iᵀ A_j)
+// with p, A the positions and axes of the two markers. By default A_f = A_i, the frame is fixed in
+// marker i as in eqs. (10)-(11), and θ is the rotation vector; see Formulation. `preload` is (force
+// [N], moment [N·m]) in marker axes at e = e₀, positive where it pulls j back against +e, as ∂u/∂e
+// does. `undeformed` is e₀ [m, rad], where the law has zero force.
+//
+// A torsion spring is a bushing that resists only θ_z, a tyre one to ground that resists only d_z,
+// a beam one at half its length with its frame in the middle (models/reader/definitions/beams.hpp).
+struct Bushing {
+    Marker i, j;
+    SpatialLaw law;
+    Vector6 preload = Vector6::Zero();
+    Vector6 undeformed = Vector6::Zero();
+    Formulation formulation = {};
+};
+
+using ElasticKind = std::variant<AxialSpring, Bushing>;
+
+// Kind of element in the file, for output names and drawings; the legs do not read it.
+enum class WrittenAs { itself, stop, torsion_spring, beam, tyre };  // itself: a spring or bushing
+
+struct Elastic {
+    std::string name;
+    ElasticKind kind;
+    bool active_only_where_driven = false;  // a tyre: active only on the branches that drive it
+    WrittenAs written_as = WrittenAs::itself;
+    // Markers swapped by compile(), since the frame is on j: deformations and forces change sign.
+    bool markers_swapped = false;
+};
+
+// ---- Loads. Dead loads keep their direction in ground axes while their point of application
+// moves. Followers rotate with their body and have no potential.
+
+struct DeadForce {
+    Point at;
+    Eigen::Vector3d f = Eigen::Vector3d::Zero();  // [N]; [-] if a driver multiplies it by newtons
+};
+struct DeadMoment {
+    BodyId body = ground;
+    Eigen::Vector3d m = Eigen::Vector3d::Zero();  // [N·m]; [m] or [-] where a driver multiplies it
+};
+struct FollowerForce {
+    Point at;
+    Eigen::Vector3d f_local = Eigen::Vector3d::Zero();  // [N] or [-], body axes
+};
+struct FollowerMoment {
+    BodyId body = ground;
+    Eigen::Vector3d m_local = Eigen::Vector3d::Zero();  // [N·m], [m] or [-], body axes
+};
+using LoadKind = std::variant<DeadForce, DeadMoment, FollowerForce, FollowerMoment>;
+struct Load {
+    std::string name;
+    LoadKind kind;
+};
+
+}  // namespace elastocheck

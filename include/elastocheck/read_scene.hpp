@@ -1,0 +1,41 @@
+// Reads scenes from YAML files. The format is documented in models/scenes/README.md.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "elastocheck/scene.hpp"
+
+namespace elastocheck {
+
+// Error in the input. what() reads "file:line: field: what is wrong, what is allowed".
+struct SceneError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// Replacement of one value of the file before reading: all references to a hardpoint then use it.
+struct Setting {
+    // Path of keys to the value, "springs.coil.rate"; in a list of three .x, .y or .z, in any other
+    // list its position from 1, "bushings.mount.stiffness.2.6". Only existing values can be set.
+    std::string path;
+    std::string value;  // as written in the file, in its units
+};
+
+// Parses "points.tie_rod_inner.z=-0.055". Throws SceneError if path or value is missing.
+Setting parse_setting(std::string_view text);
+
+// A setting with the shortest text that reads back as the same number.
+Setting setting(std::string path, double value);
+
+// Reads a scene. Every body starts with its axes parallel to ground; all values are converted to m,
+// rad, N. Scene::numbers lists the numbers of the file after the settings. Throws SceneError.
+Scene read_scene(const std::filesystem::path& file, std::span<const Setting> settings = {});
+
+// The same from text; `name` replaces the file name in messages.
+Scene parse_scene(std::string_view text, const std::string& name,
+                  std::span<const Setting> settings = {});
+
+}  // namespace elastocheck

@@ -1,0 +1,171 @@
+// A scene: the user's input, from one YAML file (scene_file.hpp) or built in code.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "elastocheck/mechanism.hpp"
+
+namespace elastocheck {
+
+// ---- Inputs that a branch drives, all as start + rate · a, a the parameter of the branch.
+
+// Offset of a joint relative to its value in the scene: the length of a Distance, the offset of an
+// InPlane [m], the angle of an Angle [rad].
+struct Motion {
+    int joint = 0;  // position in Scene::joints or Model::joints
+};
+// Change of the free length ℓ₀ of an AxialSpring [m].
+struct FreeLength {
+    int elastic = 0;  // position in Scene::elastics or Model::elastics
+};
+// Change of the preload of a Bushing.
+struct Preload {
+    int elastic = 0;
+    Vector6 direction = Vector6::Zero();  // multiplied by the driver, (force, moment) [N, N·m]
+};
+using Driven = std::variant<Load, Motion, FreeLength, Preload>;
+
+struct Driver {
+    Driven what;
+    double start = 0;  // at a = 0, constant while a changes
+    double rate = 0;   // per unit of a
+};
+
+enum class ParameterUnit { newton, newton_metre, metre, radian, none };
+
+// A path of equilibria. At a = 0 it starts with the scene as drawn, settled under the start values.
+// From there a goes to `to`, and to `from` if that is on the other side of 0: one path with two
+// sides. The paper's example is two branches driven by a load, to +3000 and to -3000 N, 300 steps
+// each.
+struct Branch {
+    std::string name;
+    double from = 0;  // of the parameter a
+    double to = 0;
+    int steps = 0;  // equal increments of a in the published sweep, over the whole branch
+    ParameterUnit unit = ParameterUnit::newton;  // of a
+    std::vector<Driver> drivers;
+};
+
+// Steering axis of the wheel as drawn: the line through two points, each fixed in its body (two
+// ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs do not read
+// it.
+struct SteeringAxis {
+    Point lower, upper;  // or ground
+};
+
+struct Wheel {
+    std::string name;  // "left"; empty if the scene has one wheel
+    BodyId body = ground;
+    Eigen::Vector3d centre_local = Eigen::Vector3d::Zero();  // [m]
+    Eigen::Vector3d contact_local =
+        Eigen::Vector3d::Zero();  // contact patch at the design pose, a point of the body [m]
+    Eigen::Vector3d spin_axis_local = Eigen::Vector3d::UnitY();  // unit, pointing outboard
+    int side = +1;                                               // +1 left, -1 right
+    double tyre_rate =
+        0;  // vertical, k_t [N/m]; 0: no tyre given. Ride rate: 1 / (1/k_wheel + 1/k_t)
+    // none where the geometry has none, as in a multi-link
+    std::optional<SteeringAxis> steering_axis = {};
+};
+
+// A body point whose position is an output, for scenes that are not suspensions.
+struct Probe {
+    std::string name;
+    Point at;
+};
+
+// Two points whose distance is an output. A damper has no force in quasi-statics.
+struct Damper {
+    std::string name;
+    Point i, j;  // or ground
+};
+
+// Vehicle data for the outputs that depend on it: anti-dive, Ackermann.
+enum class Axle { front, rear };
+struct Vehicle {
+    double wheelbase = 0;  // [m] > 0
+    double cg_height =
+        0;  // of the whole vehicle, above the contact patches of the design position [m] > 0
+    Axle axle = Axle::front;  // axle of the scene's wheels
+    double brake_share = 0;   // of the vehicle's braking force, at this axle, 0 ... 1
+    double drive_share = 0;   // of the driving force, 0 ... 1
+};
+
+// A named position of the design, ground axes [m]. For drawings; the legs do not read it.
+struct Hardpoint {
+    std::string name;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
+// A number of the scene file, as written and in the unit declared there.
+struct Number {
+    std::string path;  // "points.tie_rod_inner.z": name for a Setting
+    double value = 0;
+    std::string unit;  // "mm", "N·m/deg"; empty for a pure number
+};
+
+// ---- Trim: parameters adjusted until the design position is in equilibrium under the start values
+// of every branch. As many conditions as adjustments. Solved first (compare/comparison/trim.hpp); the branches
+// start from there.
+
+struct WheelTravel {
+    int wheel = 0;
+};  // of the centre, up from the design position [m]
+struct WheelToe {
+    int wheel = 0;
+};  // [rad]
+struct WheelCamber {
+    int wheel = 0;
+};  // [rad]
+struct ProbeCoordinate {
+    int probe = 0;
+    int axis = 2;  // 0 x, 1 y, 2 z
+};                 // position relative to that at the design position [m]
+using ConditionKind = std::variant<WheelTravel, WheelToe, WheelCamber, ProbeCoordinate>;
+
+struct Trim {
+    struct Adjustment {
+        std::string name;  // named as a driver: "springs.coil.preload"
+        // relative to its value in the scene; never a Load
+        Driven what;
+        // change of `what` for one unit of the named quantity [SI/SI]
+        double per_unit = 1;
+        ParameterUnit unit = ParameterUnit::newton;  // of the named quantity
+    };
+    struct Condition {
+        std::string name;  // "left.travel"
+        ConditionKind what;
+        std::optional<double> value;  // SI; none: its value in the scene as drawn
+    };
+    std::vector<Adjustment> adjust;
+    std::vector<Condition> until;
+    int line = 0;  // of the file, 0 when built in code
+};
+
+// A part of the input that is not modelled.
+struct Omission {
+    std::string what;  // "body 'antiroll_bar'"
+    std::string why;
+};
+
+struct Scene {
+    std::string name;
+    std::string source;           // file it was read from, empty when built in code
+    std::vector<Number> numbers;  // of the file, in the order of reading; empty when built in code
+    std::vector<Hardpoint> hardpoints;
+    std::vector<Body> bodies;
+    std::vector<Joint> joints;
+    std::vector<Elastic> elastics;
+    std::vector<Load> static_loads;  // act on every branch
+    std::vector<Branch> branches;
+    std::vector<Wheel> wheels;
+    std::vector<Probe> probes;
+    std::vector<Damper> dampers;
+    std::optional<Vehicle> vehicle;
+    std::optional<Trim> trim;
+    std::vector<Omission> omitted;  // parts that the file defines and nothing uses
+};
+
+}  // namespace elastocheck

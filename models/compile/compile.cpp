@@ -1,0 +1,135 @@
+#include "elastocheck/compile.hpp"
+
+#include <algorithm>
+
+#include "models/compile/parts.hpp"
+#include "models/compile/passes.hpp"
+#include "models/curve.hpp"
+#include "models/lowering.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck {
+namespace {
+
+// Point of a joint's end on its body.
+Point place(const Point& end) { return end; }
+Point place(const Direction& end) { return {end.body, Eigen::Vector3d::Zero()}; }
+
+ModelJoint summary(const Joint& joint) {
+    const auto [i, j] = reduce::ends(joint.kind);
+    const Point at = std::visit([](const auto& s) { return place(s.i); }, joint.kind);
+    return {joint.name, i, j, at, -1, joint.active_only_where_driven};
+}
+
+// Whether a driver can move the constraint's offset, length or angle.
+bool can_be_driven(const ConstraintKind& kind) {
+    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
+                                 [](const PointInPlane&) { return true; },
+                                 [](const PerpendicularDirections&) { return false; },
+                                 [](const DistanceBetween&) { return true; },
+                                 [](const DirectionAtAngle&) { return true; }},
+                      kind);
+}
+
+// Whether compile() must swap the element's markers.
+bool is_framed_on_j(const ElasticKind& elastic) {
+    const auto* bushing = std::get_if<Bushing>(&elastic);
+    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::on_j;
+}
+
+Size size_of(const Scene& scene) {
+    int rows_of_joints = 0;
+    for (const Joint& joint : scene.joints)
+        for (const ConstraintKind& kind : lower(joint.kind, scene.bodies))
+            rows_of_joints += rows(kind);
+    const auto count = [](const auto& list) { return static_cast<int>(list.size()); };
+    return {count(scene.bodies), count(scene.joints), count(scene.elastics), rows_of_joints};
+}
+
+void reduce_to_what_is_required(Scene& scene) {
+    reduce::drop_what_does_nothing(scene);
+    reduce::drop_what_never_stands(scene);
+    reduce::weld(scene);
+    reduce::drop_what_is_within_one_body(scene);
+    reduce::drop_what_no_output_sees(scene);
+    reduce::drop_free_followers(scene);
+    reduce::drop_duplicates(scene);
+    reduce::shorten_links(scene);
+}
+
+void lower_joints(const Scene& scene, Model& model) {
+    for (const Joint& joint : scene.joints) {
+        const int id = static_cast<int>(model.joints.size());
+        ModelJoint& lowered = model.joints.emplace_back(summary(joint));
+        const auto kinds = lower(joint.kind, scene.bodies);
+        for (const ConstraintKind& kind : kinds) {
+            if (kinds.size() == 1 && can_be_driven(kind))
+                lowered.driven = static_cast<int>(model.constraints.size());
+            model.constraints.push_back({id, kind});
+        }
+    }
+}
+
+// Swaps the markers of bushings with their frame on j, and the sign of drivers of their preload.
+void turn_round(Model& model) {
+    const auto element = [&](int k) -> ElasticKind& {
+        return model.elastics[static_cast<std::size_t>(k)].kind;
+    };
+    for (Branch& branch : model.branches)
+        for (Driver& driver : branch.drivers)
+            if (auto* preload = std::get_if<Preload>(&driver.what);
+                preload != nullptr && is_framed_on_j(element(preload->elastic)))
+                preload->direction = (-preload->direction).eval();
+    for (Elastic& elastic : model.elastics)
+        if (is_framed_on_j(elastic.kind)) {
+            elastic.kind = markers_swapped(std::get<Bushing>(elastic.kind));
+            elastic.markers_swapped = true;
+        }
+}
+
+// Removes drivers of joints without a length, offset or angle, and reports branches that move
+// nothing.
+void name_what_cannot_move(Model& model) {
+    for (Branch& branch : model.branches) {
+        std::erase_if(branch.drivers, [&](const Driver& driver) {
+            const auto* motion = std::get_if<Motion>(&driver.what);
+            if (motion == nullptr) return false;
+            const ModelJoint& joint = model.joints[static_cast<std::size_t>(motion->joint)];
+            if (joint.driven >= 0) return false;
+            model.omitted.push_back(
+                {reduce::named("motion of joint", joint.name),
+                 "it has no length, offset or angle (branch '" + branch.name + "')"});
+            return true;
+        });
+        if (std::ranges::none_of(branch.drivers,
+                                 [](const Driver& driver) { return driver.rate != 0; }))
+            model.omitted.push_back(
+                {reduce::named("branch", branch.name), "nothing that it moves is left"});
+    }
+}
+
+}  // namespace
+
+Model compile(const Scene& asked, Detail detail) {
+    Scene scene = asked;
+    if (detail == Detail::required) reduce_to_what_is_required(scene);
+    Model model;
+    model.name = scene.name;
+    model.as_written = size_of(asked);
+    model.as_solved = size_of(scene);
+    model.bodies = scene.bodies;
+    lower_joints(scene, model);
+    model.elastics = scene.elastics;
+    model.static_loads = scene.static_loads;
+    model.branches = scene.branches;
+    turn_round(model);
+    model.wheels = scene.wheels;
+    model.probes = scene.probes;
+    model.dampers = scene.dampers;
+    model.vehicle = scene.vehicle;
+    model.omitted = scene.omitted;
+    name_what_cannot_move(model);
+    return model;
+}
+
+}  // namespace elastocheck

@@ -1,0 +1,95 @@
+// Removes joints that repeat another.
+// Other redundancy depends on the position and is found by the legs.
+#include <algorithm>
+#include <map>
+
+#include "models/compile/parts.hpp"
+#include "models/compile/passes.hpp"
+#include "models/lowering.hpp"
+
+namespace elastocheck::reduce {
+namespace {
+
+using Eigen::Vector3d;
+
+bool same(double a, double b) { return std::abs(a - b) <= as_drawn; }
+bool same(const Point& a, const Point& b) {
+    return a.body == b.body && (a.s_local - b.s_local).norm() <= as_drawn;
+}
+bool same(const Direction& a, const Direction& b) {
+    return a.body == b.body && (a.u_local - b.u_local).norm() <= as_drawn;
+}
+bool same_line(const Direction& a, const Direction& b) {
+    return same(a, b) || same(a, {b.body, -b.u_local});
+}
+template <class T>
+bool same_pair(const T& a, const T& b,
+               bool (*same_one)(const decltype(T::i)&, const decltype(T::i)&)) {
+    return (same_one(a.i, b.i) && same_one(a.j, b.j)) || (same_one(a.i, b.j) && same_one(a.j, b.i));
+}
+
+// Whether the two are the same equation up to sign.
+bool same(const CoincidentPoints& a, const CoincidentPoints& b) { return same_pair(a, b, same); }
+bool same(const PointInPlane& a, const PointInPlane& b) {
+    if (!same(a.i, b.i) || !same(a.j, b.j)) return false;
+    return (same(a.normal_j, b.normal_j) && same(a.offset, b.offset)) ||
+           (same(a.normal_j, {b.normal_j.body, -b.normal_j.u_local}) && same(a.offset, -b.offset));
+}
+bool same(const PerpendicularDirections& a, const PerpendicularDirections& b) {
+    return same_pair(a, b, same_line);
+}
+bool same(const DistanceBetween& a, const DistanceBetween& b) {
+    return same(a.length, b.length) && same_pair(a, b, same);
+}
+bool same(const DirectionAtAngle& a, const DirectionAtAngle& b) {
+    return same(a.i, b.i) && same(a.j, b.j) && same(a.y_j, b.y_j) && same(a.angle, b.angle);
+}
+
+using Equations = std::vector<ConstraintKind>;
+
+bool holds(const Equations& all, const ConstraintKind& one) {
+    return std::ranges::any_of(all, [&](const ConstraintKind& other) {
+        return other.index() == one.index() &&
+               std::visit(
+                   [&](const auto& a) {
+                       return same(a, std::get<std::decay_t<decltype(a)>>(other));
+                   },
+                   one);
+    });
+}
+bool holds(const Equations& all, const Equations& some) {
+    return std::ranges::all_of(some, [&](const ConstraintKind& one) { return holds(all, one); });
+}
+
+}  // namespace
+
+void drop_duplicates(Scene& scene) {
+    const DrivenParts driven = driven_parts(scene);
+    std::map<std::pair<BodyId, BodyId>, std::vector<std::size_t>> between;
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        const auto [i, j] = ends(scene.joints[k].kind);
+        if (!driven.joints[k] && !scene.joints[k].active_only_where_driven)
+            between[std::minmax(i, j)].push_back(k);
+    }
+    Kept kept(scene);
+    for (const auto& [pair, joints] : between) {
+        if (joints.size() < 2) continue;
+        std::vector<Equations> equations;
+        for (const std::size_t k : joints)
+            equations.push_back(lower(scene.joints[k].kind, scene.bodies));
+        for (std::size_t k = 0; k < joints.size(); ++k)
+            for (std::size_t l = 0; l < joints.size(); ++l) {
+                if (l == k || !kept.joints[joints[l]] || !kept.joints[joints[k]]) continue;
+                if (!holds(equations[l], equations[k])) continue;
+                if (l > k && holds(equations[k], equations[l]))
+                    continue;  // of two equal joints the first stays
+                kept.joints[joints[k]] = false;
+                leave_out(scene, named("joint", scene.joints[joints[k]].name),
+                          "joint '" + scene.joints[joints[l]].name +
+                              "' holds the same; its reaction is part of that one's");
+            }
+    }
+    keep_only(scene, kept);
+}
+
+}  // namespace elastocheck::reduce

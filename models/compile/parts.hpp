@@ -1,0 +1,107 @@
+// Helpers of the reduction passes: traverse, inspect and remove the parts of a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "elastocheck/scene.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::reduce {
+
+// ---- Calls f(Point&), f(Direction&) or f(Marker&) for every point, direction and marker of a
+// part, i first, then j.
+
+template <class F>
+void each_place(JointKind& joint, F f) {
+    const auto all = [&](auto&... places) { (f(places), ...); };
+    std::visit(
+        overloaded{
+            [&](Spherical& s) { all(s.i, s.j); },
+            [&](Revolute& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
+            [&](Universal& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
+            [&](Cylindrical& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
+            [&](Translational& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
+            [&](Planar& s) { all(s.i, s.j, s.normal_i, s.normal_j); },
+            [&](Fixed& s) { all(s.i, s.j, s.x_i, s.y_i, s.x_j, s.y_j); },
+            [&](Distance& s) { all(s.i, s.j); }, [&](InPlane& s) { all(s.i, s.j, s.normal_j); },
+            [&](InLine& s) { all(s.i, s.j, s.axis_j); }, [&](Perpendicular& s) { all(s.i, s.j); },
+            [&](Parallel& s) { all(s.i, s.j); }, [&](Angle& s) { all(s.i, s.j, s.y_j); }},
+        joint);
+}
+template <class F>
+void each_place(ElasticKind& elastic, F f) {
+    std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic);
+}
+
+// Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output reads, ground
+// included.
+template <class S, class F>
+void each_output_body(S& scene, F f) {
+    for (auto& wheel : scene.wheels) {
+        f(wheel.body);
+        if (wheel.steering_axis)
+            f(wheel.steering_axis->lower.body), f(wheel.steering_axis->upper.body);
+    }
+    for (auto& probe : scene.probes) f(probe.at.body);
+    for (auto& damper : scene.dampers) f(damper.i.body), f(damper.j.body);
+}
+
+struct Ends {
+    BodyId i, j;
+};
+Ends ends(const JointKind& joint);
+Ends ends(const ElasticKind& elastic);
+BodyId body_of(const LoadKind& load);
+
+// Calls f for every input that a branch drives or the trim adjusts.
+template <class F>
+void each_driven(const Scene& scene, F f) {
+    for (const Branch& branch : scene.branches)
+        for (const Driver& driver : branch.drivers) f(driver.what);
+    if (!scene.trim) return;
+    for (const Trim::Adjustment& adjustment : scene.trim->adjust) f(adjustment.what);
+}
+struct DrivenParts {
+    std::vector<bool> joints, elastics;  // by position in the scene
+};
+DrivenParts driven_parts(const Scene& scene);
+
+// ---- At the design position.
+
+// [m], or of a unit vector: tolerance for equality as drawn
+inline constexpr double as_drawn = 1e-12;
+
+Pose design(const Scene& scene, BodyId body);
+Eigen::Vector3d position(const Scene& scene, const Point& p);
+Eigen::Vector3d direction(const Scene& scene, const Direction& u);
+
+// Whether a length, offset or angle of the joint differs from the drawing, so that it moves without
+// load.
+bool is_strained_at_design(const JointKind& joint, const Scene& scene);
+// Whether the element has a force; assumed if its markers are apart or rotated.
+bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene);
+
+bool is_zero(const LoadKind& load);
+bool is_zero(const ElasticKind& elastic);  // no law and no preload
+
+// ---- Removal.
+
+std::string named(const char* kind, const std::string& name);  // "body 'arm'"
+void leave_out(Scene& scene, const std::string& what, const std::string& why);
+
+// Flags of the parts that stay; initially all.
+struct Kept {
+    explicit Kept(const Scene& scene)
+        : bodies(scene.bodies.size(), true),
+          joints(scene.joints.size(), true),
+          elastics(scene.elastics.size(), true) {}
+    std::vector<bool> bodies, joints, elastics;
+};
+
+// Removes all other parts, which the caller has listed in omitted, and the joints, elements and
+// loads attached to a removed body, which are listed here. Drivers of removed parts are removed;
+// other references are renumbered. Pre: no output reads a removed body.
+void keep_only(Scene& scene, Kept kept);
+
+}  // namespace elastocheck::reduce

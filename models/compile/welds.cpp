@@ -1,0 +1,170 @@
+// Merges bodies held together by Fixed joints.
+//
+// Body b is fixed to body c as drawn and keeps its pose in the axes of c: with r, A the design
+// positions,
+//
+//   s_c = A_cᵀ (r_b + A_b s_b - r_c)      u_c = A_cᵀ A_b u_b      A_local,c = A_cᵀ A_b A_local,b
+//
+// give the same points, directions and markers as fixed in c.
+#include <numeric>
+
+#include "models/compile/parts.hpp"
+#include "models/compile/passes.hpp"
+
+namespace elastocheck::reduce {
+namespace {
+
+using Eigen::Vector3d;
+
+bool is_as_drawn(const Fixed& s, const Scene& scene) {
+    const auto same = [&](const Vector3d& a, const Vector3d& b) {
+        return (a - b).norm() <= as_drawn;
+    };
+    return same(position(scene, s.i), position(scene, s.j)) &&
+           same(direction(scene, s.x_i), direction(scene, s.x_j)) &&
+           same(direction(scene, s.y_i), direction(scene, s.y_j));
+}
+
+// Disjoint sets of merged bodies, represented by their first; ground is number 0, body b is b + 1.
+// A body with a wheel or a probe is not merged into ground; an end of a damper or of an axis may
+// be.
+class Sets {
+  public:
+    explicit Sets(const Scene& scene)
+        : first_(scene.bodies.size() + 1), has_output_(scene.bodies.size() + 1) {
+        std::iota(first_.begin(), first_.end(), std::size_t{0});
+        for (const Wheel& wheel : scene.wheels) has_output_[number(wheel.body)] = true;
+        for (const Probe& probe : scene.probes) has_output_[number(probe.at.body)] = true;
+    }
+    BodyId first(BodyId body) { return static_cast<BodyId>(find(number(body))) - 1; }
+    bool unite(BodyId a, BodyId b) {
+        const std::size_t low = std::min(find(number(a)), find(number(b)));
+        const std::size_t high = std::max(find(number(a)), find(number(b)));
+        if (low == 0 && has_output_[high]) return false;
+        first_[high] = low;
+        has_output_[low] = has_output_[low] || has_output_[high];
+        return true;
+    }
+
+  private:
+    static std::size_t number(BodyId body) { return static_cast<std::size_t>(body + 1); }
+    std::size_t find(std::size_t n) {
+        while (first_[n] != n) n = first_[n] = first_[first_[n]];
+        return n;
+    }
+    std::vector<std::size_t> first_;
+    std::vector<bool> has_output_;
+};
+
+struct Told {  // transforms to the representative body c
+    const Scene& scene;
+    Sets& sets;
+
+    void operator()(Point& p) const {
+        const BodyId c = sets.first(p.body);
+        if (c == p.body) return;
+        const Pose to = design(scene, c);
+        p = {c, to.p.conjugate() * (position(scene, p) - to.r)};
+    }
+    void operator()(Direction& u) const {
+        const BodyId c = sets.first(u.body);
+        if (c != u.body) u = {c, design(scene, c).p.conjugate() * direction(scene, u)};
+    }
+    void operator()(Marker& m) const {
+        const BodyId c = sets.first(m.body);
+        if (c == m.body) return;
+        Point at{m.body, m.s_local};
+        (*this)(at);
+        m = {c, at.s_local,
+             (design(scene, c).p.conjugate() * design(scene, m.body).p * m.A_local).normalized()};
+    }
+    // Transforms the components of a vector that is not a unit vector.
+    Vector3d turned(BodyId body, const Vector3d& v_local) const {
+        Direction u{body, v_local};
+        (*this)(u);
+        return u.u_local;
+    }
+    void operator()(LoadKind& load) const {
+        std::visit(overloaded{[&](DeadForce& l) { (*this)(l.at); },
+                              [&](DeadMoment& l) { l.body = sets.first(l.body); },
+                              [&](FollowerForce& l) {
+                                  l.f_local = turned(l.at.body, l.f_local);
+                                  (*this)(l.at);
+                              },
+                              [&](FollowerMoment& l) {
+                                  l.m_local = turned(l.body, l.m_local);
+                                  l.body = sets.first(l.body);
+                              }},
+                   load);
+    }
+    void operator()(Wheel& wheel) const {
+        Point centre{wheel.body, wheel.centre_local}, contact{wheel.body, wheel.contact_local};
+        (*this)(centre), (*this)(contact);
+        wheel.spin_axis_local = turned(wheel.body, wheel.spin_axis_local);
+        wheel.centre_local = centre.s_local;
+        wheel.contact_local = contact.s_local;
+        wheel.body = centre.body;
+        if (wheel.steering_axis)
+            (*this)(wheel.steering_axis->lower), (*this)(wheel.steering_axis->upper);
+    }
+};
+
+// Removes a load on a body merged into ground, where nothing moves.
+bool falls_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
+    const BodyId body = body_of(load.kind);
+    if (body == ground || sets.first(body) != ground) return false;
+    leave_out(scene, named("load", load.name),
+              named("body", scene.bodies[static_cast<std::size_t>(body)].name) +
+                  " is welded to ground" + where);
+    return true;
+}
+
+}  // namespace
+
+void weld(Scene& scene) {
+    Sets sets(scene);
+    Kept kept(scene);
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        const auto* fixed = std::get_if<Fixed>(&scene.joints[k].kind);
+        if (fixed == nullptr || scene.joints[k].active_only_where_driven ||
+            !is_as_drawn(*fixed, scene))
+            continue;
+        if (!sets.unite(fixed->i.body, fixed->j.body)) continue;
+        kept.joints[k] = false;
+        leave_out(scene, named("joint", scene.joints[k].name),
+                  "the bodies that it fixes to each other are one; its reaction is no output");
+    }
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+        const BodyId first = sets.first(static_cast<BodyId>(b));
+        if (first == static_cast<BodyId>(b)) continue;
+        kept.bodies[b] = false;
+        leave_out(
+            scene, named("body", scene.bodies[b].name),
+            "fixed to " + (first == ground
+                               ? "ground"
+                               : named("body", scene.bodies[static_cast<std::size_t>(first)].name) +
+                                     ", with which it is one"));
+    }
+
+    std::erase_if(scene.static_loads,
+                  [&](const Load& load) { return falls_on_ground(scene, load, sets, ""); });
+    for (Branch& branch : scene.branches)
+        std::erase_if(branch.drivers, [&](const Driver& driver) {
+            const auto* load = std::get_if<Load>(&driver.what);
+            return load != nullptr &&
+                   falls_on_ground(scene, *load, sets, " (branch '" + branch.name + "')");
+        });
+    const Told told{scene, sets};
+    for (Joint& joint : scene.joints) each_place(joint.kind, told);
+    for (Elastic& elastic : scene.elastics) each_place(elastic.kind, told);
+    for (Load& load : scene.static_loads) told(load.kind);
+    for (Branch& branch : scene.branches)
+        for (Driver& driver : branch.drivers)
+            if (auto* load = std::get_if<Load>(&driver.what)) told(load->kind);
+    for (Wheel& wheel : scene.wheels) told(wheel);
+    for (Probe& probe : scene.probes) told(probe.at);
+    for (Damper& damper : scene.dampers) told(damper.i), told(damper.j);
+    keep_only(scene, kept);
+}
+
+}  // namespace elastocheck::reduce

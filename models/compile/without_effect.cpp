@@ -1,0 +1,108 @@
+// Removes parts without effect, parts that are never active, and parts within one body.
+#include "models/compile/parts.hpp"
+#include "models/compile/passes.hpp"
+
+namespace elastocheck::reduce {
+namespace {
+
+// Reason why the driver has no effect; empty if it has one: a non-zero start or rate of an input
+// that exists. A Motion at 0 still holds its joint; a tyre with its road at 0 still acts.
+std::string idle(const Driver& driver, const Scene& scene) {
+    const bool is_never = driver.start == 0 && driver.rate == 0;
+    return std::visit(
+        overloaded{
+            [&](const Load& l) { return is_never || is_zero(l.kind) ? "it is zero" : ""; },
+            [](const Motion&) { return ""; },
+            [&](const FreeLength& f) {
+                const auto& kind = scene.elastics[static_cast<std::size_t>(f.elastic)].kind;
+                const bool is_moved = std::holds_alternative<AxialSpring>(kind) && !is_zero(kind);
+                return is_never || !is_moved ? "it moves nothing" : "";
+            },
+            [&](const Preload& p) {
+                if (scene.elastics[static_cast<std::size_t>(p.elastic)].active_only_where_driven)
+                    return "";
+                return is_never || p.direction.isZero(0) ? "it is zero" : "";
+            }},
+        driver.what);
+}
+
+std::string name_of(const Driven& what, const Scene& scene) {
+    const auto element = [&](int k) { return scene.elastics[static_cast<std::size_t>(k)].name; };
+    return std::visit(
+        overloaded{[](const Load& l) { return named("load", l.name); },
+                   [&](const Motion& m) {
+                       return named("motion of joint",
+                                    scene.joints[static_cast<std::size_t>(m.joint)].name);
+                   },
+                   [&](const FreeLength& f) { return named("free length of", element(f.elastic)); },
+                   [&](const Preload& p) { return named("preload of", element(p.elastic)); }},
+        what);
+}
+
+}  // namespace
+
+void drop_what_does_nothing(Scene& scene) {
+    std::erase_if(scene.static_loads, [&](const Load& load) {
+        if (!is_zero(load.kind)) return false;
+        leave_out(scene, named("load", load.name), "it is zero");
+        return true;
+    });
+    for (Branch& branch : scene.branches)
+        std::erase_if(branch.drivers, [&](const Driver& driver) {
+            const std::string why = idle(driver, scene);
+            if (why.empty()) return false;
+            leave_out(scene, name_of(driver.what, scene), why + " (branch '" + branch.name + "')");
+            return true;
+        });
+}
+
+void drop_what_never_stands(Scene& scene) {
+    const DrivenParts driven = driven_parts(scene);
+    Kept kept(scene);
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        if (!scene.joints[k].active_only_where_driven || driven.joints[k]) continue;
+        kept.joints[k] = false;
+        leave_out(scene, named("joint", scene.joints[k].name), "no branch drives it");
+    }
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
+        const Elastic& elastic = scene.elastics[k];
+        if (driven.elastics[k] || (!elastic.active_only_where_driven && !is_zero(elastic.kind)))
+            continue;
+        kept.elastics[k] = false;
+        leave_out(scene, named("element", elastic.name),
+                  is_zero(elastic.kind) ? "its rates and preload are zero" : "no branch drives it");
+    }
+    keep_only(scene, kept);
+}
+
+void drop_what_is_within_one_body(Scene& scene) {
+    const DrivenParts driven = driven_parts(scene);
+    Kept kept(scene);
+    const auto name_of_body = [&](BodyId body) {
+        return body == ground ? "ground"
+                              : named("body", scene.bodies[static_cast<std::size_t>(body)].name);
+    };
+    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+        const auto [i, j] = ends(scene.joints[k].kind);
+        if (i != j || driven.joints[k] || is_strained_at_design(scene.joints[k].kind, scene))
+            continue;
+        kept.joints[k] = false;
+        leave_out(scene, named("joint", scene.joints[k].name),
+                  "both its ends are on " + name_of_body(i) + "; its reaction is no output");
+    }
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
+        const ElasticKind& kind = scene.elastics[k].kind;
+        const auto [i, j] = ends(kind);
+        // An element without energy may exert a net moment on its body if it is loaded.
+        const auto* bushing = std::get_if<Bushing>(&kind);
+        const bool turns = i != ground && bushing != nullptr && !has_energy(bushing->formulation) &&
+                           (driven.elastics[k] || is_loaded_at_design(kind, scene));
+        if (i != j || turns) continue;
+        kept.elastics[k] = false;
+        leave_out(scene, named("element", scene.elastics[k].name),
+                  "both its ends are on " + name_of_body(i));
+    }
+    keep_only(scene, kept);
+}
+
+}  // namespace elastocheck::reduce

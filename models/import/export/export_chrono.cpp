@@ -1,0 +1,388 @@
+// Writes the entries of GenericWheeledSuspension: the inverse of chrono/chrono.cpp.
+#include "models/import/export/export_chrono.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "elastocheck/read_scene.hpp"
+#include "models/curve.hpp"
+#include "models/import/chrono/suspension.hpp"
+#include "models/import/curves.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::importer {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using json = nlohmann::ordered_json;
+
+json list(const Vector3d& v) { return json::array({v.x(), v.y(), v.z()}); }
+
+Matrix3d frame(const Vector3d& x, const Vector3d& z) {
+    Matrix3d A;
+    A.col(2) = z.normalized();
+    A.col(0) = (x - x.dot(A.col(2)) * A.col(2)).normalized();
+    A.col(1) = Vector3d(A.col(2)).cross(Vector3d(A.col(0)));
+    return A;
+}
+Matrix3d with_z(const Vector3d& z) { return frame(z.unitOrthogonal(), z); }
+Matrix3d with_x(const Vector3d& x) { return frame(x, x.unitOrthogonal()); }
+
+class Writer {
+  public:
+    Writer(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
+
+    void whole() {
+        const auto left =
+            std::ranges::find_if(scene_.wheels, [](const Wheel& w) { return w.side > 0; });
+        if (left == scene_.wheels.end() || scene_.wheels.size() > 2)
+            throw SceneError(
+                fmt::format("{}: wheels: a suspension of Chrono has a left wheel, and its mirror "
+                            "image or the right one",
+                            scene_.source));
+        twice_ = scene_.wheels.size() == 1;
+        pair_bodies();
+        json root{{"Name", scene_.name},
+                  {"Type", "Suspension"},
+                  {"Template", "GenericWheeledSuspension"},
+                  {"Vehicle-Frame Inertia", false},
+                  {"Independent", twice_},
+                  {"Steerable", false}};
+        spindle(root, *left);
+        for (const char* section : {"Bodies", "Joints", "Distance Constraints", "TSDAs", "RSDAs"})
+            root[section] = json::array();
+        for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+            const Name& name = names_[b];
+            if (name.side < 0 || static_cast<BodyId>(b) == spindle_ ||
+                static_cast<BodyId>(b) == other_spindle_)
+                continue;  // written by its mirror image, or a spindle, which Chrono adds itself
+            root["Bodies"].push_back({{"Name", name.stem},
+                                      {"Mirrored", twice_ || name.side != 0},
+                                      {"Position", list(scene_.bodies[b].design.r)},
+                                      {"Rotation", {1, 0, 0, 0}},
+                                      {"Mass", 1},
+                                      {"Moments of Inertia", {1, 1, 1}},
+                                      {"Products of Inertia", {0, 0, 0}}});
+        }
+        for (const Joint& joint : scene_.joints) write(root, joint);
+        // Springs first: they include their stops.
+        for (const bool stops : {false, true})
+            for (const Elastic& elastic : scene_.elastics)
+                if ((elastic.written_as == WrittenAs::stop) == stops) write(root, elastic);
+        for (const Load& load : scene_.static_loads)
+            miss("load '" + load.name + "'", "a suspension carries none of its own");
+        for (const Branch& branch : scene_.branches)
+            result_.notes.leave_out("having no entry", {0, "branch '" + branch.name + "'"});
+        for (const Damper& damper : scene_.dampers)
+            result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
+        result_.notes.leave_out("being of motion alone", {0, "masses (all written as 1)"});
+        result_.text = "// Exported by elastocheck\n";
+        for (const auto& line : told(result_.notes)) result_.text += fmt::format("// {}\n", line);
+        result_.text += root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    }
+
+  private:
+    struct Name {
+        std::string stem;
+        int side = 0;  // if one of a pair
+    };
+
+    void miss(const std::string& what, const std::string& why) {
+        result_.notes.miss({0, what}, why);
+    }
+
+    // Pairs "arm_left" and "arm_right" if they are mirror images as drawn.
+    void pair_bodies() {
+        const auto& bodies = scene_.bodies;
+        for (const Body& body : bodies) names_.push_back({body.name});
+        if (twice_) return;
+        for (std::size_t a = 0; a < bodies.size(); ++a)
+            for (std::size_t b = 0; b < bodies.size(); ++b) {
+                if (!bodies[a].name.ends_with("_left") || !bodies[b].name.ends_with("_right"))
+                    continue;
+                const std::string stem = bodies[a].name.substr(0, bodies[a].name.size() - 5);
+                Vector3d image = bodies[b].design.r;
+                image.y() = -image.y();
+                if (bodies[b].name == stem + "_right" &&
+                    (image - bodies[a].design.r).norm() <= 1e-12) {
+                    names_[a] = {stem, +1};
+                    names_[b] = {stem, -1};
+                }
+            }
+    }
+
+    json body(BodyId id) const {
+        if (id == ground) return "Chassis";
+        const Name& name = names_[static_cast<std::size_t>(id)];
+        if (name.side == 0) return name.stem;
+        return json::array({name.stem, name.side > 0 ? "Left" : "Right"});
+    }
+    Vector3d drawn(BodyId id, const Vector3d& s) const {
+        return id == ground ? s
+                            : Vector3d(scene_.bodies[static_cast<std::size_t>(id)].design.r + s);
+    }
+    Vector3d drawn(const Point& point) const { return drawn(point.body, point.s_local); }
+
+    // For a body held only by a fixed joint: the body that it is fixed to.
+    BodyId held_by(BodyId id) const {
+        BodyId carrier = ground;
+        int uses = 0;
+        for (const Joint& joint : scene_.joints)
+            std::visit(
+                [&](const auto& kind) {
+                    if (kind.i.body != id && kind.j.body != id) return;
+                    uses += joint.active_only_where_driven ? 0 : 1;
+                    if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, Fixed>)
+                        carrier = kind.i.body == id ? kind.j.body : kind.i.body;
+                },
+                joint.kind);
+        for (const Elastic& elastic : scene_.elastics)
+            std::visit([&](const auto& e) { uses += e.i.body == id || e.j.body == id; },
+                       elastic.kind);
+        return uses == 1 ? carrier : ground;
+    }
+
+    //  e = side · Rz(-side·toe) Rx(-side·camber) y
+    void spindle(json& root, const Wheel& left) {
+        BodyId on = left.body;
+        if (const BodyId carrier = held_by(on); carrier != ground) {
+            spindle_ = on;
+            on = carrier;
+            for (const Wheel& wheel : scene_.wheels)
+                if (wheel.side < 0) other_spindle_ = wheel.body;
+        }
+        for (const Wheel& wheel : scene_.wheels)
+            if (wheel.side < 0 && (Vector3d(left.spin_axis_local.x(), -left.spin_axis_local.y(),
+                                            left.spin_axis_local.z()) -
+                                   wheel.spin_axis_local)
+                                          .norm() > 1e-12)
+                miss("wheel " + wheel.name, "its axis is not the left one's image");
+        const Vector3d e = left.spin_axis_local.normalized();
+        const double deg = 180 / std::numbers::pi;
+        root["Camber Angle (deg)"] = -deg * std::asin(std::clamp(e.z(), -1.0, 1.0));
+        root["Toe Angle (deg)"] = deg * std::atan2(e.x(), e.y());
+        json attached = body(on);
+        root["Spindle"] = {{"Attachment Body", attached.is_array() ? attached[0] : attached},
+                           {"Mass", 1},
+                           {"COM", list(drawn(left.body, left.centre_local))},
+                           {"Inertia", {1, 1, 1}},
+                           {"Radius", 0.1},
+                           {"Width", 0.1}};
+    }
+
+    json& entry(json& root, const char* section, const std::string& name, BodyId i, BodyId j) {
+        root[section].push_back(
+            {{"Name", name}, {"Mirrored", twice_}, {"Body1", body(i)}, {"Body2", body(j)}});
+        return root[section].back();
+    }
+    json& joint(json& root, const char* type, const std::string& name, BodyId i, BodyId j,
+                const Vector3d& at, const Matrix3d& A = Matrix3d::Identity()) {
+        const Eigen::Quaterniond q(A);
+        json& one = entry(root, "Joints", name, i, j);
+        one["Type"] = type;
+        one["Position"] = list(at);
+        one["Rotation"] = json::array({q.w(), q.x(), q.y(), q.z()});
+        return one;
+    }
+
+    void write(json& root, const Joint& one) {
+        if (one.active_only_where_driven)
+            return result_.notes.leave_out("standing only where a branch drives it",
+                                           {0, "drive '" + one.name + "'"});
+        const auto plain = [&](const char* type, const auto& k,
+                               const Matrix3d& A = Matrix3d::Identity()) {
+            joint(root, type, one.name, k.i.body, k.j.body, drawn(k.j), A);
+        };
+        const auto no_joint = [&](const char* what) { miss("joint '" + one.name + "'", what); };
+        std::visit(
+            overloaded{
+                [&](const Spherical& k) { plain("Spherical", k); },
+                [&](const Revolute& k) { plain("Revolute", k, with_z(k.axis_j.u_local)); },
+                [&](const Universal& k) {
+                    plain("Universal", k,
+                          frame(k.axis_i.u_local, k.axis_i.u_local.cross(k.axis_j.u_local)));
+                },
+                [&](const Fixed& k) {
+                    const auto is_spindle = [&](BodyId id) {
+                        return id != ground && (id == spindle_ || id == other_spindle_);
+                    };
+                    if (!is_spindle(k.i.body) && !is_spindle(k.j.body))
+                        plain("Lock", k);  // else Chrono adds the joint itself
+                },
+                [&](const InLine& k) { plain("Point Line", k, with_x(k.axis_j.u_local)); },
+                [&](const InPlane& k) {
+                    if (k.offset != 0 || one.name.ends_with(".drive"))
+                        return no_joint("it is driven, which is the vehicle's business");
+                    plain("Point Plane", k, with_z(k.normal_j.u_local));
+                },
+                [&](const Distance& k) {
+                    const Vector3d from = drawn(k.i), to = drawn(k.j);
+                    if (std::abs((to - from).norm() - k.length) > 1e-12 * k.length)
+                        return no_joint("its length is not the one that is drawn");
+                    json& rod = entry(root, "Distance Constraints", one.name, k.i.body, k.j.body);
+                    rod["Point1"] = list(from);
+                    rod["Point2"] = list(to);
+                },
+                [&](const Angle&) { no_joint("it is driven, which is the vehicle's business"); },
+                [&](const auto&) { no_joint("Chrono's reader takes this kind for a lock"); }},
+            one.kind);
+    }
+
+    void write(json& root, const Elastic& elastic) {
+        if (elastic.active_only_where_driven)
+            return result_.notes.leave_out("standing only where a branch drives it",
+                                           {0, "tyre '" + elastic.name + "'"});
+        std::visit([&](const auto& kind) { write(root, elastic, kind); }, elastic.kind);
+    }
+
+    void write(json& root, const Elastic& elastic, const AxialSpring& spring) {
+        const auto* curve = std::get_if<Curve>(&spring.law);
+        if (elastic.written_as == WrittenAs::stop) return require_written(elastic, spring);
+        if (curve && curve->knots.size() < 2)
+            return miss("element '" + elastic.name + "'",
+                        "its law is no table, and no entry has it");
+        json& one = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
+        one["Point1"] = list(drawn(spring.i));
+        one["Point2"] = list(drawn(spring.j));
+        one["Free Length"] = spring.free_length;
+        stops_of(one, spring);
+        if (!curve) {
+            one["Spring Coefficient"] = std::get<LinearRate>(spring.law).k;
+            return;
+        }
+        json rows = json::array();
+        for (std::size_t k = 0; k < curve->knots.size(); ++k)
+            rows.push_back({curve->knots[k], curve->pieces[k + 1][0]});
+        one["Spring Curve Data"] = rows;
+        result_.notes.warn(
+            {0, "element '" + elastic.name + "'"},
+            is_straight(*curve)
+                ? "Chrono holds the ends of a table, a scene goes on or ends there"
+                : "Chrono runs straight between the rows and holds the ends, a scene smoothly");
+    }
+
+    // ---- Stops. Chrono creates them between the ends of a spring, with one fixed curve, if both
+    // lengths are given.
+
+    static bool is_between_same(const AxialSpring& a, const AxialSpring& b) {
+        const auto same = [](const Point& p, const Point& q) {
+            return p.body == q.body && p.s_local == q.s_local;
+        };
+        return same(a.i, b.i) && same(a.j, b.j);
+    }
+
+    // For a stop with Chrono's curve (its forces at the rows, constant beyond them): whether it is
+    // a bump stop, and the length at which it touches [m]; else none.
+    static std::optional<std::pair<bool, double>> touching(const AxialSpring& stop) {
+        const auto& law = std::get<Curve>(stop.law);
+        const Contact contact = contact_of(law);
+        const double inward = contact.is_bump ? -1 : 1, largest = chrono::stop_table.back().second;
+        const auto is_off = [&](double p, double f) {
+            return std::abs(inward * force(law, contact.touches + inward * p) - f) > 1e-9 * largest;
+        };
+        for (const auto& [p, f] : chrono::stop_table)
+            if (is_off(p, f)) return std::nullopt;
+        if (!law.known_outside || is_off(1, largest)) return std::nullopt;
+        return std::pair{contact.is_bump, stop.free_length + contact.touches};
+    }
+
+    void stops_of(json& one, const AxialSpring& spring) {
+        constexpr double never = 1e3;  // [m]
+        std::optional<double> least, most;
+        for (const Elastic& elastic : scene_.elastics) {
+            const auto* stop = std::get_if<AxialSpring>(&elastic.kind);
+            if (elastic.written_as != WrittenAs::stop || !is_between_same(*stop, spring)) continue;
+            const auto touches = touching(*stop);
+            auto& length = touches && touches->first ? least : most;
+            if (!touches || length) continue;
+            length = touches->second;
+            written_.insert(elastic.name);
+            if (is_straight(std::get<Curve>(stop->law))) continue;
+            const Apart apart = off_straight(chrono::stop_table);
+            result_.notes.warn(
+                {0, "element '" + elastic.name + "'"},
+                fmt::format("Chrono runs straight between the rows of its stop, a scene smoothly: "
+                            "up to {:.3g} of {:.3g} N apart",
+                            apart.force, apart.of));
+        }
+        if (!least && !most) return;
+        one["Minimum Length"] = least.value_or(0);
+        one["Maximum Length"] = most.value_or(never);
+    }
+
+    void require_written(const Elastic& elastic, const AxialSpring& stop) {
+        if (written_.contains(elastic.name)) return;
+        miss("element '" + elastic.name + "'",
+             touching(stop)
+                 ? "Chrono's stops belong to a spring between the same points, one each way"
+                 : "stops in Chrono are of one hard-coded curve, which this is not");
+    }
+
+    // Bushings that Chrono can represent: one frame, isotropic in displacement, with one rotational
+    // rate about z and one across.
+    void write(json& root, const Elastic& elastic, const Bushing& b) {
+        const std::string what = "element '" + elastic.name + "'";
+        const auto* linear = std::get_if<LinearStiffness>(&b.law);
+        const Matrix3d A = b.i.A_local.toRotationMatrix();
+        if (elastic.written_as == WrittenAs::torsion_spring) {
+            if (!linear || !b.preload.isZero(0) || !b.undeformed.isZero(0))
+                return miss(what, "a torsion spring with a curve, a preload or a free angle");
+            json& one = entry(root, "RSDAs", elastic.name, b.i.body, b.j.body);
+            one["Position"] = list(drawn(b.i.body, b.i.s_local));
+            one["Axis"] = list(A.col(2));
+            one["Free Angle"] = 0;
+            one["Spring Coefficient"] = linear->K(5, 5);
+            return;
+        }
+        if (!linear || !linear->K.isDiagonal(0) || !b.preload.isZero(0) ||
+            !b.undeformed.isZero(0) ||
+            (drawn(b.i.body, b.i.s_local) - drawn(b.j.body, b.j.s_local)).norm() > 1e-12)
+            return miss(what,
+                        "Chrono's bushing has one frame, rates along its axes and no preload");
+        const Vector6 k = linear->K.diagonal();
+        const bool round = k[3] == k[4] && k[4] == k[5];
+        if (k[0] != k[1] || k[1] != k[2] || k[3] != k[4] ||
+            !(b.formulation == chrono_bushing || (round && b.formulation == Formulation{})))
+            return miss(what,
+                        "Chrono's bushing is alike in all directions, and about z and across it; "
+                        "others are "
+                        "another law there");
+        json& one = joint(root, "Revolute", elastic.name, b.j.body, b.i.body,
+                          drawn(b.j.body, b.j.s_local), A);
+        one["Bushing Data"] = {{"Stiffness Linear", k[0]},
+                               {"Damping Linear", 0},
+                               {"Stiffness Rotational", k[3]},
+                               {"Damping Rotational", 0},
+                               {"DOF",
+                                {{"Stiffness Linear", 0},
+                                 {"Damping Linear", 0},
+                                 {"Stiffness Rotational", k[5]},
+                                 {"Damping Rotational", 0}}}};
+    }
+
+    const Scene& scene_;
+    Exported& result_;
+    std::vector<Name> names_;
+    std::set<std::string> written_;  // stops, with their springs
+    bool twice_ = false;             // the scene is the left side of two
+    BodyId spindle_ = ground, other_spindle_ = ground;
+};
+
+}  // namespace
+
+Exported export_chrono(const Scene& scene, bool allow_missing, Notes notes) {
+    Exported result{.text = {}, .notes = std::move(notes)};
+    Writer(scene, result).whole();
+    require_whole(result, scene, allow_missing);
+    return result;
+}
+
+}  // namespace elastocheck::importer

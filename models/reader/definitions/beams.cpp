@@ -1,0 +1,320 @@
+#include "models/reader/definitions/beams.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "models/reader/definitions/look_up.hpp"
+#include "models/reader/document/limits.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double parallel = 1e-6;  // sine of the angle below which directions count as parallel
+
+// ---- Path of the beam.
+
+struct Course {
+    std::vector<std::string> hardpoints;  // on the path
+    std::vector<Vector3d> nodes;          // from end to end [m]
+    std::vector<std::size_t> corners;     // positions in `nodes` of the hardpoints
+    BodyId first = ground, last = ground;
+
+    std::size_t segments() const { return nodes.size() - 1; }
+};
+
+// Segments of each leg: one each, and further ones where segments are longest. Among equal legs the
+// first is served first, then the last, and so inwards, which keeps a symmetric beam symmetric
+// where possible.
+std::vector<int> shared_out(int segments, const std::vector<double>& lengths) {
+    const std::size_t legs = lengths.size();
+    std::vector<std::size_t> inwards;
+    for (std::size_t k = 0; k < legs; ++k) inwards.push_back(k % 2 == 0 ? k / 2 : legs - 1 - k / 2);
+    std::vector<int> share(legs, 1);
+    for (int left = segments - static_cast<int>(legs); left > 0; --left) {
+        std::size_t longest = inwards.front();
+        for (const std::size_t k : inwards)
+            if (lengths[k] / share[k] > (1 + 1e-9) * lengths[longest] / share[longest]) longest = k;
+        ++share[longest];
+    }
+    return share;
+}
+
+Course read_course(const Cursor& at, const Definitions& defs) {
+    Course course;
+    const auto ends = at.require("bodies").list(2, "bodies");
+    course.first = body(ends[0], defs);
+    course.last = body(ends[1], defs);
+
+    const Cursor through = at.require("through");
+    const auto points = through.items();
+    if (!through.is_list() || points.size() < 2)
+        through.fail(
+            fmt::format("expected a list of two hardpoints or more, found {}", through.found()));
+    std::vector<Vector3d> places;
+    std::vector<double> lengths;
+    for (const Cursor& point : points) {
+        places.push_back(hardpoint(point, defs));
+        course.hardpoints.push_back(point.value->text);
+        if (places.size() == 1) continue;
+        lengths.push_back((places.back() - places[places.size() - 2]).norm());
+        if (!(lengths.back() > coincident))
+            point.fail(fmt::format(
+                "{} is where the hardpoint before it is; each leg needs a length", point.found()));
+    }
+
+    const int legs = static_cast<int>(lengths.size());
+    const Cursor segments = at.require("segments");
+    const int n = segments.whole_number(1, most_segments);
+    if (n < legs)
+        segments.fail(
+            fmt::format("{} for {} legs; allowed: at least one a leg", segments.found(), legs));
+    if (n == 1 && course.first == course.last)
+        ends[1].fail(
+            fmt::format("{} twice, with nothing between; one segment needs two different bodies",
+                        ends[1].found()));
+    const auto share = shared_out(n, lengths);
+    course.nodes.push_back(places[0]);
+    course.corners.push_back(0);
+    for (std::size_t leg = 0; leg < share.size(); ++leg) {
+        for (int k = 1; k < share[leg]; ++k)
+            course.nodes.emplace_back(places[leg] +
+                                      (places[leg + 1] - places[leg]) * (double(k) / share[leg]));
+        course.corners.push_back(course.nodes.size());
+        course.nodes.push_back(places[leg + 1]);
+    }
+    return course;
+}
+
+// Whether the points in reverse order are their own mirror image.
+bool is_own_image(const std::vector<Vector3d>& points) {
+    for (std::size_t k = 0; k < points.size(); ++k)
+        if (!((reflected(points[k]) - points[points.size() - 1 - k]).norm() <= coincident))
+            return false;
+    return true;
+}
+
+// Whether both sides share the beam and its first half is the mirror image of its second.
+bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions& defs) {
+    const BodyId image =
+        course.first == ground ? ground : defs.twin_of[static_cast<std::size_t>(course.first)];
+    if (image != course.last) return false;
+    std::vector<Vector3d> corners;
+    for (const std::size_t k : course.corners) corners.push_back(course.nodes[k]);
+    if (!is_own_image(corners)) return false;
+    if (!is_own_image(course.nodes)) {
+        const Cursor segments = at.require("segments");
+        segments.fail(fmt::format(
+            "{} cannot be shared out evenly over the two sides; one more or one less can",
+            segments.found()));
+    }
+    return true;
+}
+
+// ---- Bodies at the nodes.
+
+std::string numbered(const std::string& name, std::size_t k) {
+    return fmt::format("{}.{}", name, k);
+}
+
+// Adds the bodies 1, 2, ... of the beam `name` at its inner nodes, with all their names.
+void add_bodies(const Cursor& at, const std::string& name, const Course& course,
+                Definitions& defs) {
+    const auto id = [&](std::size_t node) {
+        return static_cast<BodyId>(defs.bodies.size() + node - 1);
+    };
+    for (std::size_t k = 1; k < course.segments(); ++k)
+        if (!defs.body_ids.emplace(numbered(name, k), id(k)).second)
+            at.fail(fmt::format(
+                "needs a body of its own called {}, but there is one already; call that one "
+                "something else",
+                quote(numbered(name, k))));
+    for (std::size_t corner = 1; corner + 1 < course.corners.size(); ++corner)
+        defs.body_ids.emplace(name + "." + course.hardpoints[corner], id(course.corners[corner]));
+    for (std::size_t k = 1; k < course.segments(); ++k) {
+        defs.twin_of.push_back(static_cast<BodyId>(defs.bodies.size()));
+        defs.bodies.push_back(
+            {numbered(name, k), {.r = course.nodes[k], .p = Eigen::Quaterniond::Identity()}});
+    }
+    if (defs.bodies.size() > most_bodies)
+        at.fail(fmt::format("{} bodies with its nodes; a scene has {} at most", defs.bodies.size(),
+                            most_bodies));
+}
+
+Course image(Course course, const Mirror& mirror) {
+    for (Vector3d& node : course.nodes) node = reflected(node);
+    for (std::string& point : course.hardpoints) point = turned(mirror, point).value_or(point);
+    return course;
+}
+
+// ---- Cross-section, and stiffness of a segment.
+
+struct CrossSection {
+    double EA = 0;              // [N]
+    double EI_y = 0, EI_z = 0;  // [N·m²]
+    double GJ = 0;              // [N·m²]
+    double GA_y = 0, GA_z = 0;  // [N]; 0: no shear deformation
+    bool is_round() const { return EI_y == EI_z && GA_y == GA_z; }
+};
+
+double positive(const Cursor& at, const Unit& unit) {
+    const double x = unit.si(at.number(unit.name));
+    if (!(x > 0)) at.fail(fmt::format("{} is too small; allowed: above zero", at.found()));
+    return x;
+}
+
+// force/length², length², length⁴
+Unit modulus(const Units& u) {
+    const double L = u.length.divide;
+    return {u.force.name + "/" + u.length.name + "²", 1, u.force.multiply * L * L};
+}
+Unit power_of_length(const Units& u, int n) {
+    return {u.length.name + (n == 2 ? "²" : "⁴"), std::pow(u.length.divide, n)};
+}
+
+// Rod or tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
+CrossSection read_round(const Cursor& at, const Cursor& diameter, double E, double G,
+                        const Units& units) {
+    for (const char* field : {"A", "I_y", "I_z", "J", "shear_y", "shear_z", "up"})
+        if (const auto given = at.optional(field))
+            given->fail(
+                "given together with diameter; allowed: diameter and wall, or A, I_y, I_z and J");
+    const double D = positive(diameter, units.length);
+    double d = 0;
+    if (const auto wall = at.optional("wall")) {
+        d = D - 2 * positive(*wall, units.length);
+        if (!(d >= -1e-12 * D))
+            wall->fail(fmt::format("{} is more than half the diameter", wall->found()));
+        d = std::max(d, 0.0);
+    }
+    const auto power = [&](int n) { return std::pow(D, n) - std::pow(d, n); };
+    const double A = std::numbers::pi / 4 * power(2), I = std::numbers::pi / 64 * power(4);
+    return {.EA = E * A, .EI_y = E * I, .EI_z = E * I, .GJ = G * 2 * I};
+}
+
+CrossSection read_cross_section(const Cursor& at, const Units& units) {
+    const double E = positive(at.require("E"), modulus(units)),
+                 G = positive(at.require("G"), modulus(units));
+    if (const auto diameter = at.optional("diameter"))
+        return read_round(at, *diameter, E, G, units);
+    if (const auto wall = at.optional("wall"))
+        wall->fail("of a tube without a diameter; give its diameter");
+    if (!at.optional("A") && !at.optional("I_y") && !at.optional("I_z") && !at.optional("J"))
+        at.fail("no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J");
+    const Unit area = power_of_length(units, 2), fourth = power_of_length(units, 4);
+    const auto shear = [&](const char* field) {
+        const auto given = at.optional(field);
+        return given ? G * positive(*given, area) : 0;
+    };
+    return {.EA = E * positive(at.require("A"), area),
+            .EI_y = E * positive(at.require("I_y"), fourth),
+            .EI_z = E * positive(at.require("I_z"), fourth),
+            .GJ = G * positive(at.require("J"), fourth),
+            .GA_y = shear("shear_y"),
+            .GA_z = shear("shear_z")};
+}
+
+Matrix6 stiffness(const CrossSection& s, double L) {
+    const auto shear = [&](double EI, double GA) {
+        const double phi = GA > 0 ? 12 * EI / (GA * L * L) : 0;
+        return 12 * EI / (L * L * L * (1 + phi));
+    };
+    Vector6 k;
+    k << s.EA / L, shear(s.EI_z, s.GA_y), shear(s.EI_y, s.GA_z), s.GJ / L, s.EI_y / L, s.EI_z / L;
+    return k.asDiagonal();
+}
+
+// Direction closest to z; none for a round section, where any direction will do.
+std::optional<Vector3d> read_up(const Cursor& at, const CrossSection& section,
+                                const Definitions& defs) {
+    if (const auto up = at.optional("up")) return direction(*up, defs);
+    if (!section.is_round())
+        at.fail(
+            "up is missing: y and z of its cross-section are not the same, and it says where z "
+            "points");
+    return std::nullopt;
+}
+
+// x along the leg, z perpendicular to it towards `up`.
+Eigen::Quaterniond axes(const Cursor& at, const Vector3d& leg, const std::optional<Vector3d>& up) {
+    const Vector3d x = leg.normalized();
+    const Vector3d across = up ? Vector3d(*up - up->dot(x) * x) : x.unitOrthogonal();
+    if (!(across.norm() > parallel))
+        at.require("up").fail("along one of the legs, across which z must be");
+    Matrix3d A;
+    A.col(0) = x;
+    A.col(2) = across.normalized();
+    A.col(1) = A.col(2).cross(x);
+    return Eigen::Quaterniond(A).normalized();
+}
+
+std::vector<Elastic> segments(const std::string& name, const Cursor& at, const Definitions& defs) {
+    const Course course = read_course(at, defs);
+    const CrossSection section = read_cross_section(at, defs.units);
+    const auto up = read_up(at, section, defs);
+    const auto body_at = [&](std::size_t node) {
+        if (node == 0) return course.first;
+        return node == course.segments() ? course.last : defs.body_ids.at(numbered(name, node));
+    };
+    std::vector<Elastic> list;
+    for (std::size_t k = 1; k <= course.segments(); ++k) {
+        const Vector3d from = course.nodes[k - 1], to = course.nodes[k];
+        const Eigen::Quaterniond A = axes(at, to - from, up);
+        const auto marker = [&](BodyId id) {
+            return Marker{id, point_of(id, 0.5 * (from + to), defs).s_local, A};
+        };
+        Bushing bushing{.i = marker(body_at(k - 1)),
+                        .j = marker(body_at(k)),
+                        .law = LinearStiffness{stiffness(section, (to - from).norm())}};
+        bushing.formulation.frame = Formulation::Frame::middle;
+        list.push_back({numbered(name, k), bushing, false, WrittenAs::beam});
+    }
+    return list;
+}
+
+}  // namespace
+
+void add_beam_bodies(const Cursor& scene, Definitions& defs) {
+    const auto section = scene.optional("beams");
+    if (!section) return;
+    require_both_sides(*section, defs);
+    for (const auto& [name, at] : section->entries()) {
+        at.only_keys({"bodies", "through", "segments", "E", "G", "diameter", "wall", "A", "I_y",
+                      "I_z", "J", "shear_y", "shear_z", "up"});
+        const Course course = read_course(at, defs);
+        const BodyId first = static_cast<BodyId>(defs.bodies.size());
+        add_bodies(at, name, course, defs);
+        if (!defs.mirror) continue;
+        const BodyId end = static_cast<BodyId>(defs.bodies.size());
+        const auto other = twin_name(*defs.mirror, name, *section);
+        if (other) add_bodies(at, *other, image(course, *defs.mirror), defs);
+        const bool evenly = !other && is_shared_evenly(at, course, defs);
+        for (BodyId id = first; id < end; ++id) {
+            BodyId& twin = defs.twin_of[static_cast<std::size_t>(id)];
+            if (other) defs.twin_of[static_cast<std::size_t>(twin = id - first + end)] = id;
+            if (evenly) twin = first + (end - 1 - id);
+        }
+    }
+}
+
+void read_beams(const Cursor& scene, const Definitions& defs, std::vector<Elastic>& elastics) {
+    const auto section = scene.optional("beams");
+    if (!section) return;
+    for (const auto& [name, at] : section->entries()) {
+        const auto list = segments(name, at, defs);
+        elastics.insert(elastics.end(), list.begin(), list.end());
+        if (!defs.mirror) continue;
+        const auto other = turned(*defs.mirror, name);
+        if (!other) continue;
+        for (std::size_t k = 0; k < list.size(); ++k)
+            elastics.push_back(
+                {numbered(*other, k + 1), twin(list[k].kind, defs), false, WrittenAs::beam});
+    }
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,178 @@
+#include "models/reader/definitions/definitions.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <numeric>
+
+#include "models/reader/definitions/beams.hpp"
+#include "models/reader/definitions/look_up.hpp"
+#include "models/reader/document/limits.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Moment {
+    const char *name, *dot, *star;  // "N·m", and its keyboard forms
+    double divide, multiply;
+};
+constexpr Moment moments[] = {{"N·m", "N*m", "Nm", 1, 1},
+                              {"N·mm", "N*mm", "Nmm", 1000, 1},
+                              {"kN·m", "kN*m", "kNm", 1, 1000},
+                              {"kN·mm", "kN*mm", "kNmm", 1000, 1000}};
+
+Unit read_moment(const Cursor& at) {
+    std::vector<std::string> names;
+    for (const Moment& moment : moments)
+        names.insert(names.end(), {moment.name, moment.dot, moment.star});
+    const Moment& chosen = moments[at.one_of("a unit of moment", names) / 3];
+    return {chosen.name, chosen.divide, chosen.multiply};
+}
+
+Units read_units(const Cursor& at) {
+    at.only_keys({"length", "angle", "force", "moment"});
+    Units units;
+    if (at.require("length").one_of("a unit of length", {"m", "mm"})) units.length = {"mm", 1000};
+    const double per_rad = 180 / std::numbers::pi;
+    if (at.require("angle").one_of("a unit of angle", {"deg", "rad"}) == 0)
+        units.angle = {"deg", per_rad};
+    if (at.require("force").one_of("a unit of force", {"N", "kN"})) units.force = {"kN", 1, 1000};
+
+    const auto &L = units.length, &A = units.angle, &F = units.force;
+    const auto moment = at.optional("moment");
+    units.moment =
+        moment ? read_moment(*moment) : Unit{F.name + "·" + L.name, L.divide, F.multiply};
+    const Unit& M = units.moment;
+    units.rate = {F.name + "/" + L.name, 1, F.multiply * L.divide};
+    units.coupling = {F.name + "/" + A.name, 1, F.multiply * A.divide};
+    units.rotational_rate = {M.name + "/" + A.name, M.divide, M.multiply * A.divide};
+    units.arm = {moment ? M.name + "/" + F.name : L.name, M.divide, M.multiply / F.multiply};
+    return units;
+}
+
+void read_points(const Cursor& section, Definitions& defs) {
+    for (const auto& [name, at] : section.entries())
+        defs.points[name] = vector(at, defs.units.length);
+    if (defs.points.empty()) section.fail("empty; at least one hardpoint is needed");
+    if (!defs.mirror) return;
+    for (const auto& [name, at] : section.entries())
+        if (const auto twin = twin_name(*defs.mirror, name, section))
+            defs.points[*twin] = reflected(defs.points.at(name));
+}
+
+void read_bodies(const Cursor& section, Definitions& defs) {
+    defs.body_ids["ground"] = ground;
+    for (const auto& [name, at] : section.entries()) {
+        if (name == "ground")
+            at.fail("ground is always there and cannot be defined; choose another name");
+        at.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
+        const Vector3d origin = hardpoint(at.require("origin"), defs);
+        defs.body_ids[name] = static_cast<BodyId>(defs.bodies.size());
+        defs.bodies.push_back({name, {.r = origin, .p = Eigen::Quaterniond::Identity()}});
+    }
+    if (defs.bodies.empty()) section.fail("empty; at least one body is needed");
+    const std::size_t written = defs.bodies.size();
+    defs.twin_of.resize(written);
+    std::iota(defs.twin_of.begin(), defs.twin_of.end(), 0);
+    for (std::size_t b = 0; defs.mirror && b < written; ++b) {
+        const Body body = defs.bodies[b];
+        const auto twin = twin_name(*defs.mirror, body.name, section);
+        if (!twin) continue;
+        defs.twin_of[b] = static_cast<BodyId>(defs.bodies.size());
+        defs.twin_of.push_back(static_cast<BodyId>(b));
+        defs.body_ids[*twin] = defs.twin_of[b];
+        defs.bodies.push_back({*twin, {.r = reflected(body.design.r), .p = body.design.p}});
+    }
+    if (defs.bodies.size() > most_bodies)
+        section.fail(
+            fmt::format("{} bodies; a scene has {} at most", defs.bodies.size(), most_bodies));
+}
+
+// x, y, z or -x, -y, -z
+Vector3d named_axis(const Cursor& at) {
+    const std::string& word = at.value->text;
+    const double sign = word.starts_with('-') ? -1 : 1;
+    const std::string letter = sign < 0 ? word.substr(1) : word;
+    if (letter == "x") return sign * Vector3d::UnitX();
+    if (letter == "y") return sign * Vector3d::UnitY();
+    if (letter == "z") return sign * Vector3d::UnitZ();
+    at.fail(fmt::format(
+        "{} is no direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two hardpoints [from, to]",
+        at.found()));
+}
+
+}  // namespace
+
+Definitions read_definitions(const Cursor& scene) {
+    Definitions defs;
+    defs.units = read_units(scene.require("units"));
+    if (const auto mirror = scene.optional("mirror")) defs.mirror = read_mirror(*mirror, scene);
+    read_points(scene.require("points"), defs);
+    read_bodies(scene.require("bodies"), defs);
+    add_beam_bodies(scene, defs);
+    return defs;
+}
+
+double rate(const Cursor& at, const Unit& unit) {
+    const double k = at.number(unit.name);
+    if (k < 0) at.fail(fmt::format("negative rate {}; allowed: zero or more", at.found()));
+    return unit.si(k);
+}
+
+Vector3d vector(const Cursor& at, const Unit& unit) {
+    const auto items = at.list(3, "numbers");
+    const auto si = [&](std::size_t k) { return unit.si(items[k].number(unit.name)); };
+    return {si(0), si(1), si(2)};  // braces: in this order
+}
+
+Vector3d hardpoint(const Cursor& at, const Definitions& defs) {
+    return look_up(at, "hardpoint", defs.points);
+}
+
+Vector3d direction(const Cursor& at, const Definitions& defs) {
+    const auto items = at.items();
+    if (at.is_list() && items.size() == 2) {
+        const Vector3d u = hardpoint(items[1], defs) - hardpoint(items[0], defs);
+        if (!(u.norm() > coincident))
+            at.fail("the two hardpoints coincide; a direction needs two different ones");
+        return u.normalized();
+    }
+    if (at.is_list() && items.size() == 3) {
+        const Vector3d u = vector(at);
+        if (u.isZero(0)) at.fail("the vector has no length; a direction needs one");
+        return u.normalized();
+    }
+    if (at.value->kind == Value::Kind::scalar) return named_axis(at);
+    at.fail(
+        fmt::format("expected a direction (x, y, z, -x, -y, -z, [x, y, z] or two hardpoints [from, "
+                    "to]), found {}",
+                    at.found()));
+}
+
+BodyId body(const Cursor& at, const Definitions& defs) {
+    return look_up(at, "body", defs.body_ids);
+}
+
+BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what) {
+    const BodyId id = body(at, defs);
+    if (id == ground)
+        at.fail(fmt::format("{} cannot be on ground, which never moves; allowed: a body", what));
+    return id;
+}
+
+BodyPair body_pair(const Cursor& at, const Definitions& defs) {
+    const auto items = at.list(2, "bodies");
+    const BodyPair pair{body(items[0], defs), body(items[1], defs)};
+    if (pair.i == pair.j)
+        at.fail(fmt::format("{} twice; two different bodies are needed", items[0].found()));
+    return pair;
+}
+
+Point point_of(BodyId body, const Vector3d& p, const Definitions& defs) {
+    if (body == ground) return {ground, p};
+    return {body, p - defs.bodies[static_cast<std::size_t>(body)].design.r};
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,64 @@
+// Definitions that the rest of a scene file refers to: units, hardpoints, bodies.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "elastocheck/mechanism.hpp"
+#include "models/reader/definitions/mirror.hpp"
+#include "models/reader/document/cursor.hpp"
+
+namespace elastocheck::reader {
+
+// A declared unit. Dividing by 1000 rounds once; multiplying by 0.001 would round twice.
+struct Unit {
+    std::string name;
+    double divide = 1, multiply = 1;
+    double si(double x) const { return x / divide * multiply; }
+    double written(double si) const { return si * divide / multiply; }
+};
+
+struct Units {
+    Unit length{"m"}, angle{"rad"}, force{"N"};
+    Unit moment;           // force·length unless declared
+    Unit rate;             // force/length
+    Unit coupling;         // force/angle
+    Unit rotational_rate;  // moment/angle
+    Unit arm;              // moment/force: a length, for a moment proportional to a force
+};
+
+struct Definitions {
+    Units units;
+    std::optional<Mirror> mirror;
+    std::map<std::string, Eigen::Vector3d> points;  // [m], ground axes
+    std::map<std::string, BodyId> body_ids;         // with ground
+    std::vector<Body> bodies;                       // twins at the end
+    std::vector<BodyId> twin_of;                    // of each body; itself if it is shared
+    std::optional<std::filesystem::path> folder;    // folder of the files that the scene refers to
+};
+
+Definitions read_definitions(const Cursor& scene);
+
+// Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
+inline constexpr double coincident = 1e-9;
+
+double rate(const Cursor& at, const Unit& unit);                       // zero or more, SI
+Eigen::Vector3d vector(const Cursor& at, const Unit& unit = {});       // three numbers, SI
+Eigen::Vector3d hardpoint(const Cursor& at, const Definitions& defs);  // [m]
+Eigen::Vector3d direction(const Cursor& at, const Definitions& defs);  // unit
+BodyId body(const Cursor& at, const Definitions& defs);                // or ground
+BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what);  // not ground
+
+struct BodyPair {
+    BodyId i, j;
+};
+BodyPair body_pair(const Cursor& at, const Definitions& defs);  // [i, j], different
+
+// A ground position as a point of the body: s_local = p - r, since bodies start parallel to ground.
+Point point_of(BodyId body, const Eigen::Vector3d& p, const Definitions& defs);
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,28 @@
+// Looks up a name that is defined elsewhere in the scene.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::reader {
+
+// The table entry that `at` names; the error message suggests the nearest name. `kind` names the
+// kind of entry, e.g. "hardpoint".
+template <class T>
+const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::string, T>& table) {
+    const std::string& name = at.text("the name of a " + kind);
+    if (const auto found = table.find(name); found != table.end()) return found->second;
+    std::vector<std::string> names;
+    names.reserve(table.size());
+    for (const auto& entry : table) names.push_back(entry.first);
+    at.fail(fmt::format("no {} is called {}{}", kind, quote(name),
+                        did_you_mean(name, names, "defined")));
+}
+
+}  // namespace elastocheck::reader

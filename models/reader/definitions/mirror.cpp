@@ -1,0 +1,255 @@
+#include "models/reader/definitions/mirror.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "models/curve.hpp"
+#include "models/overloaded.hpp"
+#include "models/reader/definitions/definitions.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           static_cast<unsigned char>(c) >= 0x80;
+}
+
+bool is_word(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, is_letter);
+}
+
+std::string_view trimmed(std::string_view text) {
+    while (text.starts_with(' ')) text.remove_prefix(1);
+    while (text.ends_with(' ')) text.remove_suffix(1);
+    return text;
+}
+
+// Whether any name in the sections of the scene contains the mirrored word.
+bool any_name_turns(const Mirror& mirror, const Cursor& scene) {
+    for (const Value& section : scene.value->items)
+        for (const std::string& name : section.keys)
+            if (turned(mirror, name)) return true;
+    return false;
+}
+
+void collect_words(const Value& value, std::set<std::string>& words) {
+    if (value.kind == Value::Kind::scalar) words.insert(value.text);
+    for (const Value& item : value.items) collect_words(item, words);
+}
+
+BodyId twin(BodyId body, const Definitions& defs) {
+    return body == ground ? ground : defs.twin_of[static_cast<std::size_t>(body)];
+}
+
+// p' = S p:  s' = S (r + s) - r' = S s + (S r - r'). The bracket is exactly 0 unless the body is
+// shared and its origin is off the plane.
+Vector3d twin_place(BodyId body, const Vector3d& s_local, const Definitions& defs) {
+    if (body == ground) return reflected(s_local);
+    const auto origin = [&](BodyId b) { return defs.bodies[static_cast<std::size_t>(b)].design.r; };
+    return reflected(s_local) + (reflected(origin(body)) - origin(twin(body, defs)));
+}
+
+Direction polar(const Direction& u, const Definitions& defs) {
+    return {twin(u.body, defs), reflected(u.u_local)};
+}
+Direction axial(const Direction& u, const Definitions& defs) {
+    return {twin(u.body, defs), -reflected(u.u_local)};
+}
+
+// A' = S A S. The vector part of a quaternion is parallel to its rotation axis, an axial vector:
+// v' = -S v.
+Marker twin(const Marker& m, const Definitions& defs) {
+    const Vector3d v = -reflected(Vector3d(m.A_local.vec()));
+    return {twin(m.body, defs), twin_place(m.body, m.s_local, defs),
+            Eigen::Quaterniond(m.A_local.w(), v.x(), v.y(), v.z())};
+}
+
+}  // namespace
+
+Mirror read_mirror(const Cursor& at, const Cursor& scene) {
+    const std::string_view text = at.text("a mirror, like left -> right");
+    const std::size_t arrow = text.find("->");
+    Mirror mirror;
+    if (arrow != std::string_view::npos)
+        mirror = {std::string(trimmed(text.substr(0, arrow))),
+                  std::string(trimmed(text.substr(arrow + 2)))};
+    if (!is_word(mirror.from) || !is_word(mirror.to) || mirror.from == mirror.to)
+        at.fail(fmt::format(
+            "{} is not a mirror; expected two different words of letters, like left -> right",
+            at.found()));
+    if (!any_name_turns(mirror, scene))
+        at.fail(
+            fmt::format("nothing to mirror: no name has the word {} in it", quote(mirror.from)));
+    return mirror;
+}
+
+std::optional<std::string> turned(const Mirror& mirror, std::string_view name) {
+    std::string result;
+    bool found = false;
+    while (!name.empty()) {
+        const auto end = is_letter(name.front()) ? std::ranges::find_if_not(name, is_letter)
+                                                 : std::ranges::find_if(name, is_letter);
+        const std::string_view piece = name.substr(0, static_cast<std::size_t>(end - name.begin()));
+        found = found || piece == mirror.from;
+        result += piece == mirror.from ? std::string_view(mirror.to) : piece;
+        name.remove_prefix(piece.size());
+    }
+    return found ? std::optional(result) : std::nullopt;
+}
+
+std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name,
+                                     const Cursor& section) {
+    const auto twin = turned(mirror, name);
+    if (twin)
+        if (const auto there = section.optional(*twin))
+            there->fail(
+                fmt::format("the mirror makes it from {}; leave one of the two out", quote(name)));
+    return twin;
+}
+
+void require_both_sides(const Cursor& section, const Definitions& defs) {
+    if (!defs.mirror) return;
+    for (const auto& [name, at] : section.entries()) {
+        if (turned(*defs.mirror, name)) continue;
+        std::set<std::string> words;
+        collect_words(*at.value, words);
+        for (const std::string& word : words) {
+            const auto twin = turned(*defs.mirror, word);
+            const bool is_reference = defs.points.contains(word) || defs.body_ids.contains(word);
+            if (!twin || !is_reference || words.contains(*twin)) continue;
+            at.fail(fmt::format(
+                "shared by both sides, as {} is not in its name, but refers to {} and not to {}",
+                quote(defs.mirror->from), quote(word), quote(*twin)));
+        }
+    }
+}
+
+Vector3d reflected(const Vector3d& v) { return {v.x(), 0 - v.y(), v.z()}; }  // 0, not -0, for 0
+
+Vector6 reflected(const Vector6& v) {
+    Vector6 result;
+    result << reflected(Vector3d(v.head<3>())), -reflected(Vector3d(v.tail<3>()));
+    return result;
+}
+
+Point twin(const Point& p, const Definitions& defs) {
+    return {twin(p.body, defs), twin_place(p.body, p.s_local, defs)};
+}
+
+JointKind twin(const JointKind& joint, const Definitions& defs) {
+    const auto point = [&](const Point& p) { return twin(p, defs); };
+    const auto along = [&](const Direction& u) { return polar(u, defs); };
+    const auto about = [&](const Direction& u) { return axial(u, defs); };
+    return std::visit(
+        overloaded{
+            [&](const Spherical& s) -> JointKind {
+                return Spherical{point(s.i), point(s.j)};
+            },
+            [&](const Revolute& s) -> JointKind {
+                return Revolute{point(s.i), point(s.j), about(s.axis_i), about(s.axis_j)};
+            },
+            [&](const Universal& s) -> JointKind {
+                return Universal{point(s.i), point(s.j), along(s.axis_i), along(s.axis_j)};
+            },
+            [&](const Cylindrical& s) -> JointKind {
+                return Cylindrical{point(s.i), point(s.j), about(s.axis_i), about(s.axis_j)};
+            },
+            [&](const Translational& s) -> JointKind {
+                return Translational{point(s.i), point(s.j), along(s.axis_i), along(s.axis_j)};
+            },
+            [&](const Planar& s) -> JointKind {
+                return Planar{point(s.i), point(s.j), along(s.normal_i), along(s.normal_j)};
+            },
+            [&](const Fixed& s) -> JointKind {
+                // x and y as a frame: S A S
+                return Fixed{point(s.i),   point(s.j),   along(s.x_i),
+                             about(s.y_i), along(s.x_j), about(s.y_j)};
+            },
+            [&](const Distance& s) -> JointKind {
+                return Distance{point(s.i), point(s.j), s.length};
+            },
+            [&](const InPlane& s) -> JointKind {
+                return InPlane{point(s.i), point(s.j), along(s.normal_j), s.offset};
+            },
+            [&](const InLine& s) -> JointKind {
+                return InLine{point(s.i), point(s.j), along(s.axis_j)};
+            },
+            [&](const Perpendicular& s) -> JointKind {
+                return Perpendicular{along(s.i), along(s.j)};
+            },
+            [&](const Parallel& s) -> JointKind {
+                return Parallel{along(s.i), along(s.j)};
+            },
+            [&](const Angle& s) -> JointKind {
+                return Angle{along(s.i), along(s.j), along(s.y_j), s.angle};
+            },
+        },
+        joint);
+}
+
+ElasticKind twin(const ElasticKind& elastic, const Definitions& defs) {
+    return std::visit(
+        overloaded{[&](const AxialSpring& e) -> ElasticKind {
+                       return AxialSpring{twin(e.i, defs), twin(e.j, defs), e.law, e.free_length};
+                   },
+                   [&](const Bushing& e) -> ElasticKind {
+                       const SpatialLaw law = std::visit(
+                           overloaded{[](const LinearStiffness& u) -> SpatialLaw {
+                                          Matrix6 K;
+                                          for (int c = 0; c < 6; ++c)
+                                              K.col(c) = reflected(Vector6(u.K.col(c)));
+                                          for (int r = 0; r < 6; ++r)
+                                              K.row(r) = reflected(Vector6(K.row(r))).transpose();
+                                          return LinearStiffness{K};
+                                      },
+                                      [](PerAxis u) -> SpatialLaw {
+                                          for (int k = 0; k < 6; ++k)
+                                              if (reflected(Vector6(Vector6::Unit(k)))[k] < 0)
+                                                  u.axis[static_cast<std::size_t>(k)] =
+                                                      reversed(u.axis[static_cast<std::size_t>(k)]);
+                                          return u;
+                                      }},
+                           e.law);
+                       return Bushing{twin(e.i, defs),      twin(e.j, defs),         law,
+                                      reflected(e.preload), reflected(e.undeformed), e.formulation};
+                   }},
+        elastic);
+}
+
+LoadKind twin(const LoadKind& load, const Definitions& defs) {
+    return std::visit(
+        overloaded{[&](const DeadForce& l) -> LoadKind {
+                       return DeadForce{twin(l.at, defs), reflected(l.f)};
+                   },
+                   [&](const DeadMoment& l) -> LoadKind {
+                       return DeadMoment{twin(l.body, defs), -reflected(l.m)};
+                   },
+                   [&](const FollowerForce& l) -> LoadKind {
+                       return FollowerForce{twin(l.at, defs), reflected(l.f_local)};
+                   },
+                   [&](const FollowerMoment& l) -> LoadKind {
+                       return FollowerMoment{twin(l.body, defs), -reflected(l.m_local)};
+                   }},
+        load);
+}
+
+Wheel twin(const Wheel& wheel, const Definitions& defs) {
+    std::optional<SteeringAxis> axis = wheel.steering_axis;
+    if (axis) axis = {twin(axis->lower, defs), twin(axis->upper, defs)};
+    return {.name = wheel.name,
+            .body = twin(wheel.body, defs),
+            .centre_local = twin_place(wheel.body, wheel.centre_local, defs),
+            .contact_local = twin_place(wheel.body, wheel.contact_local, defs),
+            .spin_axis_local = reflected(wheel.spin_axis_local),
+            .side = -wheel.side,
+            .tyre_rate = wheel.tyre_rate,
+            .steering_axis = axis};
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,54 @@
+// Mirror symmetry of a scene: entries written for one side are copied to the other side.
+//
+// The mirror plane is y = 0, S = diag(1, -1, 1). Positions, forces and translations are polar
+// vectors, v' = S v; moments and rotations are axial ones, m' = -S m. A right-handed frame A has
+// the right-handed image A' = S A S, in whose axes a deformation (d, θ) becomes P (d, θ) with
+// P = diag(S, -S), so that K' = P K P.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastocheck/scene.hpp"
+#include "models/reader/document/cursor.hpp"
+
+namespace elastocheck::reader {
+
+// An entry with the word `from` in its name has a twin with `to` in its place. All others are
+// shared.
+struct Mirror {
+    std::string from, to;  // "left", "right"
+};
+
+// Reads `left -> right`; some name of the scene must contain the first word.
+Mirror read_mirror(const Cursor& at, const Cursor& scene);
+
+// The name with every word `from` replaced, or none if it has none. "arm_left" -> "arm_right", not
+// "leftover".
+std::optional<std::string> turned(const Mirror& mirror, std::string_view name);
+
+// The same for an entry of the section, which must not define the twin's name.
+std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name,
+                                     const Cursor& section);
+
+// Rejects an entry of the section that both sides share but that is attached to one side only.
+struct Definitions;
+void require_both_sides(const Cursor& section, const Definitions& defs);
+
+// ---- Twins, on the twins of the bodies.
+//
+// Driven quantities are mirrored: equal values on both sides are a symmetric motion. So the axis of
+// a revolute or cylindrical joint, about which its angle is measured, is mirrored as an axial
+// vector.
+Eigen::Vector3d reflected(const Eigen::Vector3d& v);  // S v
+Vector6 reflected(const Vector6& v);                  // P v
+JointKind twin(const JointKind& joint, const Definitions& defs);
+ElasticKind twin(const ElasticKind& elastic, const Definitions& defs);
+LoadKind twin(const LoadKind& load, const Definitions& defs);
+Wheel twin(const Wheel& wheel, const Definitions& defs);
+Point twin(const Point& point, const Definitions& defs);
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,54 @@
+#include "models/reader/definitions/terms.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/overloaded.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::reader {
+
+std::vector<Term> terms(const Cursor& at, const std::string& what) {
+    std::vector<Term> terms;
+    if (at.value->kind == Value::Kind::map) {
+        for (std::size_t k = 0; k < at.value->keys.size(); ++k) {
+            const std::string& name = at.value->keys[k];
+            terms.push_back({name, at.at(at.value->items[k], child_path(at.path, name)), true});
+        }
+    } else {
+        for (const Cursor& item : at.is_list() ? at.items() : std::vector<Cursor>{at}) {
+            const std::string& name = item.text("the name of " + what);
+            if (std::ranges::any_of(terms, [&](const Term& term) { return term.name == name; }))
+                item.fail(fmt::format("{} is listed twice", quote(name)));
+            terms.push_back({name, item});
+        }
+    }
+    if (terms.empty()) at.fail(fmt::format("empty; {} is needed", what));
+    return terms;
+}
+
+const Load& look_up_load(const Term& term, const Loads& loads) {
+    if (const auto found = loads.find(term.name); found != loads.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& entry : loads) names.push_back(entry.first);
+    if (names.empty())
+        term.at.fail(fmt::format("no load is called {}; the scene has no loads", quote(term.name)));
+    term.at.fail(fmt::format("no load is called {}{}", quote(term.name),
+                             did_you_mean(term.name, names, "defined")));
+}
+
+bool is_moment(const Load& load) {
+    return std::visit(
+        overloaded{[](const DeadForce&) { return false; }, [](const DeadMoment&) { return true; },
+                   [](const FollowerForce&) { return false; },
+                   [](const FollowerMoment&) { return true; }},
+        load.kind);
+}
+
+double held_value(const Term& term, const Load& load, const Units& units) {
+    const Unit& unit = is_moment(load) ? units.moment : units.force;
+    return unit.si(term.number(unit.name));
+}
+
+}  // namespace elastocheck::reader

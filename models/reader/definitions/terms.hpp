@@ -1,0 +1,34 @@
+// Lists in a field: one name, several names, or names with a number each.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "models/reader/definitions/definitions.hpp"
+#include "models/reader/document/cursor.hpp"
+
+namespace elastocheck::reader {
+
+struct Term {
+    std::string name;
+    Cursor at;
+    bool has_number = false;
+
+    double number(const std::string& unit = "") const { return has_number ? at.number(unit) : 1; }
+};
+
+// A name, a list of names or a map of names to numbers, without repeats. `what` completes "the name
+// of ...".
+std::vector<Term> terms(const Cursor& at, const std::string& what);
+
+// The section `loads`, numbers as written.
+using Loads = std::map<std::string, Load>;
+const Load& look_up_load(const Term& term, const Loads& loads);
+
+bool is_moment(const Load& load);
+
+// The constant value of a load: a force, or a moment for a moment load [N, N·m].
+double held_value(const Term& term, const Load& load, const Units& units);
+
+}  // namespace elastocheck::reader

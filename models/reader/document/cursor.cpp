@@ -1,0 +1,167 @@
+#include "models/reader/document/cursor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "models/reader/document/limits.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+// Range of non-zero numbers: no conversion, product or quotient then leaves the range of double.
+constexpr double least_size = 1e-30, largest_size = 1e30;
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+
+// Letters of any language, digits, _ and, not first, - + . and inner spaces: safe in file names,
+// column heads and command lines.
+bool is_name(std::string_view name) {
+    const auto is_letter = [](char c) {
+        const bool is_ascii =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        return is_ascii || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+    };
+    const auto is_allowed = [&](char c) {
+        return is_letter(c) || c == '-' || c == '+' || c == '.' || c == ' ';
+    };
+    return !name.empty() && name.size() <= longest_name && is_letter(name.front()) &&
+           name.back() != ' ' && std::all_of(name.begin(), name.end(), is_allowed);
+}
+
+}  // namespace
+
+void Cursor::fail(const std::string& what) const {
+    reader::fail(*file, value->line, path, value->is_set ? what + " (as set)" : what);
+}
+
+Cursor Cursor::at(const Value& other, const std::string& its_path) const {
+    return {&other, its_path, file, numbers, {}, accesses};
+}
+
+std::string Cursor::found() const {
+    switch (value->kind) {
+        case Value::Kind::nothing: return "nothing";
+        case Value::Kind::scalar: return quote(value->text);
+        case Value::Kind::list: return fmt::format("a list of {}", value->items.size());
+        case Value::Kind::map: return "a map";
+    }
+    return "";
+}
+
+void Cursor::only_keys(const std::vector<std::string>& allowed) const {
+    if (value->kind != Value::Kind::map)
+        fail(fmt::format("expected a map with the fields {}, found {}", listed(allowed), found()));
+    for (std::size_t k = 0; k < value->keys.size(); ++k) {
+        const std::string& key = value->keys[k];
+        if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
+        at(value->items[k], path)
+            .fail(fmt::format("unknown field {}{}", quote(key),
+                              did_you_mean(key, allowed, "allowed")));
+    }
+}
+
+std::optional<Cursor> Cursor::optional(const std::string& key) const {
+    if (accesses) accesses->looked_for[value].insert(key);
+    const auto found = std::find(value->keys.begin(), value->keys.end(), key);
+    if (found == value->keys.end()) return std::nullopt;
+    return at(value->items[static_cast<std::size_t>(found - value->keys.begin())],
+              child_path(path, key));
+}
+
+Cursor Cursor::require(const std::string& key) const {
+    if (auto field = optional(key)) return *field;
+    reader::fail(*file, value->line, child_path(path, key), "missing, it must be given");
+}
+
+std::vector<Cursor::Named> Cursor::entries() const {
+    if (value->kind != Value::Kind::map && value->kind != Value::Kind::nothing)
+        fail(fmt::format("expected a map of names, found {}", found()));
+    std::vector<Named> entries;
+    for (std::size_t k = 0; k < value->keys.size(); ++k) {
+        const std::string& name = value->keys[k];
+        if (!is_name(name))
+            at(value->items[k], path)
+                .fail(fmt::format("{} cannot be a name; allowed: up to {} letters, digits, _ and, "
+                                  "not first, - + . "
+                                  "and spaces",
+                                  quote(name), longest_name));
+        entries.push_back({name, at(value->items[k], child_path(path, name))});
+    }
+    return entries;
+}
+
+std::vector<Cursor> Cursor::items() const {
+    if (accesses) accesses->read.insert(value);
+    std::vector<Cursor> items;
+    for (std::size_t k = 0; k < value->items.size(); ++k) {
+        items.push_back(at(value->items[k], path));
+        items.back().item = item + '.' + place_in(*value, k);
+    }
+    return items;
+}
+
+std::vector<Cursor> Cursor::list(std::size_t size, const std::string& what) const {
+    if (!is_list() || value->items.size() != size)
+        fail(fmt::format("expected a list of {} {}, found {}", size, what, found()));
+    return items();
+}
+
+const std::string& Cursor::text(const std::string& what) const {
+    if (accesses) accesses->read.insert(value);
+    if (value->kind != Value::Kind::scalar || value->text.empty())
+        fail(fmt::format("expected {}, found {}", what, found()));
+    if (std::any_of(value->text.begin(), value->text.end(), is_control))
+        fail(fmt::format("{} is not one line of plain text", found()));
+    return value->text;
+}
+
+double Cursor::number(const std::string& unit) const {
+    if (accesses) accesses->read.insert(value);
+    std::string_view digits = value->text;
+    if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
+    double x = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, x);
+    if (value->kind != Value::Kind::scalar || stop != end || error == std::errc::invalid_argument ||
+        std::isnan(x))
+        fail(fmt::format("expected a number, found {}", found()));
+    if (value->is_string)
+        fail(fmt::format("expected a number, found the string \"{}\"", value->text));
+    const double size = std::abs(x);
+    if (error != std::errc() || (size != 0 && !(size >= least_size && size <= largest_size)))
+        fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(),
+                         least_size, largest_size));
+    numbers->push_back({path + item, x, unit});
+    return x;
+}
+
+bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
+
+int Cursor::whole_number(int least, int most) const {
+    if (accesses) accesses->read.insert(value);
+    const std::string& digits = value->text;
+    int n = 0;
+    const char* const end = digits.data() + digits.size();
+    const auto [stop, error] = std::from_chars(digits.data(), end, n);
+    if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < least ||
+        n > most)
+        fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));
+    numbers->push_back({path + item, static_cast<double>(n), ""});
+    return n;
+}
+
+std::size_t Cursor::one_of(const std::string& what, const std::vector<std::string>& allowed) const {
+    const std::string& word = text(what);
+    const auto it = std::find(allowed.begin(), allowed.end(), word);
+    if (it == allowed.end())
+        fail(fmt::format("{} is not {}{}", quote(word), what,
+                         did_you_mean(word, allowed, "allowed")));
+    return static_cast<std::size_t>(it - allowed.begin());
+}
+
+}  // namespace elastocheck::reader

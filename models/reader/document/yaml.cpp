@@ -1,0 +1,235 @@
+#include "models/reader/document/yaml.hpp"
+
+#include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+#include <unordered_map>
+#include <utility>
+
+#include "elastocheck/read_scene.hpp"
+#include "models/reader/document/limits.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/text_file.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
+
+// Length of the UTF-8 sequence at the beginning of `text`, 0 if there is none (RFC 3629, table of
+// well-formed sequences).
+std::size_t utf8_length(std::string_view text);
+
+// Collects the parser's events into a tree of values.
+class TreeBuilder final : public YAML::EventHandler {
+  public:
+    explicit TreeBuilder(const std::string& file_name) : file(file_name) {}
+
+    Value root;
+
+    void OnDocumentStart(const YAML::Mark& mark) override {
+        if (std::exchange(seen_document, true))
+            fail_at(mark, "text after the end of the scene; a scene is one YAML document");
+    }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add({.line = line_of(mark)}); }
+    void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+        fail_at(mark, "aliases (*name) are not part of the scene format; write the value out");
+    }
+    void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                  const std::string& text) override {
+        refuse_tag(mark, tag);
+        refuse_unprintable(mark, text);
+        add({.kind = Value::Kind::scalar, .text = text, .line = line_of(mark)});
+    }
+    void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                         YAML::EmitterStyle::value) override {
+        begin(Value::Kind::list, mark, tag);
+    }
+    void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                    YAML::EmitterStyle::value) override {
+        begin(Value::Kind::map, mark, tag);
+    }
+    void OnSequenceEnd() override { end(); }
+    void OnMapEnd() override { end(); }
+
+  private:
+    // An unfinished list or map, and the key of a map that has no value yet.
+    struct Open {
+        Value value;
+        std::string key{};
+        int key_line = 0;                                  // 0: no pending key
+        std::unordered_map<std::string, int> key_lines{};  // of all keys so far
+    };
+
+    void begin(Value::Kind kind, const YAML::Mark& mark, const std::string& tag) {
+        refuse_tag(mark, tag);
+        if (expects_key()) fail_at(mark, "a list or map where the name of a field is expected");
+        if (open.size() == deepest_nesting)
+            fail_at(mark, fmt::format("nested more than {} deep", deepest_nesting));
+        open.push_back({.value = {.kind = kind, .line = line_of(mark)}});
+    }
+
+    void end() {
+        Value complete = std::move(open.back().value);
+        open.pop_back();
+        add(std::move(complete));
+    }
+
+    void add(Value value) {
+        if (open.empty()) {
+            root = std::move(value);
+        } else if (expects_key()) {
+            take_key(std::move(value));
+        } else {
+            Open& parent = open.back();
+            if (parent.value.kind == Value::Kind::map) {
+                value.line = std::exchange(parent.key_line, 0);
+                parent.value.keys.push_back(std::move(parent.key));
+            }
+            parent.value.items.push_back(std::move(value));
+        }
+    }
+
+    void take_key(Value value) {
+        if (value.kind != Value::Kind::scalar)
+            fail(file, value.line, path(), "the name of a field is missing before ':'");
+        Open& map = open.back();
+        const auto [first, is_new] = map.key_lines.emplace(value.text, value.line);
+        if (!is_new)
+            fail(file, value.line, path(),
+                 fmt::format("{} is given twice, first on line {}", quote(value.text),
+                             first->second));
+        map.key = std::move(value.text);
+        map.key_line = value.line;
+    }
+
+    bool expects_key() const {
+        return !open.empty() && open.back().value.kind == Value::Kind::map &&
+               open.back().key_line == 0;
+    }
+
+    void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+        const bool is_own =
+            tag.empty() || tag == "?" || tag == "!";  // yaml-cpp's marks for plain and quoted
+        if (!is_own)
+            fail_at(mark, fmt::format("tags ({}) are not part of the scene format", quote(tag)));
+    }
+
+    // Names from quoted text go into tables, scripts and terminals. yaml-cpp turns some escapes
+    // (\N, \_) into bytes that are not UTF-8.
+    void refuse_unprintable(const YAML::Mark& mark, const std::string& whole) const {
+        std::string_view text = whole;
+        for (std::size_t length = 0; !text.empty(); text.remove_prefix(length)) {
+            length = utf8_length(text);
+            if (length == 0)
+                fail_at(mark, "an escape that is no UTF-8; write the character itself");
+            const std::string_view c = text.substr(0, length);
+            const bool control = static_cast<unsigned char>(c[0]) < 0x20 || c == "\x7F" ||
+                                 (c >= "\xC2\x80" && c <= "\xC2\x9F") || c == "\u2028" ||
+                                 c == "\u2029";
+            const bool turns = c == "\u061C" || c == "\u200E" || c == "\u200F" ||
+                               (c >= "\u202A" && c <= "\u202E") || (c >= "\u2066" && c <= "\u2069");
+            if (control) fail_at(mark, quote(whole) + " is not one line of plain text");
+            if (turns) fail_at(mark, "a character that turns the direction of writing");
+        }
+    }
+
+    // The keys from the root to the current position, "joints.ball_joint".
+    std::string path() const {
+        std::string path;
+        for (const Open& level : open)
+            if (level.key_line != 0) path = child_path(path, level.key);
+        return path;
+    }
+
+    [[noreturn]] void fail_at(const YAML::Mark& mark, const std::string& what) const {
+        fail(file, line_of(mark), path(), what);
+    }
+
+    const std::string& file;
+    bool seen_document = false;
+    std::vector<Open> open;
+};
+
+// Length of the UTF-8 sequence at the beginning of `text`,
+// 0 if there is none (RFC 3629, table of well-formed sequences).
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+    };
+    const auto continues = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
+    const unsigned lead = byte(0), second = byte(1);
+    if (lead < 0x80) return 1;
+    if (lead >= 0xC2 && lead <= 0xDF) return continues(1) ? 2 : 0;
+    if (lead >= 0xE0 && lead <= 0xEF) {
+        const bool overlong = lead == 0xE0 && second < 0xA0,
+                   surrogate = lead == 0xED && second > 0x9F;
+        return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
+    }
+    if (lead >= 0xF0 && lead <= 0xF4) {
+        const bool overlong = lead == 0xF0 && second < 0x90,
+                   too_large = lead == 0xF4 && second > 0x8F;
+        return continues(1) && continues(2) && continues(3) && !overlong && !too_large ? 4 : 0;
+    }
+    return 0;
+}
+
+// yaml-cpp treats some control characters as the end of the text, and reports need valid UTF-8.
+void refuse_binary(std::string_view text, const std::string& file) {
+    int line = 1;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto c = static_cast<unsigned char>(text[at]);
+        if (c == '\n') ++line;
+        if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7F)
+            fail(file, line, "",
+                 fmt::format("control character {:#04x}; a scene is plain text", c));
+        const std::size_t length = utf8_length(text.substr(at));
+        if (length == 0)
+            fail(file, line, "",
+                 fmt::format("byte {:#04x} is not UTF-8; a scene is plain text", c));
+        at += length;
+    }
+}
+
+}  // namespace
+
+std::string place_in(const Value& list, std::size_t k) {
+    const bool is_vector = list.items.size() == 3 && list.items[0].kind != Value::Kind::list;
+    return is_vector ? std::string(1, "xyz"[k]) : std::to_string(k + 1);
+}
+
+bool is_utf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
+Value parse_yaml(std::string_view text, const std::string& file) {
+    if (text.size() > largest_text) fail(file, 0, "", "larger than 1 MiB, which no scene is");
+    refuse_binary(text, file);
+    TreeBuilder builder(file);
+    try {
+        std::istringstream stream{std::string(text)};
+        YAML::Parser parser(stream);
+        while (parser.HandleNextDocument(builder)) continue;
+    } catch (const YAML::Exception& error) {
+        fail(file, line_of(error.mark), "", "not YAML: " + error.msg);
+    }
+    return std::move(builder.root);
+}
+
+void fail(const std::string& file, int line, const std::string& field, const std::string& what) {
+    const std::string where = line > 0 ? fmt::format("{}:{}", file, line) : file;
+    throw SceneError(fmt::format("{}: {}{}{}", where, field, field.empty() ? "" : ": ", what));
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,36 @@
+// Parses YAML text to a tree of values with line numbers, by yaml-cpp.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace elastocheck::reader {
+
+struct Value {
+    enum class Kind { nothing, scalar, list, map };
+    Kind kind = Kind::nothing;
+    std::string text{};               // of a scalar, as written
+    std::vector<Value> items{};       // of a list or a map, in file order
+    std::vector<std::string> keys{};  // of a map: one per item, all different
+    int line = 1;                     // where it begins; where its key stands, if it has one
+    bool is_set = false;              // the value comes from a setting, not from the file
+    bool is_string = false;           // of JSON: in quotes, so no number
+};
+
+// Rejects, with the line: text that is not YAML, duplicate keys, keys that are not plain text,
+// aliases, tags, a second document, excessive nesting, control characters and bytes that are not
+// UTF-8, more than 1 MiB. Throws SceneError.
+Value parse_yaml(std::string_view text, const std::string& file);
+
+bool is_utf8(std::string_view text);
+
+// Name of a list entry in paths, "y" or "4": vectors have x, y, z, all other lists positions from
+// 1.
+std::string place_in(const Value& list, std::size_t k);
+
+// Throws SceneError "file:line: field: what"; line 0 or an empty field are omitted.
+[[noreturn]] void fail(const std::string& file, int line, const std::string& field,
+                       const std::string& what);
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,247 @@
+// Reads branches: drivers, range, and values held constant.
+//
+// Each term of a branch is start + rate·a in the declared units, a in the unit of the branch:
+//
+//   load, at least one force   a [force]         force [-], moment [moment/force]
+//   load, moments only         a [moment]        moment [-]
+//   drive                      a [unit of the first quantity driven], rates per unit of a
+//   static_loads, hold         rate 0
+//
+// The same entry of `loads` may be used in all these ways, so its unit depends on the branch.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <variant>
+
+#include "elastocheck/compile.hpp"
+#include "models/overloaded.hpp"
+#include "models/reader/definitions/terms.hpp"
+#include "models/reader/document/limits.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/elements/sections.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+bool is_zero(const Load& load) {
+    return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },
+                                 [](const DeadMoment& l) { return l.m.isZero(0); },
+                                 [](const FollowerForce& l) { return l.f_local.isZero(0); },
+                                 [](const FollowerMoment& l) { return l.m_local.isZero(0); }},
+                      load.kind);
+}
+
+// Kind and unit of the parameter.
+struct Parameter {
+    ParameterUnit kind;
+    Unit unit;
+};
+
+double weight_of(const Term& term, const char* what) {
+    const double weight = term.number();
+    if (weight == 0) term.at.fail(fmt::format("zero, which {}; leave it out", what));
+    return weight;
+}
+
+// Converts the moment to moment per unit of force.
+void in_arms(Load& load, const Unit& arm) {
+    const auto convert = [&](Eigen::Vector3d& m) {
+        m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
+    };
+    std::visit(overloaded{[](DeadForce&) {}, [&](DeadMoment& l) { convert(l.m); },
+                          [](FollowerForce&) {}, [&](FollowerMoment& l) { convert(l.m_local); }},
+               load.kind);
+}
+
+Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& loads,
+                           Branch& branch) {
+    std::vector<Load> chosen;
+    for (const Term& term : terms(at, "a load")) {
+        chosen.push_back(look_up_load(term, loads));
+        branch.drivers.push_back(
+            {.what = Load{}, .start = 0, .rate = weight_of(term, "loads nothing")});
+    }
+    if (std::ranges::all_of(chosen, is_zero))
+        at.fail("zero in every component; a branch needs a load");
+    const bool only_moments = std::ranges::all_of(chosen, is_moment);
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+        if (!only_moments) in_arms(chosen[k], units.arm);
+        branch.drivers[k].what = chosen[k];
+    }
+    return only_moments ? Parameter{ParameterUnit::newton_metre, units.moment}
+                        : Parameter{ParameterUnit::newton, units.force};
+}
+
+Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
+    std::optional<Parameter> parameter;
+    for (const Term& term : terms(at, "what is driven")) {
+        const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
+        if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
+        const double rate = weight_of(term, "drives nothing: a value that is kept goes into hold");
+        // Rate in quantity units per unit of a; exactly 1 for equal units.
+        const double si = quantity.unit.name == parameter->unit.name
+                              ? rate
+                              : quantity.unit.si(rate) / parameter->unit.si(1);
+        branch.drivers.push_back({.what = quantity.what, .start = 0, .rate = si * quantity.factor});
+    }
+    return *parameter;
+}
+
+void read_static_loads(const Cursor& at, const Units& units, const Loads& loads, Branch& branch) {
+    for (const Term& term : terms(at, "a load")) {
+        const Load& load = look_up_load(term, loads);
+        branch.drivers.push_back({.what = load, .start = held_value(term, load, units), .rate = 0});
+    }
+}
+
+void read_hold(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
+    if (at.value->kind != Value::Kind::map)
+        at.fail(fmt::format("expected a map of what is held to its value, found {}", at.found()));
+    for (const Term& term : terms(at, "what is held")) {
+        const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
+        const double value = quantity.unit.si(term.number(quantity.unit.name));
+        branch.drivers.push_back(
+            {.what = quantity.what, .start = value * quantity.factor, .rate = 0});
+    }
+}
+
+void require_different(const Cursor& branch, const std::vector<Driver>& drivers) {
+    for (std::size_t k = 0; k < drivers.size(); ++k)
+        for (std::size_t l = 0; l < k; ++l) {
+            if (!is_same(drivers[k].what, drivers[l].what)) continue;
+            const bool both = drivers[k].rate != 0 && drivers[l].rate != 0;
+            const bool neither = drivers[k].rate == 0 && drivers[l].rate == 0;
+            branch.fail(fmt::format("{} the same thing twice; allowed: once",
+                                    both      ? "drives"
+                                    : neither ? "holds"
+                                              : "drives and holds"));
+        }
+}
+
+// Reads `from` and `to` in SI, and the number of steps.
+void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies, Branch& branch) {
+    const Cursor to = at.require("to");
+    const auto from = at.optional("from");
+    const std::string& unit = parameter.unit.name;
+    branch.unit = parameter.kind;
+    branch.from = from ? parameter.unit.si(from->number(unit)) : 0;
+    branch.to = parameter.unit.si(to.number(unit));
+    if (branch.to == 0) to.fail("zero leads nowhere; allowed: any other value");
+    if (branch.from * branch.to > 0)
+        from->fail(fmt::format(
+            "{} and `to` are on the same side of 0, where the branch begins; allowed: the "
+            "other side, or 0",
+            from->found()));
+    const Cursor steps = at.require("steps");
+    // at least one per side
+    branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, most_steps);
+    if (branch.steps * static_cast<double>(bodies) > most_poses)
+        steps.fail(fmt::format(
+            "{} steps of {} bodies are too many positions to keep; allowed: {:.0f}", branch.steps,
+            bodies, std::floor(most_poses / static_cast<double>(bodies))));
+}
+
+Branch read_branch(const std::string& name, const Cursor& at, const Units& units,
+                   const Loads& loads, Drivables& drivables, Scene& scene) {
+    at.only_keys({"load", "drive", "from", "to", "steps", "static_loads", "hold"});
+    const auto load = at.optional("load"), drive = at.optional("drive");
+    if (load && drive)
+        drive->fail(
+            "given together with load; allowed: one of the two (a load that is kept goes into "
+            "static_loads)");
+    if (!load && !drive) at.fail("nothing that moves; allowed: load or drive");
+    Branch branch;
+    branch.name = name;
+    const Parameter parameter = load ? read_loads_moved(*load, units, loads, branch)
+                                     : read_driven(*drive, drivables, scene, branch);
+    if (const auto held = at.optional("static_loads"))
+        read_static_loads(*held, units, loads, branch);
+    if (const auto held = at.optional("hold")) read_hold(*held, drivables, scene, branch);
+    require_different(at, branch.drivers);
+    read_range(at, parameter, scene.bodies.size(), branch);
+    return branch;
+}
+
+// ---- Checks that the drivers of a branch survive compilation.
+
+std::string reason(const Model& model, const std::string& what) {
+    for (const Omission& omission : model.omitted)
+        if (omission.what == what) return omission.why;
+    return "";
+}
+
+// "load 'push' acts on body 'arm', which is left out: no output is connected to it"
+std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
+    const auto part = [&](const std::string& what) {
+        return fmt::format("{} is left out: {}", what, reason(model, what));
+    };
+    const auto element = [&](int k) {
+        return part("element '" + scene.elastics[static_cast<std::size_t>(k)].name + "'");
+    };
+    return std::visit(
+        overloaded{[&](const Load& load) {
+                       const BodyId on =
+                           std::visit(overloaded{[](const DeadForce& l) { return l.at.body; },
+                                                 [](const DeadMoment& l) { return l.body; },
+                                                 [](const FollowerForce& l) { return l.at.body; },
+                                                 [](const FollowerMoment& l) { return l.body; }},
+                                      load.kind);
+                       const std::string body =
+                           "body '" + scene.bodies[static_cast<std::size_t>(on)].name + "'";
+                       if (is_zero(load)) return fmt::format("load '{}' is zero", load.name);
+                       return fmt::format("load '{}' acts on {}, which is left out: {}", load.name,
+                                          body, reason(model, body));
+                   },
+                   [&](const Motion& motion) {
+                       return part("joint '" +
+                                   scene.joints[static_cast<std::size_t>(motion.joint)].name + "'");
+                   },
+                   [&](const FreeLength& length) { return element(length.elastic); },
+                   [&](const Preload& preload) { return element(preload.elastic); }},
+        driver.what);
+}
+
+void require_moving(const Cursor& section, const Scene& scene) {
+    const Model model = compile(scene);
+    const auto moves = [](const Driver& driver) { return driver.rate != 0; };
+    for (std::size_t b = 0; b < scene.branches.size(); ++b) {
+        if (std::ranges::any_of(model.branches[b].drivers, moves)) continue;
+        std::string why;
+        for (const Driver& driver : scene.branches[b].drivers)
+            if (moves(driver)) why += (why.empty() ? "" : "; ") + lost(driver, scene, model);
+        section.require(scene.branches[b].name)
+            .fail("moves nothing that an output depends on: " + why);
+    }
+}
+
+void note_unused_loads(const Cursor& file, const Cursor& section, const Loads& loads,
+                       Scene& scene) {
+    std::set<std::string> used;
+    if (const auto trim = file.optional("trim"))
+        if (const auto under = trim->optional("under"))
+            for (const Term& term : terms(*under, "a load")) used.insert(term.name);
+    for (const Branch& branch : scene.branches)
+        for (const Driver& driver : branch.drivers)
+            if (const auto* load = std::get_if<Load>(&driver.what)) used.insert(load->name);
+    for (const std::string& name : section.value->keys)
+        if (loads.contains(name) && !used.contains(name))
+            scene.omitted.push_back({"load '" + name + "'", "no branch uses it"});
+}
+
+}  // namespace
+
+void read_branches(const Cursor& file, const Units& units, const std::map<std::string, Load>& loads,
+                   Drivables& drivables, Scene& scene) {
+    const Cursor section = file.require("branches");
+    for (const auto& [name, at] : section.entries())
+        scene.branches.push_back(read_branch(name, at, units, loads, drivables, scene));
+    if (scene.branches.empty()) section.fail("empty; at least one branch is needed");
+    require_moving(section, scene);
+    if (const auto load_section = file.optional("loads"))
+        note_unused_loads(file, *load_section, loads, scene);
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,306 @@
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "models/overloaded.hpp"
+#include "models/reader/elements/sections.hpp"
+#include "models/reader/tables/curves.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
+constexpr double parallel = 1e-6;    // sine of the angle below which axes count as parallel
+
+Vector3d rates(const Cursor& at, const Unit& unit) {
+    const auto items = at.list(3, "rates");
+    return {rate(items[0], unit), rate(items[1], unit), rate(items[2], unit)};
+}
+
+// ---- The frame of a bushing.
+
+using Axes = Matrix3d;  // columns: the frame's axes in ground axes
+
+struct FrameField {
+    Axes axes = Axes::Identity();
+    // set if one axis was given: the other two are any perpendicular pair
+    std::optional<int> only_axis;
+};
+
+// The right-handed frame with the axes a and b (0 x, 1 y, 2 z) along e_a and e_b.
+Axes completed(int a, const Vector3d& e_a, int b, const Vector3d& e_b) {
+    const double sign = b == (a + 1) % 3 ? 1 : -1;  // e_x × e_y = e_z, but e_y × e_x = -e_z
+    Axes frame;
+    frame.col(a) = e_a;
+    frame.col(b) = e_b;
+    frame.col(3 - a - b) = sign * e_a.cross(e_b);
+    return frame;
+}
+
+// The axis written first is kept, the second is made perpendicular to it.
+FrameField read_frame(const Cursor& at, const Definitions& defs) {
+    at.only_keys({"x", "y", "z"});
+    const auto& keys = at.value->keys;
+    if (keys.size() != 1 && keys.size() != 2)
+        at.fail(fmt::format("{} axes given; allowed: one or two", keys.size()));
+    const int a = keys[0][0] - 'x';
+    const Vector3d e_a = direction(at.require(keys[0]), defs);
+    if (keys.size() == 1) return {completed(a, e_a, (a + 1) % 3, e_a.unitOrthogonal()), a};
+
+    const int b = keys[1][0] - 'x';
+    const Vector3d d_b = direction(at.require(keys[1]), defs);
+    const Vector3d across = d_b - d_b.dot(e_a) * e_a;
+    if (!(across.norm() > parallel))
+        at.fail(fmt::format("axes {} and {} are parallel; two different ones are needed", keys[0],
+                            keys[1]));
+    return {completed(a, e_a, b, across.normalized()), std::nullopt};
+}
+
+// Axes on the second body, if the bodies are rotated relative to each other as drawn.
+Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& defs) {
+    const FrameField other = read_frame(at, defs);
+    if (frame.only_axis || other.only_axis)
+        at.fail(
+            "needs two axes, and so does frame: bodies that are turned against each other have no "
+            "axis to "
+            "spare");
+    return other.axes;
+}
+
+// ---- The stiffness of a bushing.
+
+// S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do
+// not mix units. Where K_ii = 0, D_ii makes the largest entry of the row 1, so that a non-zero row
+// makes S clearly indefinite.
+Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
+    const auto one_if_zero = [](double x) { return x == 0 ? 1 : x; };
+    Vector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
+    const Vector6 known = d.unaryExpr(one_if_zero);
+    for (int i = 0; i < 6; ++i)
+        if (d[i] == 0) d[i] = one_if_zero((K.col(i).array().abs() / known.array()).maxCoeff());
+    return (K.array() / (d * d.transpose()).array()).matrix();
+}
+
+void require_semidefinite(const Cursor& at, const Matrix6& K) {
+    const Matrix6 S = scaled_to_unit_diagonal(K);
+    const double lowest =
+        Eigen::SelfAdjointEigenSolver<Matrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    if (!(lowest >= -round_off))
+        at.fail(
+            fmt::format("indefinite, its lowest eigenvalue is {:g} when scaled to a unit diagonal; "
+                        "a stiffness must be positive semidefinite",
+                        lowest));
+}
+
+void require_symmetric(const Cursor& at, const Matrix6& K) {
+    for (int i = 0; i < 6; ++i)
+        for (int j = i + 1; j < 6; ++j)
+            if (!(std::abs(K(i, j) - K(j, i)) <=
+                  round_off * std::max(std::abs(K(i, j)), std::abs(K(j, i)))))
+                at.fail(
+                    fmt::format("not symmetric: row {}, column {} is {}, row {}, column {} is {}",
+                                i + 1, j + 1, K(i, j), j + 1, i + 1, K(j, i)));
+}
+
+// Units of the four blocks. Both off-diagonal blocks are force/angle, so that the 6×6 is symmetric
+// as written in any units. This scaling is no congruence (√(force/length · moment/angle) differs
+// from force/angle), so definiteness is tested on the matrix in SI units.
+const Unit& unit_of_entry(int i, int j, const Units& units) {
+    if ((i < 3) != (j < 3)) return units.coupling;
+    return i < 3 ? units.rate : units.rotational_rate;
+}
+
+Matrix6 read_stiffness(const Cursor& at, const Units& units) {
+    const auto rows = at.list(6, "rows");
+    Matrix6 written, K;
+    for (int i = 0; i < 6; ++i) {
+        const auto row =
+            rows[static_cast<std::size_t>(i)].list(6, fmt::format("numbers (row {})", i + 1));
+        for (int j = 0; j < 6; ++j) {
+            const Unit& unit = unit_of_entry(i, j, units);
+            written(i, j) = row[static_cast<std::size_t>(j)].number(unit.name);
+            K(i, j) = unit.si(written(i, j));
+        }
+    }
+    require_symmetric(at, written);
+    K = (0.5 * (K + K.transpose())).eval();
+    require_semidefinite(at, K);
+    return K;
+}
+
+// ---- The law: a stiffness matrix, or one law per axis if any axis has a curve.
+
+constexpr const char* axis_names[] = {"x", "y", "z", "rx", "ry", "rz"};
+
+Matrix6 read_rates(const Cursor& bushing, const Units& units) {
+    Matrix6 K = Matrix6::Zero();
+    if (const auto k = bushing.optional("rates")) K.diagonal().head<3>() = rates(*k, units.rate);
+    if (const auto k = bushing.optional("rotational_rates"))
+        K.diagonal().tail<3>() = rates(*k, units.rotational_rate);
+    return K;
+}
+
+// A curve replaces the rate of its axis.
+PerAxis read_curves(const Cursor& at, const Matrix6& K, const Definitions& defs) {
+    at.only_keys({std::begin(axis_names), std::end(axis_names)});
+    if (at.value->keys.empty()) at.fail("empty; a curve for one of the axes is needed");
+    PerAxis law;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        law.axis[k] = LinearRate{K(i, i)};
+        if (const auto curve = at.optional(axis_names[k]))
+            law.axis[k] =
+                read_curve(*curve, k < 3 ? of_lengths(defs.units) : of_angles(defs.units), defs);
+    }
+    return law;
+}
+
+SpatialLaw read_spatial_law(const Cursor& bushing, const Definitions& defs) {
+    const bool has_rates = bushing.optional("rates") || bushing.optional("rotational_rates");
+    const auto full = bushing.optional("stiffness"), curves = bushing.optional("curves");
+    if (full && has_rates)
+        full->fail(
+            "given together with rates; allowed: stiffness, or rates and/or rotational_rates");
+    if (full && curves)
+        curves->fail(
+            "given together with stiffness; allowed: curves, with or without rates, or stiffness");
+    if (full) return LinearStiffness{read_stiffness(*full, defs.units)};
+    if (const auto file = bushing.optional("rates");
+        file && file->value->kind == Value::Kind::scalar) {
+        if (!file->value->text.ends_with(".bus"))
+            file->fail(fmt::format(
+                "expected a list of 3 rates, or the name of a property file (.bus), found {}",
+                file->found()));
+        for (const char* field : {"rotational_rates", "curves"})
+            if (const auto other = bushing.optional(field))
+                other->fail("given together with rates from a file; the file has all six curves");
+        PerAxis law;
+        const auto tables = read_bushing_file(*file, defs);
+        for (std::size_t k = 0; k < 6; ++k) law.axis[k] = interpolant(tables[k]);
+        return law;
+    }
+    if (!has_rates && !curves)
+        bushing.fail("no stiffness; allowed: rates, rotational_rates and/or curves, or stiffness");
+    const Matrix6 K = read_rates(bushing, defs.units);
+    if (curves) return read_curves(*curves, K, defs);
+    return LinearStiffness{K};
+}
+
+// Three translational and three rotational numbers; zero where not given.
+Vector6 read_pair(const Cursor& bushing, const char* d, const Unit& unit_d, const char* theta,
+                  const Unit& unit_theta) {
+    Vector6 pair = Vector6::Zero();
+    if (const auto given = bushing.optional(d)) pair.head<3>() = vector(*given, unit_d);
+    if (const auto given = bushing.optional(theta)) pair.tail<3>() = vector(*given, unit_theta);
+    return pair;
+}
+
+// Defaults: the first choice of each field.
+Formulation read_formulation(const Cursor& at) {
+    at.only_keys({"frame", "angles", "conjugate", "offset_moment"});
+    using Frame = Formulation::Frame;
+    using Angles = Formulation::Angles;
+    Formulation result;
+    if (const auto frame = at.optional("frame"))
+        result.frame = std::array{Frame::on_i, Frame::on_j,
+                                  Frame::middle}[frame->one_of("a frame", {"i", "j", "middle"})];
+    if (const auto angles = at.optional("angles"))
+        result.angles =
+            std::array{Angles::rotation_vector, Angles::cardan, Angles::projected}[angles->one_of(
+                "a measure of rotation", {"rotation_vector", "cardan", "projected"})];
+    if (const auto conjugate = at.optional("conjugate")) result.conjugate = conjugate->yes_or_no();
+    if (const auto moment = at.optional("offset_moment"))
+        result.offset_moment = moment->yes_or_no();
+    if (!result.conjugate && result.frame == Frame::middle)
+        at.require("conjugate")
+            .fail("false, which is not defined with the frame in the middle; allowed there: true");
+    return result;
+}
+
+// ---- Check that one axis defines the frame.
+
+// A quarter turn suffices for the test: a second-order tensor or vector that is invariant under it
+// is invariant under any rotation. It only swaps entries, without rounding.
+Matrix6 quarter_turn(int axis) {
+    const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+    Matrix3d turn = Matrix3d::Zero();
+    turn(axis, axis) = 1;
+    turn(c, b) = 1;
+    turn(b, c) = -1;
+    Matrix6 turn_both = Matrix6::Zero();
+    turn_both.topLeftCorner<3, 3>() = turn_both.bottomRightCorner<3, 3>() = turn;
+    return turn_both;
+}
+
+// The rates of the law, or none if an axis across has a curve: a sum of two scalar laws is
+// rotationally symmetric only if both are the same quadratic law.
+std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
+    const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
+        Matrix6 K = Matrix6::Zero();
+        for (int k = 0; k < 6; ++k) {
+            const auto* linear = std::get_if<LinearRate>(&u.axis[static_cast<std::size_t>(k)]);
+            if (!linear && k % 3 != axis) return std::nullopt;
+            K(k, k) = linear ? linear->k : 0;
+        }
+        return K;
+    };
+    return std::visit(
+        overloaded{[](const LinearStiffness& u) { return std::optional<Matrix6>(u.K); }, of_axes},
+        law);
+}
+
+// Rejects a frame with only this axis unless the bushing is rotationally symmetric about it.
+void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) {
+    const auto refuse = [&](const char* why) {
+        frame.fail(fmt::format("one axis is not enough, as {}; give a second one", why));
+    };
+    const Matrix6 turn = quarter_turn(axis);
+    const auto is_same = [](const auto& x, const auto& y) {
+        return ((x - y).array().abs() <= round_off * x.array().abs().max(y.array().abs())).all();
+    };
+    const auto is_round = [&](const Vector6& v) { return is_same(v, turn * v); };
+    const auto K = rates_round(axis, bushing.law);
+    if (!K) refuse("a curve across it is not the same all round");
+    if (!is_same(*K, turn * *K * turn.transpose()) || !is_round(bushing.preload))
+        refuse("the rates or the preload across it are not the same all round");
+    if (!is_round(bushing.undeformed)) refuse("the undeformed position is off it");
+    if (bushing.formulation.angles != Formulation::Angles::rotation_vector)
+        refuse("cardan and projected angles need all three");
+}
+
+}  // namespace
+
+Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs) {
+    at.only_keys({"bodies", "at", "frame", "frame_j", "rates", "rotational_rates", "stiffness",
+                  "curves", "preload", "preload_moment", "undeformed", "undeformed_angles",
+                  "formulation"});
+    const auto [i, j] = body_pair(at.require("bodies"), defs);
+    const Vector3d p = hardpoint(at.require("at"), defs);
+    const auto frame_field = at.optional("frame");
+    const FrameField frame = frame_field ? read_frame(*frame_field, defs) : FrameField{};
+    const auto marker = [&](BodyId body, const Axes& axes) {
+        return Marker{body, point_of(body, p, defs).s_local, Eigen::Quaterniond(axes).normalized()};
+    };
+    const auto frame_j = at.optional("frame_j");
+    const Axes axes_j = frame_j ? read_frame_j(*frame_j, frame, defs) : frame.axes;
+    const Units& units = defs.units;
+    Bushing bushing{
+        .i = marker(i, frame.axes), .j = marker(j, axes_j), .law = read_spatial_law(at, defs)};
+    bushing.preload = read_pair(at, "preload", units.force, "preload_moment", units.moment);
+    bushing.undeformed =
+        read_pair(at, "undeformed", units.length, "undeformed_angles", units.angle);
+    if (const auto formulation = at.optional("formulation"))
+        bushing.formulation = read_formulation(*formulation);
+    if (frame.only_axis) require_round_about(*frame_field, *frame.only_axis, bushing);
+    return {name, bushing};
+}
+
+}  // namespace elastocheck::reader

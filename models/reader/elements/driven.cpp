@@ -1,0 +1,225 @@
+#include "models/reader/elements/driven.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/overloaded.hpp"
+#include "models/reader/definitions/mirror.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int no_joint = -1;
+
+// Bodies start parallel to ground: a direction has the same components on both.
+Angle angle_about(const Direction& axis_i, const Direction& axis_j) {
+    const Vector3d x = axis_j.u_local.unitOrthogonal();
+    const Vector3d y = axis_j.u_local.cross(x).normalized();
+    return {.i = {axis_i.body, x}, .j = {axis_j.body, x}, .y_j = {axis_j.body, y}, .angle = 0};
+}
+
+const char* type_of(const JointKind& joint) {
+    return std::visit(
+        overloaded{
+            [](const Spherical&) { return "spherical"; },
+            [](const Revolute&) { return "revolute"; },
+            [](const Universal&) { return "universal"; },
+            [](const Cylindrical&) { return "cylindrical"; },
+            [](const Translational&) { return "translational"; },
+            [](const Planar&) { return "planar"; }, [](const Fixed&) { return "fixed"; },
+            [](const Distance&) { return "distance"; }, [](const InPlane&) { return "in_plane"; },
+            [](const InLine&) { return "in_line"; },
+            [](const Perpendicular&) { return "perpendicular"; },
+            [](const Parallel&) { return "parallel"; }, [](const Angle&) { return "angle"; }},
+        joint);
+}
+
+void add_joints(const Scene& scene, const Units& units, const std::map<int, int>& drives,
+                Drivables& result) {
+    for (int k = 0; k < static_cast<int>(scene.joints.size()); ++k) {
+        const Joint& joint = scene.joints[static_cast<std::size_t>(k)];
+        const bool is_drive =
+            std::ranges::any_of(drives, [&](const auto& d) { return d.second == k; });
+        if (is_drive) continue;
+        const std::string name = "joints." + joint.name;
+        if (std::holds_alternative<Distance>(joint.kind) ||
+            std::holds_alternative<InPlane>(joint.kind)) {
+            result.table[name] = {ParameterUnit::metre, units.length, Motion{k}, 1, std::nullopt};
+        } else if (auto drive = drive_of(joint)) {
+            const bool is_length = std::holds_alternative<InPlane>(drive->kind);
+            const auto stands = drives.find(k);
+            Drivable entry{is_length ? ParameterUnit::metre : ParameterUnit::radian,
+                           is_length ? units.length : units.angle, Motion{no_joint}, 1,
+                           std::nullopt};
+            if (stands != drives.end()) {
+                entry.what = Motion{stands->second};
+            } else {
+                entry.joint = *drive;
+                entry.joint->active_only_where_driven = true;
+            }
+            result.table[name] = entry;
+        } else {
+            result.not_driven[name] = fmt::format(
+                "a {} joint, which has nothing to drive; allowed: the length of a distance, the "
+                "offset "
+                "of an in_plane, the displacement of a translational, the angle of a revolute or "
+                "cylindrical joint",
+                type_of(joint.kind));
+        }
+    }
+}
+
+// P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is converted to a free
+// length.
+void add_spring(int k, const std::string& name, const AxialSpring& spring, const Units& units,
+                Drivables& result) {
+    const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
+        result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
+    };
+    std::visit(
+        overloaded{[&](const LinearRate& u) {
+                       for (const char* field : {".free_length", ".preload"})
+                           if (u.k == 0)
+                               result.not_driven[name + field] =
+                                   "of a spring of zero rate, which it does not move";
+                       if (u.k == 0) return;
+                       add(".free_length", ParameterUnit::metre, units.length, 1);
+                       add(".preload", ParameterUnit::newton, units.force, 1 / u.k);
+                   },
+                   [&](const Curve&) {
+                       add(".free_length", ParameterUnit::metre, units.length, 1);
+                       result.not_driven[name + ".preload"] =
+                           "of a spring with a curve, where it is not in proportion to any length; "
+                           "allowed: its free_length";
+                   }},
+        spring.law);
+}
+
+// A torsion spring has a preload about its axis only.
+void add_bushing(int k, const NamedElement& element, const Units& units, Drivables& result) {
+    const bool is_torsion = element.path.starts_with("torsion_springs.");
+    for (int axis = is_torsion ? 5 : 0; axis < 6; ++axis) {
+        Vector6 direction = Vector6::Unit(axis);
+        if (element.is_twin) direction = reflected(direction);
+        const bool is_force = axis < 3;
+        const std::string field = is_force ? ".preload" : ".preload_moment";
+        const std::string letter = is_torsion ? "" : fmt::format(".{}", "xyz"[axis % 3]);
+        result.table[element.path + field + letter] = {
+            is_force ? ParameterUnit::newton : ParameterUnit::newton_metre,
+            is_force ? units.force : units.moment, Preload{k, direction}, 1, std::nullopt};
+    }
+}
+
+void add_elements(const Scene& scene, const Units& units, const NamedElements& elements,
+                  Drivables& result) {
+    // no structured binding: clang 14 cannot capture its parts
+    for (const auto& entry : elements) {
+        const int k = entry.first;
+        const NamedElement& element = entry.second;
+        std::visit(
+            overloaded{[&](const AxialSpring& e) { add_spring(k, element.path, e, units, result); },
+                       [&](const Bushing&) { add_bushing(k, element, units, result); }},
+            scene.elastics[static_cast<std::size_t>(k)].kind);
+    }
+}
+
+// A jack holds the wheel centre, or the contact patch, at a height: in the plane z through its
+// ground position in the design.
+void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
+    for (const Wheel& wheel : scene.wheels) {
+        const Vector3d& r = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r;
+        const std::string of_wheel = wheel.name.empty() ? "" : wheel.name + ".";
+        const auto add = [&](const char* quantity, const char* joint, const Vector3d& s_local) {
+            const InPlane jack{.i = {wheel.body, s_local},
+                               .j = {ground, r + s_local},
+                               .normal_j = {ground, Vector3d::UnitZ()},
+                               .offset = 0};
+            result.table[of_wheel + quantity] = {ParameterUnit::metre, units.length,
+                                                 Motion{no_joint}, 1,
+                                                 Joint{of_wheel + joint, jack, true}};
+        };
+        add("travel", "jack", wheel.centre_local);
+        add("patch_travel", "patch_jack", wheel.contact_local);
+    }
+}
+
+}  // namespace
+
+std::optional<Joint> drive_of(const Joint& joint) {
+    using Drive = std::optional<JointKind>;
+    const Drive none;
+    const Drive kind = std::visit(
+        overloaded{[&](const Spherical&) { return none; },
+                   [](const Revolute& s) { return Drive(angle_about(s.axis_i, s.axis_j)); },
+                   [&](const Universal&) { return none; },
+                   [](const Cylindrical& s) { return Drive(angle_about(s.axis_i, s.axis_j)); },
+                   [](const Translational& s) {
+                       return Drive(InPlane{s.i, s.j, s.axis_j, 0});
+                   },
+                   [&](const Planar&) { return none; }, [&](const Fixed&) { return none; },
+                   [&](const Distance&) { return none; }, [&](const InPlane&) { return none; },
+                   [&](const InLine&) { return none; }, [&](const Perpendicular&) { return none; },
+                   [&](const Parallel&) { return none; }, [&](const Angle&) { return none; }},
+        joint.kind);
+    if (!kind) return std::nullopt;
+    return Joint{joint.name + ".drive", *kind};
+}
+
+Drivables drivables(const Scene& scene, const Units& units, const std::map<int, int>& drives,
+                    const NamedElements& elements) {
+    Drivables result;
+    add_jacks(scene, units, result);
+    add_joints(scene, units, drives, result);
+    add_elements(scene, units, elements, result);
+    return result;
+}
+
+bool is_same(const Driven& a, const Driven& b) {
+    if (a.index() != b.index()) return false;
+    return std::visit(
+        overloaded{
+            [](const Load&) { return false; },
+            [&](const Motion& m) { return m.joint == std::get<Motion>(b).joint; },
+            [&](const FreeLength& l) { return l.elastic == std::get<FreeLength>(b).elastic; },
+            [&](const Preload& p) {
+                const auto& other = std::get<Preload>(b);
+                return p.elastic == other.elastic && p.direction == other.direction;
+            }},
+        a);
+}
+
+int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {
+    if (std::ranges::any_of(scene.joints,
+                            [&](const Joint& other) { return other.name == joint.name; }))
+        at.fail(fmt::format(
+            "needs a joint of its own called {}, but there is one already; call that one "
+            "something else",
+            quote(joint.name)));
+    scene.joints.push_back(joint);
+    return static_cast<int>(scene.joints.size()) - 1;
+}
+
+const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& drivables,
+                         Scene& scene) {
+    const auto found = drivables.table.find(name);
+    if (found == drivables.table.end()) {
+        if (const auto why = drivables.not_driven.find(name); why != drivables.not_driven.end())
+            at.fail(fmt::format("{} is {}", quote(name), why->second));
+        std::vector<std::string> names;
+        for (const auto& entry : drivables.table) names.push_back(entry.first);
+        at.fail(fmt::format("{} is nothing that can be driven{}", quote(name),
+                            did_you_mean(name, names, "allowed")));
+    }
+    Drivable& result = found->second;
+    if (result.joint) {
+        result.what = Motion{add_joint(at, *result.joint, scene)};
+        result.joint.reset();
+    }
+    return result;
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,73 @@
+// Gravity: a dead force m g at the centre of gravity of every body that has a mass.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/reader/elements/sections.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d read_acceleration(const Cursor& at, const Definitions& defs) {
+    const Vector3d g = vector(at, {"m/s²"});
+    if (defs.mirror && g.y() != 0)
+        at.fail(
+            "has a part along y, and a scene that mirrors itself is pulled to neither side; "
+            "allowed: [x, 0, "
+            "z]");
+    return g;
+}
+
+// [kg]; none if the body has no mass
+std::optional<double> read_mass(const Cursor& body) {
+    const auto mass = body.optional("mass");
+    if (!mass) {
+        if (const auto centre = body.optional("centre_of_gravity"))
+            centre->fail("of a body without a mass; give its mass or leave this out");
+        return std::nullopt;
+    }
+    const double m = mass->number("kg");
+    if (m < 0) mass->fail(fmt::format("negative mass {}; allowed: zero or more", mass->found()));
+    return m;
+}
+
+void add_weight(const Cursor& body, const Load& weight, Scene& scene) {
+    if (std::ranges::find(scene.static_loads, weight.name, &Load::name) != scene.static_loads.end())
+        body.fail(fmt::format(
+            "its weight is a load called '{}', but there is one already; call that one something "
+            "else",
+            weight.name));
+    scene.static_loads.push_back(weight);
+}
+
+}  // namespace
+
+void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result) {
+    const auto field = scene.optional("gravity");
+    const Vector3d g = field ? read_acceleration(*field, defs) : Vector3d::Zero();
+    bool any_mass = false;
+    for (const auto& [name, at] : scene.require("bodies").entries()) {
+        const auto mass = read_mass(at);
+        if (!mass) continue;
+        any_mass = true;
+        const BodyId id = defs.body_ids.at(name);
+        const auto centre = at.optional("centre_of_gravity");
+        const Vector3d p = hardpoint(centre ? *centre : at.require("origin"), defs);
+        if (!field) {
+            result.omitted.push_back({"mass of body '" + name + "'", "the scene has no gravity"});
+            continue;
+        }
+        const Load weight{"gravity." + name, DeadForce{point_of(id, p, defs), *mass * g}};
+        add_weight(at, weight, result);
+        if (const BodyId other = defs.twin_of[static_cast<std::size_t>(id)]; other != id)
+            add_weight(at,
+                       {"gravity." + defs.bodies[static_cast<std::size_t>(other)].name,
+                        twin(weight.kind, defs)},
+                       result);
+    }
+    if (field && !any_mass) field->fail("pulls nothing: no body has a mass");
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,148 @@
+// Reads joints: a table with one entry per type.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "models/reader/elements/sections.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double square = 1e-9;  // largest cosine between axes that must be perpendicular
+
+// Fields of a joint. Its axes are fixed in both bodies, which start parallel to ground.
+struct JointFields {
+    const Cursor& at;
+    const Definitions& defs;
+    BodyPair bodies;
+
+    Vector3d position(const char* key) const { return hardpoint(at.require(key), defs); }
+    Point i(const char* key) const { return point_of(bodies.i, position(key), defs); }
+    Point j(const char* key) const { return point_of(bodies.j, position(key), defs); }
+    Direction axis_i(const char* key) const { return {bodies.i, direction(at.require(key), defs)}; }
+    Direction axis_j(const char* key) const { return {bodies.j, direction(at.require(key), defs)}; }
+};
+
+// `axis_i` and `axis_j`, perpendicular as written within 1e-9; axis_j is then made exactly
+// perpendicular.
+std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
+    const Direction i = f.axis_i("axis_i");
+    Direction j = f.axis_j("axis_j");
+    const double cosine = i.u_local.dot(j.u_local);
+    if (!(std::abs(cosine) <= square)) {
+        const double angle = std::atan2(i.u_local.cross(j.u_local).norm(), cosine) * 180 /
+                             std::numbers::pi;  // [deg]
+        f.at.require("axis_j").fail(
+            fmt::format("{:.10g} deg from axis_i; the two axes must be perpendicular", angle));
+    }
+    j.u_local = (j.u_local - cosine * i.u_local).normalized();
+    return {i, j};
+}
+
+JointKind spherical(const JointFields& f) { return Spherical{f.i("at"), f.j("at")}; }
+
+template <class J>
+JointKind along_axis(const JointFields& f) {
+    return J{f.i("at"), f.j("at"), f.axis_i("axis"), f.axis_j("axis")};
+}
+
+JointKind planar(const JointFields& f) {
+    return Planar{f.i("at"), f.j("at"), f.axis_i("normal"), f.axis_j("normal")};
+}
+
+JointKind universal(const JointFields& f) {
+    const auto [axis_i, axis_j] = perpendicular_axes(f);
+    return Universal{f.i("at"), f.j("at"), axis_i, axis_j};
+}
+
+JointKind fixed(const JointFields& f) {
+    const auto [i, j] = f.bodies;
+    const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
+    return Fixed{f.i("at"), f.j("at"), {i, x}, {i, y}, {j, x}, {j, y}};
+}
+
+JointKind distance(const JointFields& f) {
+    const double drawn = (f.position("to") - f.position("from")).norm();
+    if (!(drawn > coincident))
+        f.at.require("to").fail("the same position as `from`; a distance joint needs a length");
+    const auto given = f.at.optional("length");
+    const Unit& unit = f.defs.units.length;
+    const double length = given ? unit.si(given->number(unit.name)) : drawn;
+    if (!(length > 0))
+        given->fail(fmt::format("{} is not a length; allowed: above zero", given->found()));
+    return Distance{f.i("from"), f.j("to"), length};
+}
+
+JointKind in_plane(const JointFields& f) {
+    return InPlane{f.i("at"), f.j("at"), f.axis_j("normal")};
+}
+
+JointKind in_line(const JointFields& f) { return InLine{f.i("at"), f.j("at"), f.axis_j("axis")}; }
+
+JointKind perpendicular(const JointFields& f) {
+    const auto [i, j] = perpendicular_axes(f);
+    return Perpendicular{i, j};
+}
+
+JointKind parallel(const JointFields& f) { return Parallel{f.axis_i("axis"), f.axis_j("axis")}; }
+
+struct JointType {
+    std::string name;
+    std::vector<std::string> fields;  // besides type and bodies
+    JointKind (*read)(const JointFields&);
+};
+
+const std::vector<JointType>& joint_types() {
+    static const std::vector<JointType> types{
+        {"spherical", {"at"}, spherical},
+        {"revolute", {"at", "axis", "held"}, along_axis<Revolute>},
+        {"universal", {"at", "axis_i", "axis_j"}, universal},
+        {"cylindrical", {"at", "axis", "held"}, along_axis<Cylindrical>},
+        {"translational", {"at", "axis", "held"}, along_axis<Translational>},
+        {"planar", {"at", "normal"}, planar},
+        {"fixed", {"at"}, fixed},
+        {"distance", {"from", "to", "length"}, distance},
+        {"in_plane", {"at", "normal"}, in_plane},
+        {"in_line", {"at", "axis"}, in_line},
+        {"perpendicular", {"axis_i", "axis_j"}, perpendicular},
+        {"parallel", {"axis"}, parallel},
+    };
+    return types;
+}
+
+const JointType& joint_type(const Cursor& joint) {
+    std::vector<std::string> names, fields{"type", "bodies"};
+    for (const JointType& type : joint_types()) {
+        names.push_back(type.name);
+        for (const std::string& field : type.fields)
+            if (std::find(fields.begin(), fields.end(), field) == fields.end())
+                fields.push_back(field);
+    }
+    // Check against the fields of all types first: a misspelt `type` is then an unknown field, not
+    // a missing one.
+    joint.only_keys(fields);
+    return joint_types()[joint.require("type").one_of("a joint type", names)];
+}
+
+}  // namespace
+
+Joint read_joint(const std::string& name, const Cursor& at, const Definitions& defs) {
+    const JointType& type = joint_type(at);
+    std::vector<std::string> fields{"type", "bodies"};
+    fields.insert(fields.end(), type.fields.begin(), type.fields.end());
+    at.only_keys(fields);
+    const BodyPair bodies = body_pair(at.require("bodies"), defs);
+    return {name, type.read({at, defs, bodies})};
+}
+
+bool is_held(const Cursor& joint) {
+    const auto field = joint.optional("held");
+    return field && field->yes_or_no();
+}
+
+}  // namespace elastocheck::reader

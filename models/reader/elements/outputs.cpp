@@ -1,0 +1,97 @@
+// Reads outputs of a scene: wheels, probes, dampers, and the vehicle data.
+#include <fmt/format.h>
+
+#include "models/reader/elements/sections.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Place {
+    Vector3d position;
+    Point point;
+};
+
+// An end of a steering axis: a hardpoint fixed to the wheel's body, or one on another body.
+Place end_of_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
+    const bool elsewhere = at.value->kind == Value::Kind::map;
+    if (elsewhere) at.only_keys({"on", "at"});
+    const BodyId on = elsewhere ? body(at.require("on"), defs) : wheel;
+    const Vector3d position = hardpoint(elsewhere ? at.require("at") : at, defs);
+    return {position, point_of(on, position, defs)};
+}
+
+SteeringAxis read_steering_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
+    const auto ends = at.list(2, "ends, the lower and the upper one");
+    const Place lower = end_of_axis(ends[0], wheel, defs),
+                upper = end_of_axis(ends[1], wheel, defs);
+    if (!((upper.position - lower.position).norm() > coincident))
+        at.fail("both ends are at the same position; an axis needs two different ones");
+    return {lower.point, upper.point};
+}
+
+double above_zero(const Cursor& at, const char* what, const Unit& unit) {
+    const double x = unit.si(at.number(unit.name));
+    if (!(x > 0)) at.fail(fmt::format("{} is not {}; allowed: above zero", at.found(), what));
+    return x;
+}
+
+double share(const Cursor& at) {
+    const double x = at.number();
+    if (!(x >= 0 && x <= 1)) at.fail(fmt::format("{} is not a share; allowed: 0 to 1", at.found()));
+    return x;
+}
+
+}  // namespace
+
+Wheel read_wheel(const Cursor& at, const Definitions& defs) {
+    at.only_keys({"body", "centre", "contact_patch", "spin_axis", "side", "steering_axis"});
+    const BodyId body = moving_body(at.require("body"), defs, "a wheel");
+    const auto contact = at.optional("contact_patch");
+    const Cursor centre = at.require("centre"), spin_axis = at.require("spin_axis");
+    const auto local = [&](const Cursor& field) {
+        return point_of(body, hardpoint(field, defs), defs).s_local;
+    };
+    Wheel wheel{.name = {},
+                .body = body,
+                .centre_local = local(centre),
+                .contact_local = local(contact ? *contact : centre),
+                .spin_axis_local = direction(spin_axis, defs),
+                .side = at.require("side").one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
+    if (!(wheel.side * wheel.spin_axis_local.y() > 0))
+        spin_axis.fail(fmt::format("does not point outboard, which is {}y for a {} wheel",
+                                   wheel.side > 0 ? '+' : '-', wheel.side > 0 ? "left" : "right"));
+    if (const auto axis = at.optional("steering_axis"))
+        wheel.steering_axis = read_steering_axis(*axis, body, defs);
+    return wheel;
+}
+
+Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs) {
+    at.only_keys({"on", "at"});
+    const BodyId on = moving_body(at.require("on"), defs, "a probe");
+    return {name, point_of(on, hardpoint(at.require("at"), defs), defs)};
+}
+
+Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs) {
+    at.only_keys({"bodies", "from", "to"});
+    const auto [i, j] = body_pair(at.require("bodies"), defs);
+    const Vector3d from = hardpoint(at.require("from"), defs),
+                   to = hardpoint(at.require("to"), defs);
+    if (!((to - from).norm() > coincident))
+        at.require("to").fail("the same position as `from`; a damper needs a length");
+    return {name, point_of(i, from, defs), point_of(j, to, defs)};
+}
+
+Vehicle read_vehicle(const Cursor& at, const Definitions& defs) {
+    at.only_keys({"wheelbase", "cg_height", "axle", "brake_share", "drive_share"});
+    const Unit& length = defs.units.length;
+    return {.wheelbase = above_zero(at.require("wheelbase"), "a wheelbase", length),
+            .cg_height = above_zero(at.require("cg_height"), "a height", length),
+            .axle = at.require("axle").one_of("an axle", {"front", "rear"}) == 0 ? Axle::front
+                                                                                 : Axle::rear,
+            .brake_share = share(at.require("brake_share")),
+            .drive_share = share(at.require("drive_share"))};
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,47 @@
+// Readers of the sections of a scene file, one function each.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "elastocheck/scene.hpp"
+#include "models/reader/definitions/definitions.hpp"
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/elements/driven.hpp"
+
+namespace elastocheck::reader {
+
+Joint read_joint(const std::string& name, const Cursor& at, const Definitions& defs);
+bool is_held(const Cursor& joint);  // `held: true`
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
+                                 const Definitions& defs);  // and its stops
+std::vector<Elastic> read_stops(const std::string& name, const Cursor& at, const Definitions& defs);
+Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs);
+Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs);
+Load read_load(const std::string& name, const Cursor& at,
+               const Definitions& defs);  // numbers as written
+Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs);  // SI
+Wheel read_wheel(const Cursor& at, const Definitions& defs);
+Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs);
+Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs);
+Vehicle read_vehicle(const Cursor& at, const Definitions& defs);
+
+// `gravity`, and the masses of bodies: one static load "gravity.BODY" for each.
+void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result);
+
+// `tyres`: elements between ground and wheel, and the drivers of their road. Pre: the wheels are
+// read.
+void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result);
+
+// `trim`. Pre: adjustable quantities, wheels and probes are read. Its loads are added to the static
+// loads.
+void read_trim(const Cursor& scene, const Units& units, const std::map<std::string, Load>& loads,
+               Drivables& drivables, Scene& result);
+
+// Reads the last section: all other parts must be read. Adds the branches, the joints that their
+// drives need, and lists unused loads in omitted.
+void read_branches(const Cursor& file, const Units& units, const std::map<std::string, Load>& loads,
+                   Drivables& drivables, Scene& scene);
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include "models/overloaded.hpp"
+#include "models/reader/elements/sections.hpp"
+#include "models/reader/tables/curves.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+// Reads the two ends as a spring that is free at the design length.
+AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
+    const auto [i, j] = body_pair(at.require("bodies"), defs);
+    const Eigen::Vector3d from = hardpoint(at.require("from"), defs),
+                          to = hardpoint(at.require("to"), defs);
+    const double length = (to - from).norm();
+    if (!(length > coincident))
+        at.require("to").fail("the same position as `from`; a spring needs a length");
+    return {
+        .i = point_of(i, from, defs), .j = point_of(j, to, defs), .law = {}, .free_length = length};
+}
+
+// The deflection x with f(x) = -p: a preload is positive in compression.
+double deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
+    const double p = units.force.si(preload.number(units.force.name));
+    const auto of_rate = [&](const LinearRate& u) {
+        if (u.k == 0)
+            preload.fail("a spring of zero rate has no preload; leave it out or give a rate");
+        return -p / u.k;
+    };
+    const auto of_curve = [&](const Curve& u) {
+        return deflection_at(preload, u, 0 - p, units.force);  // 0, not -0
+    };
+    return std::visit(overloaded{of_rate, of_curve}, law);
+}
+
+// ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.
+double free_length(const Cursor& spring, double length, const ScalarLaw& law, const Units& units) {
+    const auto given = spring.optional("free_length");
+    const auto preload = spring.optional("preload");
+    if (given && preload) preload->fail("given together with free_length; allowed: one of the two");
+    if (given) {
+        const double l0 = units.length.si(given->number(units.length.name));
+        if (!(l0 > 0))
+            given->fail(fmt::format("{} is not a length; allowed: above zero", given->found()));
+        return l0;
+    }
+    if (!preload) return length;
+    const double l0 = length - deflection_under(*preload, law, units);
+    if (!(l0 > 0))
+        preload->fail(
+            fmt::format("needs a free length of {:g} {}; a free length must be above zero",
+                        units.length.written(l0), units.length.name));
+    return l0;
+}
+
+// Appends the stops given in these fields, with the names "NAME.FIELD".
+void add_stops(const std::string& name, const Cursor& at, const AxialSpring& ends, const char* bump,
+               const char* rebound, const Definitions& defs, std::vector<Elastic>& list) {
+    for (const auto& [field, kind] : {std::pair{bump, Stop::bump}, {rebound, Stop::rebound}})
+        if (const auto stop = at.optional(field)) {
+            AxialSpring element = ends;
+            element.law = read_stop(*stop, kind, defs);
+            list.push_back({name + "." + field, element, false, WrittenAs::stop});
+        }
+}
+
+}  // namespace
+
+std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
+                                 const Definitions& defs) {
+    at.only_keys({"bodies", "from", "to", "rate", "curve", "free_length", "preload", "bump_stop",
+                  "rebound_stop"});
+    const AxialSpring ends = read_ends(at, defs);
+    AxialSpring spring = ends;
+    spring.law = read_law(at, of_springs(defs.units), defs);
+    spring.free_length = free_length(at, ends.free_length, spring.law, defs.units);
+    std::vector<Elastic> result{{name, spring}};
+    add_stops(name, at, ends, "bump_stop", "rebound_stop", defs, result);
+    return result;
+}
+
+std::vector<Elastic> read_stops(const std::string& name, const Cursor& at,
+                                const Definitions& defs) {
+    at.only_keys({"bodies", "from", "to", "bump", "rebound"});
+    std::vector<Elastic> result;
+    add_stops(name, at, read_ends(at, defs), "bump", "rebound", defs, result);
+    if (result.empty()) at.fail("no stop; allowed: bump, rebound");
+    return result;
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,46 @@
+#include "models/overloaded.hpp"
+#include "models/reader/elements/sections.hpp"
+#include "models/reader/tables/curves.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+SpatialLaw about_z(const ScalarLaw& law) {
+    return std::visit(overloaded{[](const LinearRate& u) -> SpatialLaw {
+                                     LinearStiffness all;
+                                     all.K(5, 5) = u.k;
+                                     return all;
+                                 },
+                                 [](const Curve& u) -> SpatialLaw {
+                                     PerAxis all;
+                                     all.axis[5] = u;
+                                     return all;
+                                 }},
+                      law);
+}
+
+}  // namespace
+
+// A bushing with z along the axis that resists only θ_z; its x and y are arbitrary.
+Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs) {
+    at.only_keys({"bodies", "at", "axis", "rate", "curve", "preload_moment"});
+    const auto [i, j] = body_pair(at.require("bodies"), defs);
+    const Eigen::Vector3d p = hardpoint(at.require("at"), defs),
+                          z = direction(at.require("axis"), defs);
+    Eigen::Matrix3d frame;
+    frame.col(2) = z;
+    frame.col(0) = z.unitOrthogonal();
+    frame.col(1) = z.cross(frame.col(0));
+    const Eigen::Quaterniond A = Eigen::Quaterniond(frame).normalized();
+
+    const auto marker = [&](BodyId body) {
+        return Marker{body, point_of(body, p, defs).s_local, A};
+    };
+    Bushing spring{
+        .i = marker(i), .j = marker(j), .law = about_z(read_law(at, of_angles(defs.units), defs))};
+    if (const auto moment = at.optional("preload_moment"))
+        spring.preload[5] = defs.units.moment.si(moment->number(defs.units.moment.name));
+    return {name, spring, false, WrittenAs::torsion_spring};
+}
+
+}  // namespace elastocheck::reader

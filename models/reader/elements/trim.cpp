@@ -1,0 +1,150 @@
+// Reads a trim: adjustments, conditions, and loads.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/overloaded.hpp"
+#include "models/reader/definitions/look_up.hpp"
+#include "models/reader/definitions/terms.hpp"
+#include "models/reader/elements/sections.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+// ---- Adjustments.
+
+// Whether it is active only on the branches that drive it: a jack, the drive of a joint not held, a
+// tyre.
+bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
+    const auto* preload = std::get_if<Preload>(&quantity.what);
+    return quantity.joint.has_value() ||
+           (preload != nullptr &&
+            scene.elastics[static_cast<std::size_t>(preload->elastic)].active_only_where_driven);
+}
+
+Trim::Adjustment read_adjustment(const Term& term, const Loads& loads, Drivables& drivables,
+                                 Scene& scene) {
+    if (loads.contains(term.name) && !drivables.table.contains(term.name))
+        term.at.fail(fmt::format(
+            "{} is a load, and loads are not adjusted; allowed: preloads, free lengths and "
+            "offsets, named as in drive",
+            quote(term.name)));
+    if (const auto found = drivables.table.find(term.name);
+        found != drivables.table.end() && stands_only_where_driven(found->second, scene))
+        term.at.fail(fmt::format(
+            "{} is there only on the branches that drive it; allowed: what stands on all of "
+            "them",
+            quote(term.name)));
+    const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
+    return {.name = term.name,
+            .what = quantity.what,
+            .per_unit = quantity.factor,
+            .unit = quantity.kind};
+}
+
+std::vector<Trim::Adjustment> read_adjustments(const Cursor& at, const Loads& loads,
+                                               Drivables& drivables, Scene& scene) {
+    if (at.value->kind == Value::Kind::map)
+        at.fail(
+            "expected a name or a list of names, found a map; what is adjusted has no value yet");
+    std::vector<Trim::Adjustment> adjustments;
+    for (const Term& term : terms(at, "what is adjusted")) {
+        const auto adjustment = read_adjustment(term, loads, drivables, scene);
+        for (const auto& other : adjustments)
+            if (is_same(other.what, adjustment.what))
+                term.at.fail(fmt::format("{} adjusts the same thing as {}; allowed: once",
+                                         quote(term.name), quote(other.name)));
+        adjustments.push_back(adjustment);
+    }
+    return adjustments;
+}
+
+// ---- Conditions.
+
+struct Output {
+    ConditionKind what;
+    Unit unit;
+};
+
+std::map<std::string, Output> outputs(const Scene& scene, const Units& units) {
+    std::map<std::string, Output> table;
+    for (int k = 0; k < static_cast<int>(scene.wheels.size()); ++k) {
+        const std::string& name = scene.wheels[static_cast<std::size_t>(k)].name;
+        const std::string of_wheel = name.empty() ? "" : name + ".";
+        table[of_wheel + "travel"] = {WheelTravel{k}, units.length};
+        table[of_wheel + "toe"] = {WheelToe{k}, units.angle};
+        table[of_wheel + "camber"] = {WheelCamber{k}, units.angle};
+    }
+    for (int k = 0; k < static_cast<int>(scene.probes.size()); ++k)
+        for (int axis = 0; axis < 3; ++axis)
+            table[fmt::format("{}.{}", scene.probes[static_cast<std::size_t>(k)].name,
+                              "xyz"[axis])] = {ProbeCoordinate{k, axis}, units.length};
+    return table;
+}
+
+std::vector<Trim::Condition> read_conditions(const Cursor& at, const Scene& scene,
+                                             const Units& units) {
+    const auto table = outputs(scene, units);
+    std::vector<std::string> names;
+    for (const auto& entry : table) names.push_back(entry.first);
+    std::vector<Trim::Condition> conditions;
+    for (const Term& term : terms(at, "an output")) {
+        const auto found = table.find(term.name);
+        if (found == table.end())
+            term.at.fail(fmt::format("{} is no output that a trim can ask for{}", quote(term.name),
+                                     did_you_mean(term.name, names, "allowed")));
+        const auto& [what, unit] = found->second;
+        const auto value =
+            term.has_number ? std::optional(unit.si(term.number(unit.name))) : std::nullopt;
+        conditions.push_back({.name = term.name, .what = what, .value = value});
+    }
+    return conditions;
+}
+
+std::string counted(std::size_t n, const char* one, const char* many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+void require_as_many(const Cursor& at, const Trim& trim) {
+    const std::size_t adjusted = trim.adjust.size(), conditions = trim.until.size();
+    if (adjusted == conditions) return;
+    const bool few = conditions < adjusted;
+    const std::size_t missing = few ? adjusted - conditions : conditions - adjusted;
+    at.fail(fmt::format("{} adjusted, {}: {} more {} needed", adjusted,
+                        counted(conditions, "condition", "conditions"),
+                        missing == 1 ? "one" : std::to_string(missing),
+                        few ? (missing == 1 ? "condition is" : "conditions are")
+                            : (missing == 1 ? "adjustment is" : "adjustments are")));
+}
+
+// ---- Loads.
+
+Load scaled(Load load, double value) {
+    std::visit(overloaded{[&](DeadForce& l) { l.f *= value; }, [&](DeadMoment& l) { l.m *= value; },
+                          [&](FollowerForce& l) { l.f_local *= value; },
+                          [&](FollowerMoment& l) { l.m_local *= value; }},
+               load.kind);
+    return load;
+}
+
+}  // namespace
+
+void read_trim(const Cursor& scene, const Units& units, const Loads& loads, Drivables& drivables,
+               Scene& result) {
+    const auto at = scene.optional("trim");
+    if (!at) return;
+    at->only_keys({"adjust", "until", "under"});
+    Trim trim;
+    trim.line = at->value->line;
+    trim.adjust = read_adjustments(at->require("adjust"), loads, drivables, result);
+    trim.until = read_conditions(at->require("until"), result, units);
+    require_as_many(*at, trim);
+    if (const auto under = at->optional("under"))
+        for (const Term& term : terms(*under, "a load")) {
+            const Load& load = look_up_load(term, loads);
+            result.static_loads.push_back(scaled(load, held_value(term, load, units)));
+        }
+    result.trim = trim;
+}
+
+}  // namespace elastocheck::reader

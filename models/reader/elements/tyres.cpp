@@ -1,0 +1,92 @@
+// Reads tyres: a vertical rate at the contact patch.
+//
+// A bushing from ground (i) to the wheel (j), both markers at the contact patch of the design
+// position, ground axes. d_z is the rise of the patch, a point of the wheel. With the road raised
+// by h the tyre pushes the wheel up by P - k (d_z - h). A bushing pulls j back by
+// ∂U/∂d_z = k d_z + preload, so
+//
+//   preload = -P - k h e_z:   the road height drives a preload along -k e_z.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/reader/definitions/look_up.hpp"
+#include "models/reader/elements/sections.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+using Eigen::Vector3d;
+
+std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
+    if (scene.wheels.empty()) tyre.fail("there is no wheel for it; give wheel or wheels");
+    const auto named = tyre.optional("wheel");
+    if (scene.wheels.front().name.empty()) {  // the short form
+        if (named) named->fail("the only wheel of the scene has no name; leave this out");
+        return 0;
+    }
+    std::map<std::string, std::size_t> wheels;
+    for (std::size_t k = 0; k < scene.wheels.size(); ++k) wheels.emplace(scene.wheels[k].name, k);
+    return look_up(tyre.require("wheel"), "wheel", wheels);
+}
+
+struct Tyre {
+    double k = 0;  // [N/m] > 0
+    double P = 0;  // force that pushes the wheel up at the design position [N]
+};
+
+Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {
+    const Vector3d& r = defs.bodies[static_cast<std::size_t>(wheel.body)].design.r;
+    Matrix6 K = Matrix6::Zero();
+    K(2, 2) = tyre.k;
+    return {.i = {ground, r + wheel.contact_local},
+            .j = {wheel.body, wheel.contact_local},
+            .law = LinearStiffness{K},
+            .preload = -tyre.P * Vector6::Unit(2)};
+}
+
+void add_tyre(const Cursor& at, const std::string& name, const Tyre& tyre, std::size_t wheel,
+              const Definitions& defs, Drivables& drivables, Scene& scene) {
+    Wheel& above = scene.wheels[wheel];
+    if (above.tyre_rate != 0)
+        at.fail(fmt::format("wheel {} has a tyre already; allowed: one", quote(above.name)));
+    above.tyre_rate = tyre.k;
+    const int id = static_cast<int>(scene.elastics.size());
+    scene.elastics.push_back({name, bushing(tyre, above, defs), true, WrittenAs::tyre});
+    drivables.table["tyres." + name + ".road"] = {ParameterUnit::metre, defs.units.length,
+                                                  Preload{id, -tyre.k * Vector6::Unit(2)}, 1,
+                                                  std::nullopt};
+}
+
+}  // namespace
+
+void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivables, Scene& result) {
+    const auto section = scene.optional("tyres");
+    if (!section) return;
+    for (const auto& [name, at] : section->entries()) {
+        at.only_keys({"wheel", "rate", "preload"});
+        const std::size_t wheel = wheel_of(at, result);
+        const Cursor rate_field = at.require("rate");
+        const auto preload = at.optional("preload");
+        const Tyre tyre{
+            .k = rate(rate_field, defs.units.rate),
+            .P = preload ? defs.units.force.si(preload->number(defs.units.force.name)) : 0};
+        if (tyre.k == 0) rate_field.fail("zero; a tyre needs a rate");
+        add_tyre(at, name, tyre, wheel, defs, drivables, result);
+        if (!defs.mirror) continue;
+        const auto other = twin_name(*defs.mirror, name, *section);
+        const auto other_wheel = turned(*defs.mirror, result.wheels[wheel].name);
+        if (other.has_value() != other_wheel.has_value())
+            at.fail(
+                fmt::format("the mirror makes another of {} but not of {}; both, or neither, have "
+                            "{} in their name",
+                            other ? "the tyre" : "its wheel", other ? "its wheel" : "the tyre",
+                            quote(defs.mirror->from)));
+        if (!other) continue;
+        const auto there = std::ranges::find(result.wheels, *other_wheel, &Wheel::name);
+        add_tyre(at, *other, tyre, static_cast<std::size_t>(there - result.wheels.begin()), defs,
+                 drivables, result);
+    }
+}
+
+}  // namespace elastocheck::reader

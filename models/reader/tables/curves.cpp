@@ -1,0 +1,152 @@
+#include "models/reader/tables/curves.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "models/curve.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+constexpr double round_off = 1e-12;  // relative, of forces that should be equal
+
+// An open stop has a known law (zero force): its first knot lies beyond any motion [m].
+constexpr double beyond_all = 1e6;
+
+// The points with x ≥ 0, preceded by their mirror images -f(-x).
+std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& half) {
+    if (half.front().x != 0 || half.front().f != 0)
+        at.fail(
+            "the table of a symmetric curve begins with [0, 0], and the other half is made from "
+            "it");
+    std::vector<TablePoint> points;
+    for (std::size_t k = half.size() - 1; k > 0; --k) points.push_back({-half[k].x, -half[k].f});
+    points.insert(points.end(), half.begin(), half.end());
+    return points;
+}
+
+void scale(const Cursor& at, std::vector<TablePoint>& points) {
+    const double factor = at.number();
+    if (!(factor > 0)) at.fail(fmt::format("{} is no scale; allowed: above zero", at.found()));
+    for (TablePoint& point : points) point.f *= factor;
+}
+
+void shift(const Cursor& at, const Unit& unit, std::vector<TablePoint>& points) {
+    const double offset = unit.si(at.number(unit.name));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        points[k].x += offset;
+        if (k > 0 && !(points[k].x > points[k - 1].x))
+            at.fail(fmt::format("{} is so large that rows of the table fall together", at.found()));
+    }
+}
+
+Curve through(const Cursor& curve, const std::vector<TablePoint>& points) {
+    const auto way = curve.optional("interpolation");
+    const bool is_linear =
+        way && way->one_of("a way between the rows", {"monotone", "linear"}) == 1;
+    return is_linear ? polygon(points) : interpolant(points);
+}
+
+bool is_known_outside(const Cursor& curve) {
+    const auto outside = curve.optional("outside");
+    return !outside || outside->one_of("a way to go on", {"linear", "unknown"}) == 0;
+}
+
+// Force over the penetration s: zero up to s = 0.
+Curve read_contact(const Cursor& at, const Definitions& defs) {
+    at.only_keys({"table", "file", "scale", "interpolation", "outside"});
+    auto points = read_table(at, of_lengths(defs.units), defs);
+    if (points.front().x != 0 || points.front().f != 0)
+        at.fail("the table of a stop begins with [0, 0], where it touches");
+    if (const auto factor = at.optional("scale")) scale(*factor, points);
+    Curve contact = through(at, points);
+    contact.pieces.front() = {};
+    contact.known_outside = is_known_outside(at);
+    if (!contact.known_outside) {
+        contact.knots.insert(contact.knots.begin(), -beyond_all);
+        contact.pieces.insert(contact.pieces.begin(), std::array<double, 4>{});
+    }
+    return contact;
+}
+
+}  // namespace
+
+Curve read_curve(const Cursor& at, const LawUnits& units, const Definitions& defs) {
+    at.only_keys({"table", "file", "scale", "offset", "symmetric", "interpolation", "outside"});
+    auto points = read_table(at, units, defs);
+    if (const auto symmetric = at.optional("symmetric"); symmetric && symmetric->yes_or_no())
+        points = odd(*symmetric, points);
+    if (const auto factor = at.optional("scale")) scale(*factor, points);
+    if (const auto offset = at.optional("offset")) shift(*offset, units.deflection, points);
+    Curve curve = through(at, points);
+    curve.known_outside = is_known_outside(at);
+    return curve;
+}
+
+ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitions& defs) {
+    const auto k = element.optional("rate"), curve = element.optional("curve");
+    if (k && curve) curve->fail("given together with rate; allowed: one of the two");
+    if (!k && !curve) element.fail("no law; allowed: rate or curve");
+    if (k) return LinearRate{rate(*k, units.rate)};
+    return read_curve(*curve, units, defs);
+}
+
+Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs) {
+    at.only_keys({"clearance", "rate", "curve"});
+    const Unit& length = defs.units.length;
+    const double clearance = length.si(at.require("clearance").number(length.name));
+    const auto k = at.optional("rate"), curve = at.optional("curve");
+    if (k && curve) curve->fail("given together with rate; allowed: one of the two");
+    if (!k && !curve) at.fail("no law; allowed: rate or curve");
+    Curve law =
+        k ? Curve{{0}, {{}, {0, rate(*k, defs.units.rate), 0, 0}}} : read_contact(*curve, defs);
+    for (double& knot : law.knots) knot += clearance;
+    for (std::size_t n = 1; n < law.knots.size(); ++n)
+        if (!(law.knots[n] > law.knots[n - 1]))
+            at.require("clearance")
+                .fail(fmt::format("{} is so large that rows of the curve fall together",
+                                  at.require("clearance").found()));
+    return stop == Stop::rebound ? law : reversed(law);
+}
+
+// f is non-decreasing. Outside the knots it is linear; inside the interval that brackets the force,
+// bisection runs to the last bit.
+double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit) {
+    const auto& x = curve.knots;
+    const auto at_knot = [&](std::size_t k) { return curve.pieces[k + 1][0]; };
+    const std::size_t last = x.size() - 1;
+    const double below = curve.pieces.front()[1], above = curve.pieces.back()[1];  // slopes
+    const double largest = std::max(std::abs(at_knot(0)), std::abs(at_knot(last)));
+    const auto is_equal = [&](std::size_t k) {
+        return std::abs(at_knot(k) - force) <= round_off * largest;
+    };
+    const auto many = [&] {
+        at.fail(fmt::format("the curve has {:g} {} at more than one deflection; give a free_length",
+                            unit.written(force), unit.name));
+    };
+    const bool goes_on = curve.known_outside;
+    if (goes_on && ((below == 0 && is_equal(0)) || (above == 0 && is_equal(last)))) many();
+    for (std::size_t k = 0; k < last; ++k)
+        if (is_equal(k) && is_equal(k + 1)) many();
+
+    const bool is_below = force<at_knot(0), is_above = force> at_knot(last);
+    if ((is_below && (!goes_on || below == 0)) || (is_above && (!goes_on || above == 0)))
+        at.fail(fmt::format("the curve never has {:g} {}; its table goes from {:g} to {:g}",
+                            unit.written(force), unit.name, unit.written(at_knot(0)),
+                            unit.written(at_knot(last))));
+    if (is_below) return x[0] + (force - at_knot(0)) / below;
+    if (is_above) return x[last] + (force - at_knot(last)) / above;
+    std::size_t k = 0;
+    while (k + 1 < last && at_knot(k + 1) < force) ++k;
+    const auto& c = curve.pieces[k + 1];
+    double low = 0, high = x[k + 1] - x[k];
+    for (double t; t = low + (high - low) / 2, t > low && t < high;)
+        (c[0] + t * (c[1] + t * (c[2] + t * c[3])) < force ? low : high) = t;
+    return x[k] + high;
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,27 @@
+// Reads laws of one deformation: a rate, or a curve.
+#pragma once
+
+#include "models/reader/definitions/definitions.hpp"
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/tables/table.hpp"
+
+namespace elastocheck::reader {
+
+// f(x) = scale · t(x - offset), t the interpolant of the table or, if it is symmetric, of the table
+// and its mirror image -t(-x).
+Curve read_curve(const Cursor& at, const LawUnits& units, const Definitions& defs);
+
+// The `rate` of an element or its `curve`.
+ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitions& defs);
+
+// Law of a stop as a force over the deflection x of a spring in its place that is free at the
+// design length, from `clearance` and `rate` or `curve` [N over m of penetration s = -x - clearance
+// (bump), x - clearance (rebound)].
+enum class Stop { bump, rebound };
+Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs);
+
+// The unique deflection at which the curve has this force [N]. `at` reports an error if there is
+// none or several.
+double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit);
+
+}  // namespace elastocheck::reader

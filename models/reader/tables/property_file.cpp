@@ -1,0 +1,226 @@
+#include "models/reader/tables/property_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+constexpr std::size_t most_rows = 100'000;
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\0'; }
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+std::string capitals(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return result;
+}
+
+// Splits at blanks; text in single quotes is one word, without its padding.
+std::vector<std::string> words(std::string_view line) {
+    std::vector<std::string> result;
+    for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+        if (line.front() == '\'') {
+            const std::size_t end = std::min(line.find('\'', 1), line.size());
+            result.emplace_back(trimmed(line.substr(1, end - 1)));
+            line.remove_prefix(std::min(end + 1, line.size()));
+            continue;
+        }
+        std::size_t n = 0;
+        while (n < line.size() && !is_blank(line[n])) ++n;
+        result.emplace_back(line.substr(0, n));
+        line.remove_prefix(n);
+    }
+    return result;
+}
+
+// Removes a comment; a $ in quotes does not start one.
+std::string_view without_comment(std::string_view line) {
+    bool quoted = false;
+    for (std::size_t n = 0; n < line.size(); ++n) {
+        if (line[n] == '\'') quoted = !quoted;
+        if (line[n] == '$' && !quoted) return line.substr(0, n);
+    }
+    return line;
+}
+
+struct Named {
+    std::string_view name;
+    double si;
+};
+constexpr double inch = 0.0254, pound = 0.45359237 * 9.80665;
+constexpr Named lengths[] = {
+    {"MM", 1e-3},      {"MILLIMETER", 1e-3}, {"METER", 1},          {"METERS", 1},
+    {"M", 1},          {"CM", 1e-2},         {"CENTIMETER", 1e-2},  {"INCH", inch},
+    {"IN", inch},      {"FOOT", 12 * inch},  {"MILLIMETERS", 1e-3}, {"KM", 1e3},
+    {"KILOMETER", 1e3}};
+constexpr Named angles[] = {{"DEGREES", std::numbers::pi / 180},
+                            {"DEGREE", std::numbers::pi / 180},
+                            {"DEG", std::numbers::pi / 180},
+                            {"RADIANS", 1},
+                            {"RADIAN", 1},
+                            {"RAD", 1}};
+constexpr Named forces[] = {{"NEWTON", 1},
+                            {"NEWTONS", 1},
+                            {"N", 1},
+                            {"KNEWTON", 1e3},
+                            {"KN", 1e3},
+                            {"POUND_FORCE", pound},
+                            {"LBF", pound},
+                            {"KPOUND_FORCE", 1e3 * pound},
+                            {"KILOGRAM_FORCE", 9.80665},
+                            {"KGF", 9.80665},
+                            {"DYNE", 1e-5}};
+
+template <std::size_t n>
+double unit(const PropertyFile& file, const PropertyBlock& block, std::size_t k,
+            const Named (&table)[n]) {
+    const std::string word = capitals(block.values[k].second);
+    std::vector<std::string> names;
+    for (const Named& entry : table) {
+        if (entry.name == word) return entry.si;
+        names.emplace_back(entry.name);
+    }
+    fail(file.file, block.lines[k], "UNITS." + block.values[k].first,
+         fmt::format("{} is no unit that is known here{}", quote(block.values[k].second),
+                     did_you_mean(word, names, "known")));
+}
+
+void read_units(PropertyFile& file) {
+    const PropertyBlock* units = file.find("UNITS");
+    if (!units) fail(file.file, 0, "UNITS", "missing: without it no number has a unit");
+    bool has_length = false, has_force = false;
+    for (std::size_t k = 0; k < units->values.size(); ++k) {
+        const std::string& name = units->values[k].first;
+        if (name == "LENGTH") file.length = unit(file, *units, k, lengths), has_length = true;
+        if (name == "ANGLE") file.angle = unit(file, *units, k, angles);
+        if (name == "FORCE") file.force = unit(file, *units, k, forces), has_force = true;
+    }
+    if (!has_length) fail(file.file, units->line, "UNITS.LENGTH", "missing");
+    if (!has_force) fail(file.file, units->line, "UNITS.FORCE", "missing");
+}
+
+}  // namespace
+
+const PropertyBlock* PropertyFile::find(std::string_view block) const {
+    const auto found = std::ranges::find_if(
+        blocks, [&](const PropertyBlock& b) { return b.name == block && b.subblock.empty(); });
+    return found == blocks.end() ? nullptr : &*found;
+}
+
+PropertyFile parse_property_file(std::string_view text, const std::string& name) {
+    PropertyFile file;
+    file.file = name;
+    int line_number = 0;
+    std::size_t rows = 0;
+    const auto wrong = [&](const std::string& what) { fail(name, line_number, "", what); };
+    const char line_end = text.find('\n') == text.npos ? '\r' : '\n';  // CR alone, LF, or CR LF
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(line_end), text.size());
+        std::string_view line = trimmed(without_comment(text.substr(0, end)));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        ++line_number;
+        if (line.empty()) continue;
+        const auto closed = [&](char closing) {
+            const std::size_t at = line.find(closing);
+            if (at == line.npos) wrong(fmt::format("{} is left open", quote(line)));
+            return capitals(trimmed(line.substr(1, at - 1)));
+        };
+        if (line.front() == '[') {
+            PropertyBlock block;
+            block.name = closed(']');
+            block.line = line_number;
+            file.blocks.push_back(std::move(block));
+            continue;
+        }
+        if (file.blocks.empty())
+            wrong(fmt::format("expected a block [NAME], found {}", quote(line)));
+        if (line.front() == '(') {
+            PropertyBlock block;
+            block.name = file.blocks.back().name;
+            block.subblock = closed(')');
+            block.line = line_number;
+            file.blocks.push_back(std::move(block));
+            continue;
+        }
+        PropertyBlock& block = file.blocks.back();
+        if (line.front() == '{') {
+            const std::size_t at = line.find('}');
+            if (at == line.npos) wrong(fmt::format("{} is left open", quote(line)));
+            block.table = {};
+            block.table.columns = words(line.substr(1, at - 1));
+            if (block.table.columns.empty()) wrong("a table without columns");
+            continue;
+        }
+        // A value, or a row of the table: a row has "=" only in quotes.
+        const std::size_t equals = line.find('='), quoted = line.find('\'');
+        if (equals != line.npos && equals < quoted) {
+            const auto given = words(line.substr(equals + 1));
+            block.values.emplace_back(capitals(trimmed(line.substr(0, equals))),
+                                      given.empty() ? "" : given.front());
+            block.lines.push_back(line_number);
+            continue;
+        }
+        if (block.table.columns.empty())
+            wrong(fmt::format("expected NAME = value, or columns {{...}}, found {}", quote(line)));
+        auto row = words(line);
+        if (row.size() != block.table.columns.size())
+            wrong(fmt::format("{} values in a table of {} columns", row.size(),
+                              block.table.columns.size()));
+        if (++rows > most_rows) wrong(fmt::format("more than {} rows", most_rows));
+        block.table.rows.push_back(std::move(row));
+        block.table.lines.push_back(line_number);
+    }
+    if (file.blocks.empty()) fail(name, line_number, "", "no block: this is no property file");
+    read_units(file);
+    return file;
+}
+
+std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block,
+                                   double x_unit, double f_unit) {
+    if (block.table.columns.size() != 2)
+        fail(file.file, block.line, block.name,
+             fmt::format("{} columns; a curve has two", block.table.columns.size()));
+    std::vector<TablePoint> points;
+    for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
+        double value[2] = {0, 0};
+        for (std::size_t k = 0; k < 2; ++k) {
+            std::string_view text = block.table.rows[n][k];
+            if (text.starts_with('+')) text.remove_prefix(1);
+            const auto [end, error] =
+                std::from_chars(text.data(), text.data() + text.size(), value[k]);
+            if (error != std::errc{} || end != text.data() + text.size() ||
+                !std::isfinite(value[k]))
+                fail(file.file, block.table.lines[n], block.name,
+                     fmt::format("{} is no number", quote(text)));
+        }
+        if (n > 0 && !(value[0] * x_unit > points.back().x))
+            fail(file.file, block.table.lines[n], block.name,
+                 fmt::format("{} is not above the one before", value[0]));
+        if (n > 0 && value[1] * f_unit < points.back().f)
+            fail(file.file, block.table.lines[n], block.name,
+                 fmt::format("force {} is below the one before; it may stay, but not fall",
+                             value[1]));
+        points.push_back({value[0] * x_unit, value[1] * f_unit});
+    }
+    if (points.size() < 2)
+        fail(file.file, block.line, block.name, "fewer than two rows; a curve has two or more");
+    if (points.size() > 10'000) fail(file.file, block.line, block.name, "more than 10000 rows");
+    return points;
+}
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,184 @@
+#include "models/reader/tables/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "models/reader/document/limits.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/text_file.hpp"
+#include "models/reader/tables/property_file.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
+    const auto rows = at.items();
+    if (!at.is_list() || rows.size() < 2)
+        at.fail(
+            fmt::format("expected at least two rows [deflection, force], found {}", at.found()));
+    if (rows.size() > most_rows)
+        at.fail(fmt::format("{} rows; a table has {} at most", rows.size(), most_rows));
+    std::vector<TablePoint> points;
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+        const auto cells = rows[n].items();
+        if (!rows[n].is_list() || cells.size() != 2)
+            rows[n].fail(fmt::format("row {}: expected two numbers, deflection and force, found {}",
+                                     n + 1, rows[n].found()));
+        const TablePoint point{units.deflection.si(cells[0].number(units.deflection.name)),
+                               units.force.si(cells[1].number(units.force.name))};
+        if (n > 0 && !(point.x > points.back().x))
+            cells[0].fail(fmt::format("row {}: deflection {} is not above that of the row before",
+                                      n + 1, cells[0].found()));
+        if (n > 0 && point.f < points.back().f)
+            cells[1].fail(fmt::format(
+                "row {}: force {} is below that of the row before; it may stay, but not fall",
+                n + 1, cells[1].found()));
+        points.push_back(point);
+    }
+    return points;
+}
+
+// ---- CSV: two comma-separated numbers per line. Empty lines and lines that start with # are
+// ignored; the first other line may be a header.
+
+std::string_view trimmed(std::string_view text) {
+    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+bool begins_with_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double ignored = 0;
+    return std::from_chars(text.data(), text.data() + text.size(), ignored).ec !=
+           std::errc::invalid_argument;
+}
+
+// Parses CSV to a list as in a scene, with the line numbers of the CSV file.
+Value rows_of(std::string_view text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    Value table{.kind = Value::Kind::list};
+    bool is_first = true;
+    for (int line = 1; !text.empty(); ++line) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view rest = trimmed(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (rest.empty() || rest.starts_with('#')) continue;
+        Value row{.kind = Value::Kind::list, .line = line};
+        for (bool more = true; more;) {
+            const std::size_t comma = rest.find(',');
+            more = comma != std::string_view::npos;
+            const std::string cell(trimmed(rest.substr(0, comma)));
+            row.items.push_back({.kind = Value::Kind::scalar, .text = cell, .line = line});
+            if (more) rest.remove_prefix(comma + 1);
+        }
+        const auto is_number = [](const Value& cell) { return begins_with_number(cell.text); };
+        if (!std::exchange(is_first, false) || std::ranges::any_of(row.items, is_number))
+            table.items.push_back(std::move(row));
+    }
+    return table;
+}
+
+struct FileBeside {
+    std::string name, text;
+};
+
+// Reads a file in the scene's folder.
+FileBeside read_beside(const Cursor& at, const Definitions& defs) {
+    const fs::path name = at.text("the name of a file");
+    if (name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end())
+        at.fail(fmt::format(
+            "{} leads out of the scene's folder; allowed: a file in it, or in a folder below",
+            at.found()));
+    if (!defs.folder)
+        at.fail("read from beside the scene's file, which there is none of here; give a table");
+    const fs::path path = *defs.folder / name;
+    // Resolves symbolic links. A path that cannot be resolved cannot be read either, which is
+    // reported next.
+    std::error_code unknown;
+    const fs::path folder = fs::canonical(defs.folder->empty() ? "." : *defs.folder, unknown),
+                   target = fs::weakly_canonical(path, unknown);
+    if (!unknown && std::ranges::mismatch(folder, target).in1 != folder.end())
+        at.fail(
+            fmt::format("{} is a symbolic link that leads out of the scene's folder; allowed: a "
+                        "file in it, or in a "
+                        "folder below",
+                        at.found()));
+    const TextFile file = read_text(path, Pipes::refused);
+    if (!file.trouble.empty()) at.fail(fmt::format("{}: {}", at.found(), file.trouble));
+    if (file.text.size() > largest_text)
+        at.fail(fmt::format("{}: larger than 1 MiB, which no table is", at.found()));
+    return {path.string(), file.text};
+}
+
+// Whether the name is that of an Adams/Car property file: spring, bump stop, rebound stop.
+bool is_property_file(const std::string& name) {
+    return name.ends_with(".spr") || name.ends_with(".bum") || name.ends_with(".reb");
+}
+
+std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units,
+                                  const Definitions& defs) {
+    const auto [file_name, text] = read_beside(at, defs);
+    if (is_property_file(file_name)) {  // with its own units
+        if (units.deflection.name != defs.units.length.name)
+            at.fail(fmt::format("{} is a curve of lengths, and this is one of angles", at.found()));
+        const PropertyFile file = parse_property_file(text, file_name);
+        const PropertyBlock* curve = file.find("CURVE");
+        if (!curve) fail(file_name, 0, "CURVE", "missing: there is no curve in this file");
+        auto rows = curve_rows(file, *curve, file.length, file.force);
+        // F = AKISPL(free length - DM(I, J)), and here f(ℓ - ℓ₀), tension positive.
+        if (units.of_spring && file_name.ends_with(".spr")) {
+            for (auto& row : rows) row = {-row.x, -row.f};
+            std::ranges::reverse(rows);
+        }
+        return rows;
+    }
+    if (!is_utf8(text)) at.fail(fmt::format("{}: not plain text (UTF-8)", at.found()));
+    const Value table = rows_of(text);
+    std::vector<Number> not_of_the_scene;
+    return read_rows({&table, at.path, &file_name, &not_of_the_scene}, units);
+}
+
+}  // namespace
+
+LawUnits of_lengths(const Units& units) { return {units.length, units.force, units.rate}; }
+LawUnits of_springs(const Units& units) { return {units.length, units.force, units.rate, true}; }
+LawUnits of_angles(const Units& units) {
+    return {units.angle, units.moment, units.rotational_rate};
+}
+
+std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at,
+                                                         const Definitions& defs) {
+    const auto [file_name, text] = read_beside(at, defs);
+    const PropertyFile file = parse_property_file(text, file_name);
+    constexpr const char* blocks[] = {"FX_CURVE", "FY_CURVE", "FZ_CURVE",
+                                      "TX_CURVE", "TY_CURVE", "TZ_CURVE"};
+    std::array<std::vector<TablePoint>, 6> curves;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const PropertyBlock* block = file.find(blocks[k]);
+        if (!block) fail(file_name, 0, blocks[k], "missing: a bushing has six curves");
+        curves[k] = curve_rows(file, *block, k < 3 ? file.length : file.angle,
+                               k < 3 ? file.force : file.force * file.length);
+    }
+    return curves;
+}
+
+std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
+                                   const Definitions& defs) {
+    const auto table = curve.optional("table"), file = curve.optional("file");
+    if (table && file) file->fail("given together with table; allowed: one of the two");
+    if (!table && !file) curve.fail("no points; allowed: table or file");
+    return table ? read_rows(*table, units) : read_file(*file, units, defs);
+}
+
+}  // namespace elastocheck::reader

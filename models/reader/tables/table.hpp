@@ -1,0 +1,31 @@
+// Reads tables of a scene: two columns, in the scene or in a CSV file beside it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "models/reader/definitions/definitions.hpp"
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/tables/interpolant.hpp"
+
+namespace elastocheck::reader {
+
+// Units of a law's deflection, force and rate.
+struct LawUnits {
+    Unit deflection, force, rate;
+    bool of_spring =
+        false;  // a property file (.spr) then has compression and pushing force as positive
+};
+LawUnits of_springs(const Units& units);  // of lengths
+LawUnits of_lengths(const Units& units);  // length, force, force/length
+LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
+
+// Rows of `table` or `file` of a curve [SI]: at least two, deflections ascending, forces
+// non-decreasing.
+std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
+                                   const Definitions& defs);
+
+// The six curves of a bushing's property file (.bus), x y z rx ry rz [SI].
+std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at, const Definitions& defs);
+
+}  // namespace elastocheck::reader

@@ -1,0 +1,50 @@
+#include "recursive/diagnosis/analysis.hpp"
+
+#include <cmath>
+
+#include "recursive/diagnosis/loops.hpp"
+#include "recursive/formula/recentre.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
+#include "recursive/linear_algebra/pattern.hpp"
+
+namespace elastocheck::recursive {
+
+Analysis analyse(const Model& model) {
+    if (const auto c = far_centre(model)) return analyse(centred(model, *c));
+    Analysis result;
+    result.diagnosis = diagnose(model);
+    if (std::isnan(result.diagnosis.constraint_error)) return result;
+    SaddlePoint<double>& system = result.system;
+    const int n = system.n = coordinates(model), m = system.m = constraint_rows(model);
+    const double L = result.diagnosis.length;
+    const State<double> q = design_state<double>(model);
+    const Branch nothing;  // no driver
+    const Inputs<double> drawn = inputs_as_drawn<double>(model);
+    Inputs<double> inputs;
+    set_inputs<double>(model, nothing, drawn, 0, 0, inputs);
+
+    Vector<double> Phi(m);
+    system.M = saddle_matrix(model);
+    system.weight.setOnes(n + m);
+    for (int b = 0; b < n / 6; ++b) system.weight.segment(6 * b + 3, 3).setConstant(L);
+    assemble<double>(model, inputs, q, system.M, Phi);
+    analyse(system, static_cast<int>(result.diagnosis.idle.size()), result.diagnosis.null_space,
+            pattern(model), loops(model));
+
+    assemble_consistent<double>(model, nothing, inputs, q, Vector<double>::Zero(m), system.M, Phi);
+    result.pivot_ratio = factorise(system);
+    external_force<double>(model, nothing, inputs, q, result.R_d);
+    result.R_d -= elastic_force<double>(model, inputs, q);
+    result.Phi_d = Phi;
+    // A residual that is rounding of stiffness times length counts as zero.
+    const double rounding = 10 * std::numeric_limits<double>::epsilon() * L;
+    const auto largest = [](const Vector<double>& v) {
+        return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+    };
+    result.at_rest =
+        largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest(system.M) &&
+        largest(Phi) <= rounding;
+    return result;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,26 @@
+// Analysis of a model that all its branches share.
+// It holds the diagnosis, the scaling and elimination order of eq. (24), and the factors of the
+// consistent tangent at the design position.
+#pragma once
+
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/linear_algebra/saddle_point.hpp"
+
+namespace elastocheck::recursive {
+
+// Constant after analyse(): branches and threads may share one. It depends on the constraints,
+// elastic elements and bodies of its model; loads and drivers belong to the branches.
+struct Analysis {
+    Diagnosis diagnosis;
+    // (24) with ∂G/∂q for K at the design position as drawn, λ = 0: factorised
+    SaddlePoint<double> system;
+    Vector<double> R_d, Phi_d;  // residuals as drawn: f_ext - f_elast [6nb], Φ [m]
+    double pivot_ratio = 0;     // of those factors, smallest over largest
+    // R_d and Φ_d are below rounding: the design position is an equilibrium
+    bool at_rest = false;
+};
+
+// Analyses the model. A model far from the origin is first moved to its centre (recentre.hpp).
+Analysis analyse(const Model& model);
+
+}  // namespace elastocheck::recursive

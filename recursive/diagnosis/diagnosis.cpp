@@ -1,0 +1,535 @@
+#include "recursive/diagnosis/diagnosis.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "recursive/diagnosis/finite.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
+#include "recursive/linear_algebra/rank.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+// Eigenvalues of a 6×6 matrix with unit diagonal above its rounding (some 1e-15).
+constexpr double stiffness_threshold = 1e-13;
+// A lever is a difference of coordinates: rounding bound for a zero lever, relative to the
+// coordinates.
+constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
+constexpr double part_threshold = 1e-7;  // smallest entry of a unit combination that counts
+
+// Attachment point of a constraint or element on its body; a direction has none.
+const Vector3d* lever(const Point& end) { return &end.s_local; }
+const Vector3d* lever(const Marker& end) { return &end.s_local; }
+const Vector3d* lever(const Direction&) { return nullptr; }
+
+// Root mean square lever of all attachments: invariant under motions of the ground frame.
+double characteristic_length(const Model& model) {
+    double sum = 0;
+    int count = 0;
+    const auto where = [&](BodyId b) {
+        return model.bodies[static_cast<std::size_t>(b)].design.r.norm();
+    };
+    const auto take = [&](const auto& end) {
+        const Vector3d* s = lever(end);
+        if (!s || end.body == ground || s->norm() <= lever_rounding * where(end.body)) return;
+        sum += s->squaredNorm();
+        ++count;
+    };
+    const auto both = [&](const auto& e) { take(e.i), take(e.j); };
+    for (const auto& c : model.constraints) std::visit(both, c.kind);
+    for (const auto& e : model.elastics) std::visit(both, e.kind);
+    return count > 0 ? std::sqrt(sum / count) : 1.0;
+}
+
+// Rows of the model during assembly, each on at most two bodies.
+struct Stack {
+    int count = 0;
+    std::vector<Eigen::Triplet<double>> entries;
+
+    void put(BodyId b, const Vector6<double>& block) {  // into the row that comes next
+        for (int k = 0; b != ground && k < 6; ++k)
+            if (block[k] != 0) entries.emplace_back(count, 6 * b + k, block[k]);
+    }
+    void next() { ++count; }
+    Rows rows(Eigen::Index columns) const {
+        Rows result(count, columns);
+        result.setFromTriplets(entries.begin(), entries.end());
+        return result;
+    }
+};
+
+// Scales rows to unit length except zero rows; returns the divisors.
+VectorXd normalise(Rows& rows) {
+    VectorXd length = VectorXd::Ones(rows.rows());
+    for (int k = 0; k < rows.outerSize(); ++k)
+        if (const double norm = rows.row(k).norm(); norm > 0) {
+            rows.row(k) /= norm;
+            length[k] = norm;
+        }
+    return length;
+}
+
+// Concatenates rows.
+Rows stacked(const std::vector<Rows>& parts, Eigen::Index columns) {
+    Stack stack;
+    for (const Rows& part : parts) {
+        for (int k = 0; k < part.outerSize(); ++k)
+            for (Rows::InnerIterator e(part, k); e; ++e)
+                stack.entries.emplace_back(stack.count + k, e.col(), e.value());
+        stack.count += static_cast<int>(part.rows());
+    }
+    return stack.rows(columns);
+}
+Rows without(const Rows& rows, const std::vector<int>& omitted) {
+    Stack stack;
+    for (int k = 0; k < rows.outerSize(); ++k) {
+        if (std::ranges::binary_search(omitted, k)) continue;
+        for (Rows::InnerIterator e(rows, k); e; ++e)
+            stack.entries.emplace_back(stack.count, e.col(), e.value());
+        stack.next();
+    }
+    return stack.rows(rows.cols());
+}
+
+Rows constraint_rows_of(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
+    Stack stack;
+    for_each_row<double>(model, inputs, q, [&](int, const Row<double>& row) {
+        stack.put(row.i, row.on_i());
+        stack.put(row.j, row.on_j());
+        stack.next();
+    });
+    return stack.rows(coordinates(model));
+}
+
+// Rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment
+// point, turned to ground axes. Own axes are needed to distinguish a soft direction from a zero
+// one: in other axes the rounding of the stiff directions hides it. K_e = S C S with a unit
+// diagonal C, so that rates of any size have the same weight.
+std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest,
+                                       const State<double>& q) {
+    const Axial<double> g = deformation<double>(e, q);
+    // A curve with negative slope counts as stiffness; an open stop (slope 0) does not.
+    if (hessian<double>(e.law, [&] { return g.length - rest.free_length; }) == 0) return {};
+    Vector6<double> row;
+    row << g.D / g.length, Vector3d::Zero();
+    return {row};
+}
+std::vector<Vector6<double>> root_rows(const Bushing& e, const Rest<double>&,
+                                       const State<double>& q) {
+    const Spatial<double> g = deformation<double>(e, q);
+    const Matrix3<double> A = axes<double>(e, q);
+    const Matrix6<double> K = hessian<double>(e.law, [&] { return strain<double>(e, g); });
+    const Vector6<double> S = K.diagonal().cwiseAbs().cwiseSqrt();
+    const Vector6<double> inverse = S.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
+    const Matrix6<double> C = inverse.asDiagonal() * K * inverse.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix6<double>> eigen(C);
+    std::vector<Vector6<double>> rows;
+    for (int k = 0; k < 6; ++k) {
+        if (!(std::abs(eigen.eigenvalues()[k]) > stiffness_threshold)) continue;
+        const Vector6<double> own = (S.asDiagonal() * eigen.eigenvectors().col(k)).normalized();
+        Vector6<double> row;
+        row << A * own.head<3>(), A * own.tail<3>();
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+// √K_e B_e of every element, stacked [? × 6nb].
+Rows elastic_rows(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
+    Stack stack;
+    for (std::size_t at = 0; at < model.elastics.size(); ++at)
+        std::visit(
+            [&](const auto& e) {
+                const Vector3d s_i = q[e.i.body].lever(e.i.s_local),
+                               s_j = q[e.j.body].lever(e.j.s_local);
+                for (const Vector6<double>& g : root_rows(e, inputs.rest[at], q)) {
+                    const auto add = [&](BodyId b, const Vector3d& lever, double sign) {
+                        Vector6<double> block;
+                        block << sign * g.head<3>(),
+                            sign * (lever.cross(g.head<3>()) + g.tail<3>());
+                        stack.put(b, block);
+                    };
+                    add(e.i.body, s_i, -1);
+                    add(e.j.body, s_j, +1);
+                    stack.next();
+                }
+            },
+            model.elastics[at].kind);
+    return stack.rows(coordinates(model));
+}
+
+// Idle modes of single bodies: the null space of all rows in the six columns of one body [6nb × ?],
+// orthogonal to each other.
+Columns modes_of_single_bodies(const Rows& rows, int bodies) {
+    std::vector<std::vector<int>> on(static_cast<std::size_t>(bodies));
+    for (int k = 0; k < rows.outerSize(); ++k)
+        for (Rows::InnerIterator e(rows, k); e; ++e)
+            if (auto& list = on[static_cast<std::size_t>(e.col() / 6)];
+                list.empty() || list.back() != k)
+                list.push_back(k);
+    std::vector<Eigen::Triplet<double>> entries;
+    int modes = 0;
+    for (int b = 0; b < bodies; ++b) {
+        const auto& its = on[static_cast<std::size_t>(b)];
+        MatrixXd own = MatrixXd::Zero(6, static_cast<Eigen::Index>(its.size()));
+        for (Eigen::Index c = 0; c < own.cols(); ++c)
+            for (Rows::InnerIterator e(rows, its[static_cast<std::size_t>(c)]); e; ++e)
+                if (e.col() / 6 == b) own(e.col() % 6, c) = e.value();
+        MatrixXd Q = MatrixXd::Identity(6, 6);
+        Eigen::Index rank = 0;
+        if (own.cols() > 0) {
+            Eigen::ColPivHouseholderQR<MatrixXd> qr(own);
+            qr.setThreshold(rank_threshold);
+            Q = qr.householderQ();
+            rank = qr.rank();
+        }
+        for (Eigen::Index c = rank; c < 6; ++c, ++modes)
+            for (int k = 0; k < 6; ++k)
+                if (Q(k, c) != 0) entries.emplace_back(6 * b + k, modes, Q(k, c));
+    }
+    Columns result(rows.cols(), modes);
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+}
+
+// Names of a body's constraints and elements, and their attachment points.
+struct Attachment {
+    const std::string* name;
+    Vector3d s_local;
+};
+std::vector<std::vector<Attachment>> attachments(const Model& model) {
+    std::vector<std::vector<Attachment>> on(model.bodies.size());
+    const auto both = [&](const std::string& name, const auto& e) {
+        const auto take = [&](const auto& end) {
+            if (const Vector3d* s = lever(end); s && end.body != ground)
+                on[static_cast<std::size_t>(end.body)].push_back({&name, *s});
+        };
+        take(e.i), take(e.j);
+    };
+    for (const auto& c : model.constraints)
+        std::visit(
+            [&](const auto& e) { both(model.joints[static_cast<std::size_t>(c.joint)].name, e); },
+            c.kind);
+    for (const auto& e : model.elastics)
+        std::visit([&](const auto& kind) { both(e.name, kind); }, e.kind);
+    return on;
+}
+
+// Removes the minus sign of rounded zeros.
+Vector3d shown(const Vector3d& u) {
+    return u.unaryExpr([](double v) { return std::abs(v) < 5e-4 ? 0.0 : v; });
+}
+
+// "rotation about ..." or "translation along ..." of the twist (v, w) of a body at r.
+std::string describe(const std::string& name, const BodyState<double>& at,
+                     const std::vector<Attachment>& attached, const Vector3d& v, const Vector3d& w,
+                     double length) {
+    if (w.norm() * length < 1e-6 * v.norm()) {
+        const Vector3d u = shown(v.normalized());
+        return fmt::format("{}: translation along ({:.3f}, {:.3f}, {:.3f})", name, u.x(), u.y(),
+                           u.z());
+    }
+    const Vector3d foot =
+        at.r + w.cross(v) / w.squaredNorm();  // nearest point of the axis to the origin
+    const Vector3d u = w.normalized();
+    std::vector<std::string> on_axis;
+    for (const auto& [what, s_local] : attached) {
+        const Vector3d p = at.r + at.lever(s_local);
+        if ((p - foot).cross(u).norm() < 1e-6 * length &&
+            std::ranges::find(on_axis, *what) == on_axis.end())
+            on_axis.push_back(*what);
+    }
+    const double pitch = v.dot(w) / w.squaredNorm();  // [m/rad]
+    const char* motion = std::abs(pitch) < 1e-6 * length ? "rotation" : "screw motion";
+    if (on_axis.size() >= 2)
+        return fmt::format("{}: {} about the line through '{}' and '{}'", name, motion,
+                           on_axis.front(), on_axis.back());
+    return fmt::format(
+        "{}: {} about the axis ({:.3f}, {:.3f}, {:.3f}) through ({:.4f}, {:.4f}, {:.4f}) m", name,
+        motion, shown(u).x(), shown(u).y(), shown(u).z(), foot.x(), foot.y(), foot.z());
+}
+
+// Sets of joints that share a dependency yᵀ Φ_q = 0. One dependency per dependent row is enough:
+// any other is a combination of these, and those without a common row are independent.
+void find_undetermined(const std::vector<int>& joint_of_row, const Columns& dependencies,
+                       Diagnosis& result) {
+    std::vector<int> set(
+        result.determined.size());  // union-find: parent of each joint; root = smallest of its set
+    std::iota(set.begin(), set.end(), 0);
+    const auto smallest = [&](int joint) {
+        const auto to = [&](int j) -> int& { return set[static_cast<std::size_t>(j)]; };
+        while (to(joint) != joint) joint = to(joint) = to(to(joint));
+        return joint;
+    };
+    for (int c = 0; c < dependencies.outerSize(); ++c) {
+        int one = -1;
+        for (Columns::InnerIterator y(dependencies, c); y; ++y) {
+            if (!(std::abs(y.value()) > part_threshold)) continue;
+            const int joint = joint_of_row[static_cast<std::size_t>(y.row())];
+            result.determined[static_cast<std::size_t>(joint)] = false;
+            if (one < 0) one = joint;
+            const auto [low, high] = std::minmax({smallest(one), smallest(joint)});
+            set[static_cast<std::size_t>(high)] = low;
+        }
+    }
+    std::vector<int> place(set.size(), -1);  // index of a set in the list, by its smallest joint
+    for (int joint = 0; joint < static_cast<int>(set.size()); ++joint) {
+        if (result.determined[static_cast<std::size_t>(joint)]) continue;
+        int& at = place[static_cast<std::size_t>(smallest(joint))];
+        if (at < 0) {
+            at = static_cast<int>(result.redundant_sets.size());
+            result.redundant_sets.emplace_back();
+        }
+        result.redundant_sets[static_cast<std::size_t>(at)].push_back(joint);
+    }
+}
+
+// Redundant joints, from the dependent rows.
+void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeating,
+                    const VectorXd& Phi, double reach, Diagnosis& result) {
+    std::vector<std::map<int, double>> among;  // of each redundancy: Σ y² by joint
+    for (std::size_t c = 0; c < repeating.rows.size(); ++c) {
+        const int joint = joint_of_row[static_cast<std::size_t>(repeating.rows[c])];
+        if (result.redundant.empty() || result.redundant.back().joint != joint) {
+            result.redundant.emplace_back().joint = joint;
+            among.emplace_back();
+        }
+        ++result.redundant.back().rows;
+        result.redundant.back().left = std::max(result.redundant.back().left, repeating.left[c]);
+        for (Columns::InnerIterator y(repeating.dependencies, static_cast<Eigen::Index>(c)); y; ++y)
+            if (std::abs(y.value()) > part_threshold)
+                among.back()[joint_of_row[static_cast<std::size_t>(y.row())]] +=
+                    y.value() * y.value();
+    }
+    for (std::size_t k = 0; k < among.size(); ++k) {
+        auto& shares = result.redundant[k].shares;
+        shares.assign(among[k].begin(), among[k].end());
+        double whole = 0;
+        for (const auto& [joint, part] : shares) whole += part;
+        for (auto& [joint, part] : shares) part /= whole;
+        std::ranges::stable_sort(shares, std::greater{}, &std::pair<int, double>::second);
+    }
+    for (Redundancy& r : result.redundant) {
+        const auto [first, end] = std::ranges::equal_range(joint_of_row, r.joint);
+        const auto own = Phi.segment(first - joint_of_row.begin(), end - first);
+        r.contradicts = !(own.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, result.length));
+        // Rows are computed from differences of coordinates, and their directions vary with the
+        // constraint error.
+        constexpr double digits = 1024 * std::numeric_limits<double>::epsilon();
+        r.undecided = r.left > digits * (1 + reach / result.length) +
+                                   10 * result.constraint_error / std::min(1.0, result.length);
+    }
+}
+
+// Whether the twist rotates a body about a line that carries all its attachment points.
+bool is_spin(const BodyState<double>& at, const std::vector<Attachment>& attached,
+             const Vector3d& v, const Vector3d& w, double length) {
+    if (attached.empty() || w.norm() * length < 1e-6 * v.norm()) return false;
+    return std::ranges::all_of(attached, [&](const Attachment& a) {
+        return (v + w.cross(at.lever(a.s_local))).norm() < 1e-6 * length * w.norm();
+    });
+}
+
+// Names of the probes that the mode moves, the wheels whose centre it moves or whose spin axis it
+// rotates, and the dampers whose length it changes.
+std::vector<std::string> outputs_moved(const Model& model, const State<double>& q,
+                                       const Eigen::SparseVector<double>& dq, double length) {
+    constexpr double rounding = 1e-6;
+    std::vector<std::string> moved;
+    const auto twist = [&](BodyId b) {
+        Vector6<double> t = Vector6<double>::Zero();
+        for (int k = 0; b != ground && k < 6; ++k) t[k] = dq.coeff(6 * b + k);
+        return t;
+    };
+    const auto of_point = [&](const Point& at) -> Vector3d {
+        const Vector6<double> t = twist(at.body);
+        return t.head<3>() + t.tail<3>().cross(q[at.body].lever(at.s_local));
+    };
+    for (const auto& probe : model.probes)
+        if (of_point(probe.at).norm() > rounding) moved.push_back(probe.name);
+    for (const auto& wheel : model.wheels) {
+        const Vector3d turned =
+            twist(wheel.body).tail<3>().cross(q[wheel.body].lever(wheel.spin_axis_local));
+        if (of_point({wheel.body, wheel.centre_local}).norm() > rounding ||
+            turned.norm() * length > rounding)
+            moved.push_back(wheel.name.empty() ? "wheel" : wheel.name);
+    }
+    for (const auto& damper : model.dampers) {
+        const auto place = [&](const Point& p) -> Vector3d {
+            return q[p.body].r + q[p.body].lever(p.s_local);
+        };
+        const Vector3d along = (place(damper.j) - place(damper.i)).normalized();
+        if (std::abs(along.dot(of_point(damper.j) - of_point(damper.i))) > rounding)
+            moved.push_back(damper.name);
+    }
+    return moved;
+}
+
+// An idle mode from its column in (Δr, L Δπ), with the sign that makes the largest entry positive.
+IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
+    double largest = 0;
+    Columns::InnerIterator z(modes, column);
+    for (; z; ++z)
+        if (std::abs(z.value()) > std::abs(largest)) largest = z.value();
+    IdleMode mode;
+    mode.dq.resize(modes.rows());
+    double most = 0;
+    for (z = Columns::InnerIterator(modes, column); z;) {
+        const auto body = static_cast<BodyId>(z.row() / 6);
+        double moved = 0;
+        for (; z && z.row() / 6 == body; ++z) {
+            moved += z.value() * z.value();
+            mode.dq.insertBack(z.row()) = (largest < 0 ? -1 : 1) * (physical[z.row()] * z.value());
+        }
+        if (moved > most || mode.body == ground) {  // also if NaN
+            most = moved;
+            mode.body = body;
+        }
+    }
+    return mode;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const Model& model) {
+    const State<double> q = design_state<double>(model);
+    const Inputs<double> inputs = inputs_as_drawn<double>(model);
+    Diagnosis result;
+    const int n = result.coordinates = coordinates(model);
+    const int m = result.rows = constraint_rows(model);
+    const int nb = static_cast<int>(model.bodies.size());
+    const double L = result.length = characteristic_length(model);
+
+    if (!not_finite(model).empty()) {
+        result.constraint_error = result.imbalance = std::numeric_limits<double>::quiet_NaN();
+        result.determined.assign(model.joints.size(), false);
+        result.null_space.resize(n + m, 0);
+        return result;
+    }
+
+    VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
+    for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);
+
+    const VectorXd Phi = constraint_values<double>(model, inputs, q);
+    result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
+    Rows Phi_q = constraint_rows_of(model, inputs, q) * physical.asDiagonal();
+    const VectorXd row_length = normalise(Phi_q);
+    const Repeated repeating = repeated(Phi_q);
+    result.rank = m - static_cast<int>(repeating.rows.size());
+    std::vector<int> joint_of_row;  // ascending
+    for (const auto& c : model.constraints)
+        joint_of_row.insert(joint_of_row.end(), rows(c.kind), c.joint);
+    double reach = 0;
+    for (const auto& body : model.bodies) reach = std::max(reach, body.design.r.norm());
+    find_redundant(joint_of_row, repeating, Phi, reach, result);
+    result.determined.assign(model.joints.size(), true);
+    find_undetermined(joint_of_row, repeating.dependencies, result);
+
+    // Modes of single bodies first; appended as rows they make the other modes orthogonal to them.
+    Rows elastic = elastic_rows(model, inputs, q) * physical.asDiagonal();
+    normalise(elastic);
+    Phi_q = without(Phi_q, repeating.rows);
+    const Rows noticed = stacked({Phi_q, elastic}, n);
+    const Columns single = modes_of_single_bodies(noticed, nb);
+    const Columns several = null_space(stacked({noticed, Rows(single.transpose())}, n));
+    const auto attached = attachments(model);
+    for (const Columns* modes : {&single, &several})
+        for (int c = 0; c < modes->outerSize(); ++c) {
+            IdleMode& mode = result.idle.emplace_back(idle_mode(*modes, c, physical));
+            Vector6<double> twist;
+            for (int k = 0; k < 6; ++k) twist[k] = mode.dq.coeff(6 * mode.body + k);
+            const auto at = static_cast<std::size_t>(mode.body);
+            mode.description = describe(model.bodies[at].name, q[mode.body], attached[at],
+                                        twist.head<3>(), twist.tail<3>(), L);
+            mode.spins = modes == &single &&
+                         is_spin(q[mode.body], attached[at], twist.head<3>(), twist.tail<3>(), L);
+            mode.outputs = outputs_moved(model, q, mode.dq, L);
+        }
+
+    std::vector<Eigen::Triplet<double>> held;
+    int column = 0;
+    for (const IdleMode& mode : result.idle) {
+        for (Eigen::SparseVector<double>::InnerIterator z(mode.dq); z; ++z)
+            held.emplace_back(z.index(), column, z.value());
+        ++column;
+    }
+    for (int c = 0; c < repeating.dependencies.outerSize(); ++c, ++column)
+        for (Columns::InnerIterator y(repeating.dependencies, c); y; ++y)  // λ of the unscaled rows
+            held.emplace_back(n + y.row(), column, y.value() / row_length[y.row()]);
+    result.null_space.resize(n + m, column);
+    result.null_space.setFromTriplets(held.begin(), held.end());
+
+    // f_ext(0) - f_elast, projected on the motions that the constraints allow.
+    VectorXd f = VectorXd::Zero(n);
+    for (const auto& load : model.static_loads) add_load<double>(load.kind, 1.0, q, f);
+    f -= elastic_force<double>(model, inputs, q);
+    if (!f.isZero(0))
+        result.imbalance = left_free(Phi_q, physical.asDiagonal() * f).cwiseAbs().maxCoeff();
+    return result;
+}
+
+namespace {
+
+// "'a'", "'a' and 'b'", "'a', 'b' and 'c'"
+std::string listed(const std::vector<std::string>& names) {
+    std::string all;
+    for (std::size_t k = 0; k < names.size(); ++k)
+        all += (k == 0 ? "" : k + 1 < names.size() ? ", " : " and ") + ("'" + names[k] + "'");
+    return all;
+}
+std::string moving(const std::vector<std::string>& outputs) {
+    return outputs.empty() ? "moves no output" : "moves " + listed(outputs);
+}
+// The body of "strut: rotation about ...".
+std::string body_of(const IdleMode& mode) {
+    return mode.description.substr(0, mode.description.find(": "));
+}
+
+}  // namespace
+
+std::string undecided(const Model& model, const Diagnosis& diagnosis) {
+    const auto in_doubt = std::ranges::find_if(diagnosis.redundant, &Redundancy::undecided);
+    if (in_doubt == diagnosis.redundant.end()) return {};
+    return fmt::format(
+        "whether joint '{}' repeats what others hold cannot be told: {:.1e} of one of its "
+        "equations is left, "
+        "more than "
+        "rounding and less than {:.0e}; draw it to repeat them, or not to",
+        model.joints[static_cast<std::size_t>(in_doubt->joint)].name, in_doubt->left,
+        rank_threshold);
+}
+
+std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis) {
+    std::vector<std::string> lines, spinning;
+    for (const IdleMode& mode : diagnosis.idle)
+        if (mode.spins && mode.outputs.empty()) spinning.push_back(body_of(mode));
+    const bool together = spinning.size() > 1;
+    for (const IdleMode& mode : diagnosis.idle)
+        if (!(together && mode.spins && mode.outputs.empty()))
+            lines.push_back(mode.description + ", " + moving(mode.outputs));
+    if (together)
+        lines.push_back((spinning.size() == 2 ? "both " : "") + listed(spinning) +
+                        " spin about themselves, which " + moving({}));
+    return lines;
+}
+
+std::string idle_modes(const Diagnosis& diagnosis) {
+    std::string all;
+    for (const auto& line : told_idle_modes(diagnosis)) all += (all.empty() ? "" : "; ") + line;
+    return all;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,103 @@
+// Derivatives of balance and Φ with respect to the drivers: ∂/∂a, and ∂/∂t while settling.
+#pragma once
+
+#include "recursive/formula/constraints.hpp"
+#include "recursive/formula/elastic.hpp"
+#include "recursive/formula/loads.hpp"
+
+namespace elastocheck::recursive {
+
+// Which amplitude of a driver is applied: its start while settling, its rate on the branch.
+enum class Drive { start, rate };
+
+template <class Real>
+Real speed(const Driver& driver, Drive drive) {
+    return static_cast<Real>(drive == Drive::start ? driver.start : driver.rate);
+}
+
+// Adds amount · ∂f_ext/∂a to `force` [6nb].
+template <class Real>
+void add_load_rate(const Branch& branch, Drive drive, Real amount, const State<Real>& q,
+                   Vector<Real>& force) {
+    for (const auto& driver : branch.drivers)
+        std::visit(overloaded{
+                       [&](const Load& load) {
+                           add_load<Real>(load.kind, amount * speed<Real>(driver, drive), q, force);
+                       },
+                       [](const Motion&) {},
+                       [](const FreeLength&) {},
+                       [](const Preload&) {},
+                   },
+                   driver.what);
+}
+
+// amount · ∂f_elast/∂a, element by element: add(element number, (F, M) on its body j).
+template <class Real, class Add>
+void for_each_stored_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                          Drive drive, Real amount, const State<Real>& q, Add&& add) {
+    for (const auto& driver : branch.drivers) {
+        const Real by = amount * speed<Real>(driver, drive);
+        std::visit(overloaded{
+                       [](const Load&) {},
+                       [](const Motion&) {},
+                       [&](const FreeLength& f) {
+                           const auto k = static_cast<std::size_t>(f.elastic);
+                           const auto& spring = std::get<AxialSpring>(model.elastics[k].kind);
+                           ElementForce<Real> force =
+                               force_of_free_length<Real>(spring, inputs.rest[k], q);
+                           force.F *= by;
+                           add(k, force);
+                       },
+                       [&](const Preload& p) {
+                           const auto k = static_cast<std::size_t>(p.elastic);
+                           const auto& bushing = std::get<Bushing>(model.elastics[k].kind);
+                           add(k,
+                               force_of_preload<Real>(bushing, by * p.direction.cast<Real>(), q));
+                       },
+                   },
+                   driver.what);
+    }
+}
+// Adds amount · ∂f_elast/∂a to `force` [6nb].
+template <class Real>
+void add_stored_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                     Drive drive, Real amount, const State<Real>& q, Vector<Real>& force) {
+    for_each_stored_rate<Real>(model, branch, inputs, drive, amount, q,
+                               [&](std::size_t k, const ElementForce<Real>& stored) {
+                                   const auto [i, j] = bodies_of(model.elastics[k].kind);
+                                   add_element_force<Real>(i, j, stored, force);
+                               });
+}
+
+// amount · ∂/∂a of the driven rows: add(row number, ∂row/∂c, change of c).
+template <class Real, class Add>
+void for_each_row_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                       Drive drive, Real amount, const State<Real>& q, Add&& add) {
+    for (const auto& driver : branch.drivers)
+        if (const auto* motion = std::get_if<Motion>(&driver.what)) {
+            const std::size_t k = constraint_of(model, *motion);
+            add(inputs.row[k], rate<Real>(model.constraints[k].kind, inputs.offset[k], q),
+                amount * speed<Real>(driver, drive));
+        }
+}
+// Adds amount · ∂Φ/∂a to `Phi` [m].
+template <class Real>
+void add_constraint_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                         Drive drive, Real amount, const State<Real>& q, Vector<Real>& Phi) {
+    for_each_row_rate<Real>(model, branch, inputs, drive, amount, q,
+                            [&](int row, const Row<Real>& d, Real by) { Phi[row] += by * d.Phi; });
+}
+// Adds amount · ∂(Φ_qᵀ λ)/∂a to `force` [6nb]: a driven length or angle scales or rotates the rows
+// along which λ acts.
+template <class Real>
+void add_reaction_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
+                       Drive drive, Real amount, const State<Real>& q, const Vector<Real>& lambda,
+                       Vector<Real>& force) {
+    for_each_row_rate<Real>(
+        model, branch, inputs, drive, amount, q, [&](int row, const Row<Real>& d, Real by) {
+            if (d.i != ground) force.template segment<6>(6 * d.i) += by * lambda[row] * d.on_i();
+            if (d.j != ground) force.template segment<6>(6 * d.j) += by * lambda[row] * d.on_j();
+        });
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,165 @@
+// Inputs of the equations that the drivers of a branch change.
+// Balance and Φ are functions of (q, inputs); at the parameter a
+//
+//   input(t, a) = as drawn + t · start + a · rate
+//
+// for every driver. t goes from 0, the model as drawn, to 1 while the start is settled
+// (settle.hpp), and stays 1 on the branch.
+#pragma once
+
+#include <stdexcept>
+
+#include "models/branch.hpp"
+#include "recursive/formula/law.hpp"
+#include "recursive/formula/overloaded.hpp"
+
+namespace elastocheck::recursive {
+
+// Rest values of an elastic element; the field of the other kind stays zero.
+template <class Real>
+struct Rest {
+    Real free_length = 0;                           // ℓ₀ of an AxialSpring [m]
+    Vector6<Real> preload = Vector6<Real>::Zero();  // of a Bushing [N, N·m]
+    Pieces piece = everywhere;                      // of its curves; constant on a branch
+};
+
+template <class Real>
+struct Inputs {
+    std::vector<Real> offset;  // per constraint: its offset or length [m], its angle [rad]; else 0
+    std::vector<Rest<Real>> rest;   // per elastic element
+    std::vector<Real> load_factor;  // per driver of the branch: of its load; else 0
+    std::vector<int> row;           // per constraint: its first row of Φ
+};
+
+// ---- Values of the model as drawn.
+
+template <class Real>
+Real offset_of(const ConstraintKind& kind) {
+    return static_cast<Real>(std::visit(overloaded{
+                                            [](const CoincidentPoints&) { return 0.0; },
+                                            [](const PointInPlane& c) { return c.offset; },
+                                            [](const PerpendicularDirections&) { return 0.0; },
+                                            [](const DistanceBetween& c) { return c.length; },
+                                            [](const DirectionAtAngle& c) { return c.angle; },
+                                        },
+                                        kind));
+}
+template <class Real>
+Rest<Real> rest_of(const ElasticKind& kind) {
+    using R = Rest<Real>;
+    return std::visit(
+        overloaded{
+            [](const AxialSpring& e) { return R{.free_length = static_cast<Real>(e.free_length)}; },
+            [](const Bushing& e) { return R{.preload = e.preload.cast<Real>()}; },
+        },
+        kind);
+}
+
+template <class Real>
+Inputs<Real> inputs_as_drawn(const Model& model) {
+    Inputs<Real> inputs;
+    int row = 0;
+    for (const auto& constraint : model.constraints) {
+        inputs.offset.push_back(offset_of<Real>(constraint.kind));
+        inputs.row.push_back(row);
+        row += rows(constraint.kind);
+    }
+    for (const auto& elastic : model.elastics) inputs.rest.push_back(rest_of<Real>(elastic.kind));
+    return inputs;
+}
+
+// ---- Values along the branch.
+
+// The constraint whose offset a motion changes. Pre: `stands_on`.
+inline std::size_t constraint_of(const Model& model, const Motion& motion) {
+    return static_cast<std::size_t>(model.joints[static_cast<std::size_t>(motion.joint)].driven);
+}
+
+// Throws std::invalid_argument unless the branch fits the model and every driver has a matching
+// target.
+inline void check(const Model& model, const Branch& branch) {
+    const auto require = [&](bool met, const char* what) {
+        if (!met) throw std::invalid_argument("branch '" + branch.name + "': " + what);
+    };
+    const auto elastic = [&](int k) -> const ElasticKind* {
+        const auto at = static_cast<std::size_t>(k);
+        return at < model.elastics.size() ? &model.elastics[at].kind : nullptr;
+    };
+    for (const auto& driver : branch.drivers)
+        std::visit(overloaded{
+                       [](const Load&) {},
+                       [&](const Motion& m) {
+                           const auto at = static_cast<std::size_t>(m.joint);
+                           require(at < model.joints.size() && model.joints[at].driven >= 0,
+                                   "it drives a joint that has no offset, length or angle to move");
+                       },
+                       [&](const FreeLength& f) {
+                           const ElasticKind* kind = elastic(f.elastic);
+                           require(kind != nullptr && std::holds_alternative<AxialSpring>(*kind),
+                                   "it drives the free length of what is no spring");
+                       },
+                       [&](const Preload& p) {
+                           const ElasticKind* kind = elastic(p.elastic);
+                           require(kind != nullptr && std::holds_alternative<Bushing>(*kind),
+                                   "it drives the preload of what is no bushing");
+                       },
+                   },
+                   driver.what);
+    for (const auto& element : model.elastics) {
+        const auto* bushing = std::get_if<Bushing>(&element.kind);
+        if (bushing == nullptr) continue;
+        const Formulation& f = bushing->formulation;
+        require(f.frame != Formulation::Frame::on_j,
+                "a bushing's frame is on j, which compile() turns round");
+        require(f.conjugate || f.frame == Formulation::Frame::on_i,
+                "a bushing's forces are not conjugate, which is defined with its frame on i only");
+    }
+    require(stands_on(model, branch),
+            "the model does not stand on it, or it does not begin at 0 (on_branch, ways)");
+}
+
+// The inputs at (t, a), from those as drawn. Allocates only on the first call with the same
+// `inputs`.
+template <class Real>
+void set_inputs(const Model& model, const Branch& branch, const Inputs<Real>& drawn, Real t, Real a,
+                Inputs<Real>& inputs) {
+    if (inputs.row.size() != drawn.row.size() || inputs.rest.size() != drawn.rest.size())
+        inputs = drawn;
+    inputs.load_factor.resize(branch.drivers.size());
+    // Each driver changes one input and two drivers may share it: first reset all, then add.
+    const auto each = [&](auto&& change) {
+        for (std::size_t k = 0; k < branch.drivers.size(); ++k) {
+            const Real by = t * static_cast<Real>(branch.drivers[k].start) +
+                            a * static_cast<Real>(branch.drivers[k].rate);
+            std::visit(overloaded{
+                           [&](const Load&) { change(inputs.load_factor[k], Real(0), by); },
+                           [&](const Motion& m) {
+                               const std::size_t c = constraint_of(model, m);
+                               change(inputs.offset[c], drawn.offset[c], by);
+                           },
+                           [&](const FreeLength& f) {
+                               const auto e = static_cast<std::size_t>(f.elastic);
+                               change(inputs.rest[e].free_length, drawn.rest[e].free_length, by);
+                           },
+                           [&](const Preload& p) {
+                               const auto e = static_cast<std::size_t>(p.elastic);
+                               change(inputs.rest[e].preload, drawn.rest[e].preload,
+                                      by * p.direction.cast<Real>());
+                           },
+                       },
+                       branch.drivers[k].what);
+        }
+    };
+    each([](auto& input, const auto& as_drawn, const auto&) { input = as_drawn; });
+    each([](auto& input, const auto&, const auto& by) { input += by; });
+}
+
+template <class Real>
+Inputs<Real> inputs_at(const Model& model, const Branch& branch, Real a) {
+    const Inputs<Real> drawn = inputs_as_drawn<Real>(model);
+    Inputs<Real> inputs;
+    set_inputs<Real>(model, branch, drawn, Real(1), a, inputs);
+    return inputs;
+}
+
+}  // namespace elastocheck::recursive

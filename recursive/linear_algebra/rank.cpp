@@ -1,0 +1,236 @@
+#include "recursive/linear_algebra/rank.hpp"
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/SparseCholesky>
+#include <SuiteSparseQR.hpp>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <queue>
+#include <stdexcept>
+
+namespace elastocheck::recursive {
+namespace {
+
+using Eigen::VectorXd;
+
+// of a value of order one that would be zero in exact arithmetic
+constexpr double rounding = 1e-12;
+constexpr double pivot_threshold = 0.1;  // of the largest entry of a row: acceptable pivots
+
+// Sparse accumulator: a dense vector with the list of its non-zero positions.
+struct Scattered {
+    VectorXd value;
+    std::vector<int> touched;
+    std::vector<char> is_touched;
+
+    explicit Scattered(Eigen::Index size)
+        : value(VectorXd::Zero(size)), is_touched(static_cast<std::size_t>(size), 0) {}
+    // Returns whether the position is new.
+    bool add(int at, double what) {
+        value[at] += what;
+        if (is_touched[static_cast<std::size_t>(at)]) return false;
+        is_touched[static_cast<std::size_t>(at)] = 1;
+        touched.push_back(at);
+        return true;
+    }
+    void clear() {
+        for (const int at : touched) value[at] = 0, is_touched[static_cast<std::size_t>(at)] = 0;
+        touched.clear();
+    }
+    double norm() const {
+        double sum = 0;
+        for (const int at : touched) sum += value[at] * value[at];
+        return std::sqrt(sum);
+    }
+    // Appends the vector as a column of unit length, without entries at rounding level.
+    void append_to(std::vector<Eigen::Triplet<double>>& entries, int column) const {
+        const double whole = norm();
+        for (const int at : touched)
+            if (std::abs(value[at]) > rounding * whole)
+                entries.emplace_back(at, column, value[at] / whole);
+    }
+};
+
+struct Entry {
+    int at;
+    double value;
+};
+
+// A row after elimination of the rows before it: entries outside the pivot columns, the multipliers
+// used, and its pivot.
+struct Reduced {
+    std::vector<Entry> entries, taken;
+    int pivot = -1;
+    double pivot_value = 0;
+};
+
+}  // namespace
+
+// Gaussian elimination in the order of the rows, with a pivot column for each row. Among the
+// columns whose entry is at least `pivot_threshold` times the largest, the one with the fewest
+// entries in later rows is chosen, which keeps the reduced rows sparse (in a chain this is a column
+// of a finished body; otherwise every row would fill with all joints before it). The remainder of
+// row k is
+//
+//   u_k = row k - Σ_j l_kj u_j     over the independent rows j < k,
+//
+// and is zero for a dependent row. No combination of rows is nearer to row k than its distance from
+// their span, so a row that is dependent here is so by any measure. Back substitution with the same
+// l, starting from row k alone, gives its dependency in terms of the rows themselves.
+Repeated repeated(const Rows& rows) {
+    const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
+    std::vector<int> to_come(n, 0),
+        pivot_of(n, -1);  // of a column: how many rows touch it, whose pivot it is
+    for (int k = 0; k < rows.outerSize(); ++k)
+        for (Rows::InnerIterator e(rows, k); e; ++e) ++to_come[static_cast<std::size_t>(e.col())];
+
+    Repeated result;
+    std::vector<Eigen::Triplet<double>> dependencies;
+    std::vector<Reduced> reduced(m);
+    Scattered x(rows.cols()), y(rows.rows());
+    for (int k = 0; k < static_cast<int>(m); ++k) {
+        std::priority_queue<int, std::vector<int>, std::greater<>>
+            earlier;  // rows to take out, first to last
+        const auto add = [&](int at, double value) {
+            if (x.add(at, value))
+                if (const int row = pivot_of[static_cast<std::size_t>(at)]; row >= 0)
+                    earlier.push(row);
+        };
+        for (Rows::InnerIterator e(rows, k); e; ++e) {
+            add(static_cast<int>(e.col()), e.value());
+            --to_come[static_cast<std::size_t>(e.col())];
+        }
+        Reduced& u = reduced[static_cast<std::size_t>(k)];
+        while (!earlier.empty()) {
+            const int j = earlier.top();
+            earlier.pop();
+            const Reduced& other = reduced[static_cast<std::size_t>(j)];
+            const double l = x.value[other.pivot] / other.pivot_value;
+            x.value[other.pivot] = 0;
+            if (!(std::abs(l) > rounding)) continue;
+            u.taken.push_back({j, l});
+            for (const Entry& e : other.entries) add(e.at, -l * e.value);
+        }
+        double largest = 0;
+        for (const int at : x.touched) largest = std::max(largest, std::abs(x.value[at]));
+        if (largest > rank_threshold) {
+            for (const int at : x.touched) {
+                const double size = std::abs(x.value[at]);
+                if (!(size >= pivot_threshold * largest)) continue;
+                const auto column = static_cast<std::size_t>(at);
+                const int fewest = u.pivot < 0 ? 0 : to_come[static_cast<std::size_t>(u.pivot)];
+                if (u.pivot >= 0 && (to_come[column] > fewest || (to_come[column] == fewest &&
+                                                                  size <= std::abs(u.pivot_value))))
+                    continue;
+                u.pivot = at;
+                u.pivot_value = x.value[at];
+            }
+            for (const int at : x.touched)
+                if (at != u.pivot && std::abs(x.value[at]) > rounding)
+                    u.entries.push_back({at, x.value[at]});
+            pivot_of[static_cast<std::size_t>(u.pivot)] = k;
+        } else {
+            std::priority_queue<int>
+                later;  // rows to be expressed by those before them, last to first
+            const auto spread = [&](int row, double value) {
+                if (y.add(row, value)) later.push(row);
+            };
+            for (const Entry& e : u.taken) spread(e.at, -e.value);
+            while (!later.empty()) {
+                const int j = later.top();
+                later.pop();
+                for (const Entry& e : reduced[static_cast<std::size_t>(j)].taken)
+                    spread(e.at, -e.value * y.value[j]);
+            }
+            y.add(k, 1);
+            y.append_to(dependencies, static_cast<int>(result.rows.size()));
+            y.clear();
+            result.rows.push_back(k);
+            result.left.push_back(largest);
+        }
+        x.clear();
+    }
+    result.dependencies.resize(rows.rows(), static_cast<Eigen::Index>(result.rows.size()));
+    result.dependencies.setFromTriplets(dependencies.begin(), dependencies.end());
+    return result;
+}
+
+// SuiteSparseQR factorises in a fill-reducing column order and sets aside each column that depends
+// on those before it (Heath's method): A E = Q ⎡R₁ R₂⎤. A column r of R₂ is R₁ c, so that
+// Eᵀ x = (-c, 1) is a null vector; where R is sparse so is c.
+Columns null_space(const Rows& rows) {
+    const int n = static_cast<int>(rows.cols());
+    using Long = SuiteSparse_long;
+    Eigen::SparseMatrix<double, Eigen::ColMajor, Long> A = rows;
+    cholmod_common common;
+    cholmod_l_start(&common);
+    common.print = 0;
+    cholmod_sparse view = Eigen::viewAsCholmod(A), *R = nullptr;
+    Long* E = nullptr;
+    const Long rank =
+        SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, rank_threshold, 0, &view, &R, &E, &common);
+    std::vector<Eigen::Triplet<double>> entries;
+    if (rank >= 0) {
+        const auto* const first = static_cast<const Long*>(R->p);
+        const auto* const row = static_cast<const Long*>(R->i);
+        const auto* const value = static_cast<const double*>(R->x);
+        Scattered x(n);
+        for (int c = static_cast<int>(rank); c < n; ++c) {
+            std::priority_queue<int> later;
+            const auto add = [&](Long at, double what) {
+                if (x.add(static_cast<int>(at), what)) later.push(static_cast<int>(at));
+            };
+            for (Long e = first[c]; e < first[c + 1]; ++e) add(row[e], -value[e]);
+            while (!later.empty()) {
+                const int k = later.top();
+                later.pop();
+                // last entry of a column of the triangle, since rows ascend
+                const Long diagonal = first[k + 1] - 1;
+                x.value[k] /= value[diagonal];
+                for (Long e = first[k]; e < diagonal; ++e) add(row[e], -value[e] * x.value[k]);
+            }
+            x.add(c, 1);
+            const std::size_t begin = entries.size();
+            x.append_to(entries, c - static_cast<int>(rank));
+            for (std::size_t e = begin; E && e < entries.size(); ++e)
+                entries[e] = {static_cast<int>(E[entries[e].row()]), entries[e].col(),
+                              entries[e].value()};
+            x.clear();
+        }
+    }
+    cholmod_l_free_sparse(&R, &common);
+    cholmod_l_free(static_cast<std::size_t>(n), sizeof(Long), E, &common);
+    cholmod_l_finish(&common);
+    if (rank < 0) throw std::bad_alloc();
+    Columns basis(n, n - static_cast<Eigen::Index>(rank));
+    basis.setFromTriplets(entries.begin(), entries.end());
+    return basis;
+}
+
+// ⎡ I   Aᵀ ⎤ ⎧ left ⎫   ⎧ f ⎫
+// ⎣ A   0  ⎦ ⎩  μ   ⎭ = ⎩ 0 ⎭
+//
+// Iterative refinement with a nearby regular matrix that has -ε² in place of 0. Eliminating μ there
+// leaves I + Aᵀ A / ε², which couples only bodies that share a row. In a direction with singular
+// value σ each round leaves the fraction ε² / (ε² + σ²) of the error, plus its own rounding times
+// 1 / ε².
+VectorXd left_free(const Rows& rows, const VectorXd& f) {
+    constexpr double e2 = 1e-12, enough = 1e-14;
+    constexpr int most_rounds = 50;
+    const Columns A = rows, At = A.transpose();
+    Columns N = At * A / e2;
+    for (int k = 0; k < N.cols(); ++k) N.coeffRef(k, k) += 1;
+    const Eigen::SimplicialLDLT<Columns> factors(N);
+    VectorXd left = VectorXd::Zero(f.size()), mu = VectorXd::Zero(rows.rows());
+    for (int round = 0; round < most_rounds; ++round) {
+        const VectorXd force = f - left - At * mu, motion = -(A * left);
+        if (force.norm() + motion.norm() <= enough * f.norm()) break;
+        const VectorXd more = factors.solve(force + At * motion / e2);
+        left += more;
+        mu += (A * more - motion) / e2;
+    }
+    return left;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,342 @@
+// The linear system of eqs. (23)-(25), solved once per step.
+//
+// ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f ⎫
+// ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩ 0 ⎭      [(6nb + m) × (6nb + m)]      (24)
+//
+// The raw matrix mixes N/m, N·m and pure numbers. It is equilibrated symmetrically to M̂ = D M D
+// with unit rows (Ruiz 2001) before pivots are judged. D holds powers of two, so scaling causes no
+// rounding.
+//
+// A motion z that nothing resists (idle mode), or a redundant combination y of constraints, makes M
+// singular in a direction known from the diagnosis (diagnosis.hpp). Bordering holds that direction,
+//
+// ⎡ M̂   b ⎤ ⎧ x̂ ⎫   ⎧ f̂ ⎫                       ⎡ M̂   b ⎤ ⎧ n ⎫   ⎧ 0 ⎫
+// ⎣ bᵀ  0 ⎦ ⎩ μ ⎭ = ⎩ 0 ⎭    and, for next time, ⎣ bᵀ  0 ⎦ ⎩ ν ⎭ = ⎩ 1 ⎭   b = (W² z, 0) or (0, y)
+//
+// with the same factors. bᵀ x = 0 selects the step of minimum norm √(|Δr|² + L²|Δπ|²), or the λ of
+// minimum norm. n is the null vector at the present configuration and gives z (y) for the next
+// step. Only the Δq part of an idle n is kept (and the λ part of a redundant one). The other part
+// is the constraint error of the published method, and feeding it back amplifies it.
+#pragma once
+
+#include <map>
+
+#include "recursive/linear_algebra/saddle_matrix.hpp"
+#include "recursive/linear_algebra/sparse_lu.hpp"
+
+namespace elastocheck::recursive {
+
+// Held directions: idle modes first, then redundant combinations, each with its places, which are
+// the entries that may be non-zero. Two directions share all their places or none; those that share
+// them are consecutive.
+template <class Real>
+struct Held {
+    int idle = 0;            // number of idle modes
+    std::vector<int> first;  // index of each direction's first entry, and the end [d + 1]
+    std::vector<int> with;   // first direction with the same places [d]
+    // of each entry, ascending within a direction; all six rows of a body for an idle mode
+    std::vector<int> row;
+    std::vector<Real> value;   // z or y, physical units, of unit norm in `weight`
+    std::vector<Real> border;  // b in scaled coordinates, of unit length
+
+    int size() const { return static_cast<int>(with.size()); }
+    int begin(int c) const { return first[static_cast<std::size_t>(c)]; }
+    int end(int c) const { return first[static_cast<std::size_t>(c) + 1]; }
+    // Position of a body's entries in an idle mode; -1 where the mode does not move the body.
+    int at(int c, BodyId b) const {
+        const auto from = row.begin() + begin(c), to = row.begin() + end(c);
+        const auto found = std::lower_bound(from, to, 6 * b);
+        return b == ground || found == to || *found != 6 * b
+                   ? -1
+                   : static_cast<int>(found - row.begin());
+    }
+    Eigen::Map<Vector<Real>> values(int c) { return {value.data() + begin(c), end(c) - begin(c)}; }
+    Eigen::Map<const Vector<Real>> values(int c) const {
+        return {value.data() + begin(c), end(c) - begin(c)};
+    }
+
+    template <class Other>
+    Held<Other> cast() const {
+        return {
+            idle, first, with, row, {value.begin(), value.end()}, {border.begin(), border.end()}};
+    }
+};
+
+template <class Real>
+struct SaddlePoint {
+    int n = 0, m = 0;      // 6nb, rows of Φ
+    SaddleMatrix<Real> M;  // raw [(n+m) × (n+m)]; assembled by the caller
+    Vector<Real> scale;    // D, powers of two
+    Vector<Real> weight;   // W: 1 for Δr [m], L for Δπ, 1 for λ
+    Held<Real> held;
+    // M̂ with its border, in the order of the pattern: values, the scaling of each entry (0 in the
+    // border), its position in M, and the two positions of each border entry.
+    std::vector<Real> values, scaling;
+    std::vector<int> source;
+    std::vector<std::array<int, 2>> border_at;
+    Vector<Real> rhs, solution;
+    SparseLU<Real> lu;
+
+    int borders() const { return held.size(); }
+};
+
+// D of the matrix M by Ruiz equilibration (2001): every row of D M D has its largest entry in (½,
+// 2].
+template <class Real>
+Vector<Real> equilibration(const SaddleMatrix<Real>& M) {
+    Vector<Real> d = Vector<Real>::Ones(M.n + M.m), largest(M.n + M.m);
+    for (int sweep = 0; sweep < 10; ++sweep) {
+        largest.setZero();
+        for_each_entry(M, [&](int i, int j, int at) {
+            largest[i] =
+                std::max(largest[i], std::abs(M.values[static_cast<std::size_t>(at)]) * d[j]);
+        });
+        for (Eigen::Index k = 0; k < d.size(); ++k)
+            if (largest[k] > 0) d[k] /= std::sqrt(largest[k] * d[k]);
+    }
+    return d.unaryExpr([](Real value) { return std::exp2(std::round(std::log2(value))); });
+}
+
+// W² at the places of a direction.
+template <class Real>
+auto weights(const SaddlePoint<Real>& system, int c) {
+    return [&system, from = system.held.begin(c)](Eigen::Index e) {
+        const Real w = system.weight[system.held.row[static_cast<std::size_t>(from + e)]];
+        return w * w;
+    };
+}
+
+// Makes the held directions orthonormal in the norm W; those without common places are orthogonal
+// already.
+template <class Real>
+void orthonormalise(SaddlePoint<Real>& system) {
+    Held<Real>& held = system.held;
+    for (int c = 0; c < held.size(); ++c) {
+        auto z = held.values(c);
+        const auto W2 = weights(system, c);
+        const auto inner = [&](const auto& a, const auto& b) {
+            Real sum = 0;
+            for (Eigen::Index e = 0; e < z.size(); ++e) sum += a[e] * W2(e) * b[e];
+            return sum;
+        };
+        for (int b = held.with[static_cast<std::size_t>(c)]; b < c; ++b) {
+            const Real overlap = inner(z, held.values(b));
+            z -= overlap * held.values(b);
+        }
+        z /= std::sqrt(inner(z, z));
+    }
+}
+
+// Pattern of M bordered by the held directions.
+template <class Real>
+Pattern bordered(const Pattern& inner, const Held<Real>& held) {
+    const int N = inner.size, d = held.size();
+    Pattern all{N + d, {}, {}};
+    std::vector<int> of_row, first_of_row;
+    sort_into_rows(static_cast<std::size_t>(N), first_of_row, of_row, nullptr, [&](auto&& put) {
+        for (int c = 0; c < d; ++c)
+            for (int e = held.begin(c); e < held.end(c); ++e)
+                put(held.row[static_cast<std::size_t>(e)], N + c, 0);
+    });
+    const auto append = [&](const std::vector<int>& list, int from, int to) {
+        all.row.insert(all.row.end(), list.begin() + from, list.begin() + to);
+    };
+    for (int j = 0; j < N + d; ++j) {
+        all.first.push_back(static_cast<int>(all.row.size()));
+        const auto column = static_cast<std::size_t>(j);
+        if (j < N) {
+            append(inner.row, inner.first[column], inner.first[column + 1]);
+            append(of_row, first_of_row[column], first_of_row[column + 1]);
+        } else {
+            append(held.row, held.begin(j - N), held.end(j - N));
+        }
+    }
+    all.first.push_back(static_cast<int>(all.row.size()));
+    return all;
+}
+
+// Computes M̂ and its border from M and the held directions.
+template <class Real>
+void scale_entries(SaddlePoint<Real>& system) {
+    Held<Real>& held = system.held;
+    for (int c = 0; c < held.size(); ++c) {
+        const auto W2 = weights(system, c);
+        Eigen::Map<Vector<Real>> b(held.border.data() + held.begin(c), held.end(c) - held.begin(c));
+        for (Eigen::Index e = 0; e < b.size(); ++e) {
+            const auto at = static_cast<std::size_t>(held.begin(c) + e);
+            b[e] = system.scale[held.row[at]] * W2(e) * held.value[at];
+        }
+        b.normalize();
+    }
+    const Real *const M = system.M.values.data(), *const scaling = system.scaling.data();
+    const int* const source = system.source.data();
+    Real* const values = system.values.data();
+    const std::size_t entries = system.values.size();
+    for (std::size_t e = 0; e < entries; ++e) values[e] = M[source[e]] * scaling[e];
+    for (std::size_t b = 0; b < held.border.size(); ++b)
+        for (const int e : system.border_at[b]) values[e] = held.border[b];
+}
+
+// Places of the directions in the columns of `null_space`. An idle mode has the bodies that it
+// moves, at any point of the branch. A redundant combination has all rows of its loops of joints
+// (`loop` of every row: joints of different loops are independent). Directions that share a place
+// get each other's places.
+inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
+                           const Vector<double>& weight, int n, const std::vector<int>& loop) {
+    using Column = Eigen::SparseMatrix<double>::InnerIterator;
+    const auto at = [](auto k) { return static_cast<std::size_t>(k); };
+    const auto d = static_cast<int>(null_space.cols());
+    // A place is a body or a loop (numbered after the bodies), with the first direction found
+    // there.
+    const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
+    std::vector<int> leader(at(d)), first_there(at(bodies + loops), -1);
+    std::vector<std::vector<int>> of_leader(at(d));
+    const auto lead = [&](int c) {
+        while (leader[at(c)] != c) c = leader[at(c)] = leader[at(leader[at(c)])];
+        return c;
+    };
+    for (int c = 0; c < d; ++c) {
+        leader[at(c)] = c;
+        std::map<int, double> share;  // squared norm in each place
+        double whole = 0;
+        for (Column e(null_space, c); e; ++e) {
+            const auto row = static_cast<int>(e.row());
+            const int place = row < n ? row / 6 : bodies + loop[at(row - n)];
+            const double size = weight[row] * e.value();
+            share[place] += size * size;
+            whole += size * size;
+        }
+        for (const auto& [place, size] : share) {
+            if (!(size > 1e-10 * whole)) continue;
+            if (first_there[at(place)] < 0) {
+                first_there[at(place)] = c;
+            } else {
+                const int one = lead(first_there[at(place)]), other = lead(c);
+                leader[at(std::max(one, other))] = std::min(one, other);
+            }
+        }
+    }
+    const auto give = [&](int place, int row) {
+        if (first_there[at(place)] >= 0) of_leader[at(lead(first_there[at(place)]))].push_back(row);
+    };
+    for (int row = 0; row < n; ++row) give(row / 6, row);
+    for (std::size_t k = 0; k < loop.size(); ++k) give(bodies + loop[k], n + static_cast<int>(k));
+    std::vector<int> order(at(d));
+    for (int c = 0; c < d; ++c) order[at(c)] = c;
+    std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations have no common places
+
+    Held<double> held;
+    held.idle = idle;
+    held.first.push_back(0);
+    for (int k = 0; k < d; ++k) {
+        const int c = order[at(k)];
+        const auto& rows = of_leader[at(lead(c))];
+        held.with.push_back(k > 0 && lead(order[at(k - 1)]) == lead(c) ? held.with.back() : k);
+        held.row.insert(held.row.end(), rows.begin(), rows.end());
+        held.first.push_back(static_cast<int>(held.row.size()));
+        held.value.resize(held.row.size(), 0);
+        for (Column e(null_space, c); e; ++e) {
+            const auto place = std::ranges::lower_bound(rows, static_cast<int>(e.row()));
+            if (place != rows.end() && *place == e.row())
+                held.value[at(held.begin(k) + (place - rows.begin()))] = e.value();
+        }
+    }
+    held.border.assign(held.row.size(), 0);
+    return held;
+}
+
+// Fixes the scaling from the matrix now in M, the held directions in the columns of `null_space`
+// [(n+m) × d] (`idle` modes first, then redundant combinations), and the elimination order. `inner`
+// is the pattern of M, `loop` the loop of joints of every row of Φ.
+inline void analyse(SaddlePoint<double>& system, int idle,
+                    const Eigen::SparseMatrix<double>& null_space, const Pattern& inner,
+                    const std::vector<int>& loop) {
+    const int N = system.n + system.m;
+    system.scale = equilibration(system.M);
+    system.held = places(idle, null_space, system.weight, system.n, loop);
+    orthonormalise(system);
+
+    const Pattern pattern = bordered(inner, system.held);
+    system.source.clear();
+    system.scaling.clear();
+    for (int j = 0; j < pattern.size; ++j)
+        for (int e = pattern.first[static_cast<std::size_t>(j)];
+             e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
+            const int i = pattern.row[static_cast<std::size_t>(e)];
+            const bool inside = i < N && j < N;
+            system.source.push_back(inside ? system.M.at(i, j) : 0);
+            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : 0);
+        }
+    system.border_at.clear();
+    for (int c = 0; c < system.borders(); ++c)
+        for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
+            const int row = system.held.row[static_cast<std::size_t>(e)];
+            system.border_at.push_back(
+                {entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)});
+        }
+    system.values.assign(pattern.entries(), 0);
+    system.rhs.setZero(N + system.borders());
+    system.solution.setZero(N + system.borders());
+    scale_entries(system);
+    analyse(system.lu, pattern, system.values.data());
+}
+
+// The same system in another arithmetic, with this elimination order; not factorised.
+template <class Real>
+SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
+    SaddlePoint<Real> system;
+    system.n = from.n;
+    system.m = from.m;
+    system.M = from.M.template cast<Real>();
+    system.scale = from.scale.cast<Real>();
+    system.held = from.held.template cast<Real>();
+    system.weight = from.weight.cast<Real>();
+    system.values.assign(from.values.begin(), from.values.end());
+    system.scaling.assign(from.scaling.begin(), from.scaling.end());
+    system.source = from.source;
+    system.border_at = from.border_at;
+    system.rhs = from.rhs.cast<Real>();
+    system.solution = from.solution.cast<Real>();
+    analyse(system.lu, from.lu.order);
+    return system;
+}
+template <>
+inline SaddlePoint<double> in_arithmetic(const SaddlePoint<double>& from) {
+    return from;
+}
+
+// Solves for x = (Δq, λ) with the right-hand side (f, lower) and the factors of the last
+// `factorise`. Allocates nothing.
+template <class Real>
+void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vector<Real>& lower,
+                     Vector<Real>& x) {
+    const int n = system.n, m = system.m;
+    system.rhs.head(n).array() = f.array() * system.scale.head(n).array();
+    system.rhs.segment(n, m).array() = lower.array() * system.scale.tail(m).array();
+    system.rhs.tail(system.borders()).setZero();
+    solve(system.lu, system.rhs.data(), system.solution.data());
+    x.array() = system.scale.array() * system.solution.head(n + m).array();
+}
+
+// Factorises the matrix now in M and updates the held directions. Allocates nothing. Returns the
+// ratio of the smallest to the largest pivot of the scaled, bordered matrix, which the caller
+// checks.
+template <class Real>
+Real factorise(SaddlePoint<Real>& system) {
+    scale_entries(system);
+    const Real pivot_ratio = factorise(system.lu, system.values.data());
+
+    // The solution for e_c of the border, at the places of the direction only.
+    Held<Real>& held = system.held;
+    for (int c = 0; c < held.size(); ++c) {
+        const int from = held.begin(c), count = held.end(c) - from;
+        Real* const z = held.value.data() + from;
+        solve_unit(system.lu, system.n + system.m + c, held.row.data() + from, count, z);
+        for (int e = 0; e < count; ++e)
+            z[e] *= system.scale[held.row[static_cast<std::size_t>(from + e)]];
+    }
+    orthonormalise(system);
+    return pivot_ratio;
+}
+
+}  // namespace elastocheck::recursive

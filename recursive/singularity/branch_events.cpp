@@ -1,0 +1,227 @@
+#include "recursive/singularity/branch_events.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/step_check.hpp"
+#include "recursive/stepping/stiffness.hpp"
+#include "recursive/stepping/sweep.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+constexpr double longest = 1. / 4, least_step = 1. / 64;  // step, as a fraction of the branch
+constexpr double tolerance = 1e-4;  // of L, or rad: tolerance of the corrector
+
+// Whether the outcome means the end of the branch and not a numerical failure.
+bool ends(Outcome outcome) {
+    return outcome == Outcome::limit_point || outcome == Outcome::bifurcation_point ||
+           outcome == Outcome::singular || outcome == Outcome::branch_lost ||
+           outcome == Outcome::inconsistent_constraints;
+}
+
+// Settles to the equilibrium at a = 0 and leaves its factors in the system.
+Outcome settles(SteppingState<double>& s, const Branch& branch, const Analysis& analysis) {
+    const auto settled = [&] {
+        if (!analysis.at_rest || !starts_as_drawn(branch) || !s.curves.empty()) return settle(s);
+        go_to(s, {1, 0});
+        return judge(s, s.q, analysis.pivot_ratio);
+    };
+    const Outcome outcome = settled();
+    return outcome == Outcome::converged ? judge_start(s) : outcome;
+}
+
+// Stability at the nodes of one walk. A change of the determinant's sign shows an odd number of
+// negative stiffnesses; the softest modes show two at once.
+struct Stability {
+    SubspaceBasis<double> softest = {};
+
+    // With the factors of `next` in the system.
+    bool is_lost(SteppingState<double>& s, const Trial<double>& trial) {
+        if (trial.verdict == Verdict::turned_over) return true;
+        if (trial.verdict != Verdict::believed) return false;
+        const LeastStiffness least = least_stiffness(s, softest);
+        return least.of_energy && least.value < 0;
+    }
+};
+
+// Parameter at which stability is lost between a stable node and p = far, by bisection with
+// accepted steps; none if `far` is reached and stable, or if the steps do not decide.
+std::optional<double> lost_between(SteppingState<double>& s, const Going<double>& going,
+                                   Node<double> node, double far) {
+    constexpr double resolution = 1e-6;  // of the way from the node
+    constexpr int most = 100;  // steps tried: bisection takes 20, the rest is for short ones
+    const Vector<double> none = Vector<double>::Zero(s.n()),
+                         lambda_none = Vector<double>::Zero(s.m());
+    const double finest = resolution * std::abs(far - node.p);
+    Node<double> next = node;
+    Stability stability;
+    bool lost = false;
+    double h = far - node.p;
+    for (int tried = 0; tried < most && std::abs(h) > finest / 2; ++tried) {
+        next.p = node.p + h;
+        const Trial<double> trial = try_step(s, going, node, none, lambda_none, next);
+        if (stability.is_lost(s, trial)) {
+            if (std::abs(h) <= finest) return next.p;
+            far = next.p;
+            lost = true;
+            h /= 2;
+        } else if (trial.verdict == Verdict::believed) {
+            std::swap(node, next);
+            if (node.p == far) return std::nullopt;
+            h = lost ? std::max(std::abs(far - node.p) / 2, finest) * (far > node.p ? 1 : -1)
+                     : far - node.p;
+        } else {
+            h /= 4;
+        }
+    }
+    return std::nullopt;
+}
+
+// Parameter between two stable nodes at which the determinant most likely has the other sign, or
+// at which two modes may have become unstable; none if the determinant stays away from zero. It is
+// evaluated at the midpoint, then at the minimum of the parabola through the three lowest values.
+std::optional<double> suspect_between(SteppingState<double>& s, const Going<double>& going,
+                                      const Node<double>& from, const Node<double>& to,
+                                      double log_from, double log_to) {
+    // A predicted minimum below this fraction of the lowest value is evaluated.
+    constexpr double dips = 0.25;
+    // Below this fraction of the larger end value two modes may have passed zero.
+    constexpr double nearly = 0.01;
+    constexpr int most = 8;  // values
+    struct Value {
+        double t = 0, d = 0;  // fraction of the interval; determinant over that at `from`
+    };
+    State<double> q = from.q;
+    Vector<double> lambda = from.lambda;
+    const auto at = [&](double t) {
+        between(from, to, t, q, lambda);
+        go_to(s, going.place(from.p + t * (to.p - from.p)));
+        const bool regular = factorise_at(s, q, lambda) == Outcome::converged;
+        return regular && s.system.lu.orientation == from.orientation
+                   ? std::exp2(log_determinant(s.system.lu) - log_from)
+                   : -1;
+    };
+    const auto place = [&](double t) { return from.p + t * (to.p - from.p); };
+    std::vector<Value> known{{0, 1}, {0.5, at(0.5)}, {1, std::exp2(log_to - log_from)}};
+    for (;;) {
+        const auto lowest = std::ranges::min_element(known, {}, &Value::d);
+        if (lowest->d < 0) return place(lowest->t);
+        const auto first = std::clamp(lowest - known.begin() - 1, std::ptrdiff_t{0},
+                                      static_cast<std::ptrdiff_t>(known.size()) - 3);
+        const Value *const l = &known[static_cast<std::size_t>(first)], *const m = l + 1,
+                           *const r = l + 2;
+        const double rise = (m->d - l->d) / (m->t - l->t), later = (r->d - m->d) / (r->t - m->t),
+                     bend = (later - rise) / (r->t - l->t),
+                     vertex = (l->t + m->t) / 2 - rise / (2 * bend),
+                     least = m->d + (vertex - m->t) * (rise + bend * (vertex - l->t));
+        const auto is_near = [&](const Value& value) { return std::abs(value.t - vertex) < 1e-3; };
+        const bool inside = bend > 0 && vertex > l->t && vertex < r->t;
+        if (!inside || !(least < dips * lowest->d) || std::ranges::any_of(known, is_near) ||
+            known.size() == most) {
+            const double ends = std::max(known.front().d, known.back().d);
+            const bool between_ends = lowest->t > 0 && lowest->t < 1;
+            return between_ends && lowest->d < nearly * ends ? std::optional(place(lowest->t))
+                                                             : std::nullopt;
+        }
+        known.insert(
+            std::ranges::find_if(known, [&](const Value& value) { return value.t > vertex; }),
+            {vertex, at(vertex)});
+    }
+}
+
+// Result of following the branch with few steps. Stability lost inside may be regained before the
+// end.
+struct Walk {
+    bool through = false;             // the end was reached and no loss of stability was found
+    std::optional<double> lost = {};  // parameter at which stability is lost
+};
+
+Walk go_ahead(SteppingState<double>& s, double to) {
+    const Going<double> going{Drive::rate, tolerance * s.length, tolerance};
+    Node<double> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    differentiate(s, going, node);
+    double log_here = log_determinant(s.system.lu);
+    // The step before: its first node, the slope of the log-determinant over it, and whether its
+    // interior was examined.
+    Node<double> before = node;
+    double log_before = log_here, rise_before = 0;
+    bool looked_before = true;
+    Vector<double> curvature = Vector<double>::Zero(s.n()),
+                   lambda_curvature = Vector<double>::Zero(s.m());
+    State<double> q = s.q;
+    Vector<double> lambda = s.lambda;
+    Stability stability;
+    double h = longest;  // fraction of the branch
+    for (double gone = 0; gone < 1;) {
+        const double ahead = gone + h < 1 - h / 8 ? gone + h : 1;
+        next.p = to * ahead;
+        const Trial<double> trial = try_step(s, going, node, curvature, lambda_curvature, next);
+        const bool believed = trial.verdict == Verdict::believed;
+        if (believed && contradict_at(s, next, q, lambda)) return {};
+        if (believed && pushed_over(s, next.q, next.lambda) < 0) return {};
+        const bool first = gone == 0, last = ahead == 1;
+        if (trial.verdict == Verdict::turned_over || (last && stability.is_lost(s, trial))) {
+            if (const auto lost = lost_between(s, going, node, next.p)) return {false, lost};
+        } else if (believed && is_straight(s, going, node, next)) {
+            if (ahead == 1 && is_unstable(s)) return {};
+            const double log_next = log_determinant(s.system.lu),
+                         rise = (log_next - log_here) / (ahead - gone);
+            const bool turns = !first && rise_before < 0 && rise > 0;
+            for (const bool this_step : {true, false}) {
+                if (this_step ? !(first || last || turns) : !(turns && !looked_before)) continue;
+                const Node<double>&from = this_step ? node : before,
+                      &to_node = this_step ? next : node;
+                const auto suspect =
+                    suspect_between(s, going, from, to_node, this_step ? log_here : log_before,
+                                    this_step ? log_next : log_here);
+                if (!suspect) continue;
+                if (const auto lost = lost_between(s, going, from, *suspect)) return {false, lost};
+            }
+            before = node;
+            log_before = log_here;
+            rise_before = rise;
+            looked_before = first || turns;
+            curvature = (next.dq - node.dq) / (next.p - node.p);
+            lambda_curvature = (next.dlambda - node.dlambda) / (next.p - node.p);
+            std::swap(node, next);
+            log_here = log_next;
+            h = std::min(2 * (ahead - gone), longest);
+            gone = ahead;
+            continue;
+        }
+        if (h = (ahead - gone) / 4; h < least_step) return {};
+    }
+    return {true};
+}
+
+}  // namespace
+
+std::optional<Event> find_event(const Model& model, const Branch& branch,
+                                const Analysis& analysis) {
+    Stop stop;
+    const Options options{.method = find_method("adaptive").value(), .steps = 1};
+    const EquilibriumPath path = sweep<double>(model, branch, options, analysis, {}, stop);
+    if (!ends(path.outcome) || std::isnan(stop.at)) return std::nullopt;
+    return Event{path.outcome, stop.at};
+}
+
+std::optional<Event> watch(const Model& model, const Branch& branch, const Analysis& analysis) {
+    if (branch.to == 0 || model.bodies.empty()) return std::nullopt;
+    SteppingState<double> s(model, branch, analysis);
+    s.consistent = true;
+    if (const Outcome o = settles(s, branch, analysis); ends(o) || o == Outcome::loaded_idle_mode)
+        return Event{o, std::numeric_limits<double>::quiet_NaN(), s.begins_unstable};
+    else if (o != Outcome::converged)
+        return std::nullopt;  // the method reports this failure itself
+    const Walk walk = go_ahead(s, branch.to);
+    if (walk.through) return std::nullopt;
+    const std::optional<Event> event = find_event(model, branch, analysis);
+    const bool sooner =
+        walk.lost && !(event && std::abs(event->load) <= (1 + tolerance) * std::abs(*walk.lost));
+    return sooner ? Event{Outcome::bifurcation_point, *walk.lost} : event;
+}
+
+}  // namespace elastocheck::recursive

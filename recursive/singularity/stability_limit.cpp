@@ -1,0 +1,143 @@
+#include "recursive/singularity/stability_limit.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include "recursive/stepping/stiffness.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+// Tangent of an element's moments about the origins of its bodies: constant force, rotating levers.
+void add_lever_tangent(const ElasticKind& kind, const Rest<double>& rest, const State<double>& q,
+                       SaddleMatrix<double>& target) {
+    const auto [i, j] = bodies_of(kind);
+    const ElementForce<double> force = element_force<double>(kind, rest, q);
+    using detail::Variation;
+    const Variation<double> none = Variation<double>::Zero();
+    const bool at_p_j =
+        std::visit(overloaded{[](const AxialSpring&) { return false; },
+                              [](const Bushing& e) { return e.formulation.offset_moment; }},
+                   kind);
+    const Variation<double> of_j = detail::of_direction<double>(1, force.lever_j);
+    const Variation<double> of_i =
+        at_p_j ? Variation<double>(detail::of_point<double>(1, force.lever_j) -
+                                   detail::of_origin<double>(0))
+               : detail::of_direction<double>(0, force.lever_i);
+    detail::add<double>(j, i, j, none, detail::of_cross<double>(force.lever_j, of_j, force.F, none),
+                        target);
+    detail::add<double>(
+        i, i, j, none,
+        Variation<double>(-detail::of_cross<double>(force.lever_i, of_i, force.F, none)), target);
+}
+
+// K_G in the place of K, all other entries zero.
+void assemble_delayed(const SteppingState<double>& s, const Follow& follow,
+                      SaddleMatrix<double>& G) {
+    std::fill(G.values.begin(), G.values.end(), 0.);
+    if (follow.lever || follow.axis) {
+        SaddleMatrix<double> levers = G;
+        for (std::size_t k = 0; k < s.model.elastics.size(); ++k)
+            add_lever_tangent(s.model.elastics[k].kind, s.inputs.rest[k], s.q, levers);
+        if (follow.axis) {
+            SaddleMatrix<double> K = G;
+            add_stiffness<double>(s.model, s.inputs, s.q, K);
+            add_elastic_tangent<double>(s.model, s.inputs, s.q, G);
+            for (std::size_t k = 0; k < G.values.size(); ++k)
+                G.values[k] -= K.values[k] + (follow.lever ? 0. : levers.values[k]);
+        } else {
+            G = levers;
+        }
+    }
+    add_curvature<double>(s.model, s.inputs, s.q, s.lambda, G);
+    if (follow.load) add_load_stiffness<double>(s.model, s.branch, s.inputs, s.q, G);
+}
+
+// G u for the top left block of G.
+Vector<double> times(const SaddleMatrix<double>& G, const Vector<double>& u) {
+    Vector<double> f = Vector<double>::Zero(G.n);
+    for_each_entry(G, [&](int i, int j, int at) {
+        if (i < G.n && j < G.n) f[i] += G.values[static_cast<std::size_t>(at)] * u[j];
+    });
+    return f;
+}
+
+// Largest eigenvalue of T K_G by subspace iteration on three vectors.
+double largest(SteppingState<double>& s, const SaddleMatrix<double>& G) {
+    constexpr int vectors = 3, turns = 12;
+    const int n = s.n();
+    const auto W2 = s.system.weight.head(n).array().square();
+    Matrix<double> U(n, std::min(vectors, s.free));
+    for (Eigen::Index c = 0; c < U.cols(); ++c)
+        for (Eigen::Index k = 0; k < n; ++k)
+            U(k, c) = scattered<double>(k + c * n) / s.system.weight[k];
+    Eigen::MatrixXd H;
+    s.lower.setZero();
+    for (int turn = 0; turn < turns; ++turn) {
+        detail::orthonormalise(s.system.weight, U);
+        Matrix<double> V(n, U.cols());
+        for (Eigen::Index c = 0; c < U.cols(); ++c) {
+            s.upper = times(G, U.col(c));
+            back_substitute(s);
+            V.col(c) = s.x.head(n);
+        }
+        if (!V.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+        H = U.transpose() * W2.matrix().asDiagonal() * V;
+        if (V.isZero(0)) return 0;
+        U = V;
+    }
+    return std::max(0., H.eigenvalues().real().maxCoeff());
+}
+
+}  // namespace
+
+double delayed_stiffness(const Model& model, const Branch& branch, const Method& method,
+                         const Analysis& analysis, const Equilibrium& state) {
+    const auto* linear = std::get_if<Linear>(&method.kind);
+    SteppingState<double> s(model, branch, analysis);
+    if (linear == nullptr || s.free <= 0) return 0;
+    s.q = state_of<double>(state.poses);
+    go_to(s, {1, state.load});
+    if (factorise_at(s, s.q, s.lambda) != Outcome::converged)
+        return std::numeric_limits<double>::quiet_NaN();
+    residual_at(s, s.q, s.lambda);  // λ = 0: solves for the reactions
+    s.lower.setZero();
+    back_substitute(s);
+    s.lambda = s.x.tail(s.m());
+    SaddleMatrix<double> G = s.system.M;
+    assemble_delayed(s, linear->follow, G);
+    return largest(s, G);
+}
+
+// The eigenvalue is sampled on the true branch and the interval around one is refined until it is
+// short relative to the load; linear interpolation then gives enough digits.
+std::optional<double> stability_limit(const Model& model, const Branch& branch,
+                                      const Method& method, const Analysis& analysis) {
+    constexpr int points = 64, passes = 24;
+    constexpr double near = 1. / 32;
+    if (!std::holds_alternative<Linear>(method.kind)) return std::nullopt;
+    Branch way = branch;
+    for (int pass = 0; pass < passes; ++pass) {
+        const EquilibriumPath path = solve(
+            model, way, {.method = find_method("adaptive").value(), .steps = points}, analysis);
+        double before = 0, at = 0;
+        const Equilibrium* beyond = nullptr;
+        double now = 0;
+        for (const Equilibrium& point : path.points) {
+            now = delayed_stiffness(model, branch, method, analysis, point);
+            if (now >= 1) {
+                beyond = &point;
+                break;
+            }
+            before = now;
+            at = point.load;
+        }
+        if (beyond == nullptr || beyond->load == 0)
+            return beyond ? std::optional(0.) : std::nullopt;
+        if (std::abs(beyond->load - at) <= near * std::abs(beyond->load))
+            return at + (1 - before) / (now - before) * (beyond->load - at);
+        way.to = beyond->load;
+    }
+    return std::nullopt;
+}
+
+}  // namespace elastocheck::recursive

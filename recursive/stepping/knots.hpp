@@ -1,0 +1,87 @@
+// Kinks of the force curves in a model, and on which side of each kink a configuration lies.
+//
+// A curve is smooth between two knots. At a knot either the rate (slope of the force) jumps, which
+// is a kink and happens where a stop closes, or the slope of the rate jumps, as in an interpolated
+// table. Methods with equal steps step across knots. They must not compare two steps with a kink
+// between them, because the second step has another tangent.
+#pragma once
+
+#include <cmath>
+
+#include "recursive/formula/elastic.hpp"
+
+namespace elastocheck::recursive {
+
+struct CurvePlace {
+    std::size_t element = 0;  // position in Model::elastics
+    std::size_t axis = 0;     // of its law
+    const Curve* curve = nullptr;
+    bool angle = false;         // whether the deflection is an angle [rad], else a length [m]
+    std::vector<double> kinks;  // the knots where the slope jumps
+};
+
+// Knots at which the slopes of the adjacent pieces differ by more than rounding.
+inline std::vector<double> kinks_of(const Curve& f) {
+    std::vector<double> kinks;
+    for (std::size_t k = 0; k < f.knots.size(); ++k) {
+        const double before = piece_of<double>(f, f.knots[k], static_cast<Piece>(k)).slope(),
+                     behind = piece_of<double>(f, f.knots[k], static_cast<Piece>(k + 1)).slope();
+        if (!(std::abs(behind - before) <= 1e-6 * std::max(std::abs(before), std::abs(behind))))
+            kinks.push_back(f.knots[k]);
+    }
+    return kinks;
+}
+
+inline std::vector<CurvePlace> curves_of(const Model& model) {
+    std::vector<CurvePlace> all;
+    const auto take = [&](std::size_t element, std::size_t axis, const ScalarLaw& law, bool angle) {
+        if (const auto* curve = std::get_if<Curve>(&law))
+            all.push_back({element, axis, curve, angle, kinks_of(*curve)});
+    };
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        std::visit(overloaded{
+                       [&](const AxialSpring& e) { take(k, 0, e.law, false); },
+                       [&](const Bushing& e) {
+                           if (const auto* law = std::get_if<PerAxis>(&e.law))
+                               for (std::size_t a = 0; a < 6; ++a) take(k, a, law->axis[a], a >= 3);
+                       },
+                   },
+                   model.elastics[k].kind);
+    return all;
+}
+
+// The argument of the curve at q and these inputs, [m] or [rad].
+template <class Real>
+Real deflection(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+                const CurvePlace& at) {
+    return std::visit(
+        overloaded{
+            [&](const AxialSpring& e) -> Real {
+                return deformation<Real>(e, q).length - inputs.rest[at.element].free_length;
+            },
+            [&](const Bushing& e) -> Real {
+                return strain<Real>(e, deformation<Real>(e, q))[static_cast<int>(at.axis)];
+            },
+        },
+        model.elastics[at.element].kind);
+}
+
+// Side of every kink: per curve, the number of kinks at or below its deflection. Fills `sides` and
+// returns whether any changed. Allocates nothing.
+template <class Real>
+bool find_sides(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+                const std::vector<CurvePlace>& curves, std::vector<int>& sides) {
+    bool changed = false;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        const auto& kinks = curves[c].kinks;
+        if (kinks.empty()) continue;
+        const Real x = deflection<Real>(model, inputs, q, curves[c]);
+        const auto side = static_cast<int>(std::count_if(
+            kinks.begin(), kinks.end(), [&](double kink) { return static_cast<Real>(kink) <= x; }));
+        changed = changed || side != sides[c];
+        sides[c] = side;
+    }
+    return changed;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,33 @@
+// Output of recorded points: stored in the path, or streamed to a visitor.
+// Streamed points share one preallocated buffer. The memory is allocated before the first step.
+#pragma once
+
+#include "recursive/stepping/stepping_state.hpp"
+
+namespace elastocheck::recursive {
+
+struct Recording {
+    EquilibriumPath& path;
+    const Visit& visit;
+    std::size_t points, reached = 0;
+
+    Recording(const Model& model, int recorded, EquilibriumPath& into, const Visit& visits)
+        : path(into), visit(visits), points(static_cast<std::size_t>(recorded)) {
+        const Equilibrium blank{0, std::vector<Pose>(model.bodies.size()),
+                                std::vector<Wrench>(model.joints.size()), 0};
+        path.points.assign(visit ? 1 : points, blank);
+    }
+
+    template <class Real>
+    void keep(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
+              const State<Real>& where_lambda_acts, const Vector<Real>& lambda, double load) {
+        Equilibrium& point = path.points[visit ? 0 : reached];
+        record<Real>(model, inputs, q, where_lambda_acts, lambda, load, point);
+        ++reached;
+        if (visit) visit(point);
+    }
+
+    void finish() { path.points.resize(visit ? 0 : reached); }
+};
+
+}  // namespace elastocheck::recursive

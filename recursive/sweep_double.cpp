@@ -1,8 +1,0 @@
-#include "recursive/sweep.hpp"
-
-namespace elastocheck::recursive {
-
-template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
-                                       const Visit&, Stop&);
-
-}  // namespace elastocheck::recursive

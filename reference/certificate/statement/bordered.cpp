@@ -1,0 +1,423 @@
+#include "reference/certificate/statement/bordered.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// A reciprocal condition number above the threshold by this factor needs no null space.
+constexpr double surely_regular = 1e3;
+constexpr int equilibration_sweeps = 8;
+// Relative to the largest entry of a null vector: smaller entries are rounding.
+constexpr double no_part = 1e-12;
+
+// D_r A D_c with rows and columns of size one (Ruiz 2001).
+struct Equilibrated {
+    MatrixXd A;
+    VectorXd D_r, D_c;
+};
+Equilibrated equilibrated(const MatrixXd& A) {
+    Equilibrated of{A, VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
+    const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
+    for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
+        const VectorXd r = of.A.cwiseAbs().rowwise().maxCoeff().unaryExpr(scale),
+                       c = of.A.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(scale);
+        of.A = r.asDiagonal() * of.A * c.asDiagonal();
+        of.D_r.array() *= r.array();
+        of.D_c.array() *= c.array();
+    }
+    return of;
+}
+
+// Null space of A: orthonormal columns x with A x = 0, up to `nothing`.
+MatrixXd null_space(const MatrixXd& A, double nothing) {
+    const Index n = A.cols();
+    if (A.size() == 0) return MatrixXd::Identity(n, n);
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
+    qr.setThreshold(nothing / std::max(nothing, A.rowwise().norm().maxCoeff()));
+    return MatrixXd(qr.householderQ()).rightCols(n - qr.rank());
+}
+// Scales the rows to size one and returns the factors.
+VectorXd normalise(MatrixXd& A) {
+    const VectorXd by =
+        A.rowwise().norm().unaryExpr([](double size) { return size > 0 ? 1 / size : 1; });
+    A = by.asDiagonal() * A;
+    return by;
+}
+
+// Removes rounding from the columns and scales them to size one.
+void clean(MatrixXd& columns) {
+    for (Index k = 0; k < columns.cols(); ++k) {
+        columns.col(k) /= columns.col(k).norm();
+        const double least = no_part * columns.col(k).cwiseAbs().maxCoeff();
+        columns.col(k) =
+            columns.col(k).unaryExpr([&](double x) { return std::abs(x) < least ? 0 : x; });
+    }
+}
+
+// δz of (δr, δπ), r over L: δp = ½ (0, δπ) p.
+MatrixXd tangent(const System& system, const VectorXd& z) {
+    MatrixXd T = MatrixXd::Zero(7 * system.bodies, 6 * system.bodies);
+    for (int b = 0; b < system.bodies; ++b) {
+        const int row = system.pose(b), col = 6 * b;
+        T.block<3, 3>(row, col) = system.length * Eigen::Matrix3d::Identity();
+        const double w = z[row + 3] / 2, x = z[row + 4] / 2, y = z[row + 5] / 2, u = z[row + 6] / 2;
+        T.block<4, 3>(row + 3, col + 3) << -x, -y, -u, w, u, -y, -u, w, x, y, -x, w;
+    }
+    return T;
+}
+
+// Combinations of (d / L, θ) that have stiffness in the law, one per row.
+MatrixXd resisted(const ElasticKind& kind, double length) {
+    MatrixXd rows = MatrixXd::Identity(6, 6);
+    const auto keep = [&](const std::array<bool, 6>& resists) {
+        Index count = 0;
+        for (Index k = 0; k < 6; ++k)
+            if (resists[static_cast<std::size_t>(k)]) rows.row(count++) = rows.row(k).eval();
+        rows.conservativeResize(count, 6);
+    };
+    std::visit(
+        overloaded{[&](const AxialSpring& spring) { keep({!is_zero(spring.law)}); },
+                   [&](const Bushing& bushing) {
+                       if (const auto* law = std::get_if<PerAxis>(&bushing.law)) {
+                           std::array<bool, 6> resists{};
+                           for (std::size_t k = 0; k < 6; ++k) resists[k] = !is_zero(law->axis[k]);
+                           return keep(resists);
+                       }
+                       // K = D Q diag(κ) Qᵀ D, D² its diagonal: independent of the ratio of
+                       // stiff to soft axes.
+                       const Matrix6& K = std::get<LinearStiffness>(bushing.law).K;
+                       const Vector6 D = K.diagonal().cwiseMax(0).cwiseSqrt(),
+                                     by = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
+                       const Eigen::SelfAdjointEigenSolver<Matrix6> modes(by.asDiagonal() * K *
+                                                                          by.asDiagonal());
+                       std::array<bool, 6> resists{};
+                       for (Index k = 0; k < 6; ++k)
+                           resists[static_cast<std::size_t>(k)] = modes.eigenvalues()[k] > no_part;
+                       rows = modes.eigenvectors().transpose() * D.asDiagonal();
+                       keep(resists);
+                   }},
+        kind);
+    for (Index k = 0; k < 3; ++k) rows.col(k) *= length;
+    return rows;
+}
+
+// Reference size of each row of Φ [m rows]: L for a length, 1 for a direction.
+VectorXd constraint_sizes(const System& system) {
+    VectorXd size(system.rows);
+    for (std::size_t c = 0; c < system.values.size(); ++c) {
+        const ConstraintKind& kind = system.model->constraints[c].kind;
+        size.segment(system.first_row[c], rows(kind))
+            .setConstant(is_direction(kind) ? 1 : system.length);
+    }
+    return size;
+}
+
+}  // namespace
+
+MatrixXd square(const std::vector<double>& J, Index n) {
+    return Eigen::Map<const RowMajor>(J.data(), n, n);
+}
+
+MatrixXd middle(const std::vector<Interval>& J, Index n) {
+    MatrixXd of(n, n);
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < n; ++j) of(i, j) = mid(J[static_cast<std::size_t>(i * n + j)]);
+    return of;
+}
+
+std::vector<double> doubles(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
+std::vector<Interval> thin(const VectorXd& x) { return {x.data(), x.data() + x.size()}; }
+std::vector<Interval> box(const VectorXd& middle, const VectorXd& radius) {
+    std::vector<Interval> y;
+    for (Index k = 0; k < middle.size(); ++k) y.push_back(around(middle[k], radius[k]));
+    return y;
+}
+
+double rounding_is_nothing(const System& system) {
+    constexpr double unit = std::numeric_limits<double>::epsilon(), operations = 1024;
+    return operations * unit * system.farthest / system.length;
+}
+
+VectorXd rounding_of_equations(const System& system, const VectorXd& z, double a) {
+    VectorXd size = VectorXd::Zero(system.n());
+    const Geometry fixed = geometry(system, doubles(z), a);
+    for (int b = 0; b < system.bodies; ++b) {
+        const double acts = fixed.acts[static_cast<std::size_t>(b)];
+        size.segment<3>(system.balance(b)).setConstant(acts);
+        size.segment<3>(system.balance(b) + 3).setConstant(acts * system.length);
+    }
+    size.segment(6 * system.bodies, system.rows) = constraint_sizes(system);
+    return rounding_is_nothing(system) * size;
+}
+
+Border border_at(const System& system, const VectorXd& z, double a, double nothing) {
+    const Index nb = 6 * system.bodies, poses = 7 * system.bodies, m = system.rows, n = system.n();
+    Border border{MatrixXd(n, 0), MatrixXd(n, 0)};
+    const auto at = evaluate(system, doubles(z), a, Slopes::yes);
+    const MatrixXd J = square(at.J, n);
+    if (!J.allFinite() || nb == 0) return border;
+    // The condition estimate is meaningless for a matrix with a pivot that is rounding.
+    const Eigen::PartialPivLU<MatrixXd> lu(equilibrated(J).A);
+    if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > nothing &&
+        lu.rcond() > surely_regular * nothing)
+        return border;
+
+    // Redundant rows, yᵀ Φ_q = 0: the reactions y are self-equilibrated.
+    const MatrixXd T = tangent(system, z);
+    MatrixXd G = J.block(nb, 0, m, poses) * T;
+    const VectorXd scale = normalise(G);
+    MatrixXd y = scale.asDiagonal() * null_space(G.transpose(), nothing);
+    clean(y);
+
+    // Z: motions without deformation. v = Z N: those of them that keep all forces in balance.
+    for (std::size_t e = 0; e < system.elements.size(); ++e) {
+        MatrixXd rows = resisted(system.model->elastics[e].kind, 1 / system.length) *
+                        deformation_slopes(system, e, doubles(z), a) * T;
+        if (!rows.allFinite()) return border;
+        normalise(rows);
+        G.conservativeResize(G.rows() + rows.rows(), nb);
+        G.bottomRows(rows.rows()) = rows;
+    }
+    const MatrixXd Z = null_space(G, nothing);
+    const Geometry fixed = geometry(system, doubles(z), a);
+    const double most = *std::ranges::max_element(fixed.acts);
+    VectorXd acts(nb), in_forces(nb);  // moments over L
+    for (Index k = 0; k < nb; ++k) {
+        const double on_body = fixed.acts[static_cast<std::size_t>(k / 6)];
+        acts[k] = on_body > 0 ? on_body : most > 0 ? most : 1;
+        in_forces[k] = k % 6 < 3 ? 1 : 1 / system.length;
+    }
+    const VectorXd weight = in_forces.cwiseQuotient(acts);
+    MatrixXd turned = weight.asDiagonal() * square(fixed.J, n).topLeftCorner(nb, poses) * T * Z;
+    MatrixXd C = (weight.asDiagonal() * J.block(0, poses, nb, m)).transpose();
+    normalise(C);
+    turned = null_space(C, nothing).transpose() * turned;  // part outside the range of reactions
+    const MatrixXd v = Z * null_space(turned, nothing);
+
+    const Index k = y.cols(), i = v.cols();
+    border.redundant = static_cast<int>(k);
+    border.U = border.g = MatrixXd::Zero(n, k + i);
+    border.U.block(nb, 0, m, k) = y;
+    border.g.block(poses, 0, m, k) = y;
+    MatrixXd U = v, g = T * v;  // U: wrenches conjugate to v, moments about each body's origin
+    for (Index row = 0; row < nb; ++row)
+        if (row % 6 < 3) U.row(row) *= system.length;
+    clean(U);
+    clean(g);
+    border.U.topRightCorner(nb, i) = U;
+    border.g.topRightCorner(poses, i) = g;
+
+    const Eigen::Map<const VectorXd> E(at.E.data(), n);
+    const VectorXd work = v.transpose() * (in_forces.asDiagonal() * E.head(nb)),
+                   of = v.cwiseAbs().transpose() * acts;
+    border.pushed = (work.array().abs() > nothing * of.array()).any();
+    const VectorXd gap = y.transpose() * E.segment(nb, m);
+    const VectorXd size = constraint_sizes(system);
+    border.open = (gap.array().abs() > nothing * (y.cwiseAbs().transpose() * size).array()).any();
+    return border;
+}
+
+namespace {
+
+// Names with at least a tenth of the largest share.
+std::string largest_named(const std::vector<double>& shares,
+                          const std::function<std::string(std::size_t)>& name) {
+    double most = 0;
+    for (const double share : shares) most = std::max(most, share);
+    std::string named;
+    for (std::size_t k = 0; k < shares.size(); ++k)
+        if (shares[k] > 0.1 * most)
+            named += fmt::format("{}'{}'", named.empty() ? "" : ", ", name(k));
+    return named;
+}
+
+}  // namespace
+
+std::string idle_bodies(const System& system, const Border& border) {
+    std::vector<double> shares(static_cast<std::size_t>(system.bodies));
+    for (int b = 0; b < system.bodies; ++b)
+        for (int k = border.redundant; k < border.count(); ++k)
+            shares[static_cast<std::size_t>(b)] =
+                std::max({shares[static_cast<std::size_t>(b)],
+                          border.g.block<3, 1>(system.pose(b), k).norm() / system.length,
+                          border.g.block<4, 1>(system.pose(b) + 3, k).norm()});
+    return largest_named(shares, [&](std::size_t b) { return system.model->bodies[b].name; });
+}
+
+std::string redundant_joints(const System& system, const Border& border) {
+    std::vector<double> shares(system.model->joints.size());
+    for (std::size_t c = 0; c < system.values.size(); ++c)
+        for (int n = 0; n < rows(system.model->constraints[c].kind); ++n)
+            for (int k = 0; k < border.redundant; ++k) {
+                double& share =
+                    shares[static_cast<std::size_t>(system.model->constraints[c].joint)];
+                share = std::max(share, std::abs(border.U(system.closure(c) + n, k)));
+            }
+    return largest_named(shares, [&](std::size_t j) { return system.model->joints[j].name; });
+}
+
+namespace {
+
+template <class S>
+S parameter(const Problem& problem, const std::vector<S>& y, const S& a) {
+    return problem.a_is_unknown ? y.back() : a;
+}
+template <class S>
+std::vector<S> poses_and_reactions(const Problem& problem, const std::vector<S>& y) {
+    return {y.begin(), y.begin() + problem.n()};
+}
+
+// Adds U μ and the gauges.
+template <class S>
+void add_border(const Problem& problem, const std::vector<S>& y, std::vector<S>& E) {
+    using B = Base<S>;
+    const Index n = problem.n(), k = problem.border.count();
+    const auto at = [](auto& all, Index i) -> auto& { return all[static_cast<std::size_t>(i)]; };
+    E.resize(static_cast<std::size_t>(problem.size()), constant<S>(0.));
+    for (Index j = 0; j < k; ++j)
+        for (Index i = 0; i < n; ++i) {
+            const double U = problem.border.U(i, j), g = problem.border.g(i, j);
+            if (U != 0) at(E, i) = at(E, i) + at(y, n + j) * B(U);
+            if (g != 0) at(E, n + j) = at(E, n + j) + (at(y, i) - B(problem.z_g[i])) * B(g);
+        }
+    if (!problem.a_is_unknown) return;
+    for (Index i = 0; i < problem.size(); ++i)
+        E.back() = E.back() + (at(y, i) - B(problem.y_t[i])) * B(problem.t[i]);
+}
+
+template <class S>
+std::vector<S> bordered_slopes(const Problem& problem, const Values<S>& of) {
+    const Index n = problem.n(), k = problem.border.count(), size = problem.size();
+    std::vector<S> J(static_cast<std::size_t>(size * size), constant<S>(0.));
+    const auto at = [&](Index i, Index j) -> S& {
+        return J[static_cast<std::size_t>(i * size + j)];
+    };
+    for (Index i = 0; i < n; ++i) {
+        for (Index j = 0; j < n; ++j) at(i, j) = of.J[static_cast<std::size_t>(i * n + j)];
+        for (Index j = 0; j < k; ++j) {
+            at(i, n + j) = constant<S>(problem.border.U(i, j));
+            at(n + j, i) = constant<S>(problem.border.g(i, j));
+        }
+        if (problem.a_is_unknown) at(i, size - 1) = of.E_a[static_cast<std::size_t>(i)];
+    }
+    for (Index i = 0; problem.a_is_unknown && i < size; ++i)
+        at(size - 1, i) = constant<S>(problem.t[i]);
+    return J;
+}
+
+}  // namespace
+
+template <class S>
+Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a) {
+    Values<S> of = evaluate_without_slopes(problem.system, poses_and_reactions(problem, y),
+                                           parameter(problem, y, a));
+    add_border(problem, y, of.E);
+    return of;
+}
+template <class S>
+Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes) {
+    if (slopes == Slopes::no) return evaluate_without_slopes(problem, y, a);
+    Values<S> of =
+        evaluate(problem.system, poses_and_reactions(problem, y), parameter(problem, y, a), slopes);
+    add_border(problem, y, of.E);
+    if (problem.size() > problem.n()) of.J = bordered_slopes(problem, of);
+    return of;
+}
+template Values<double> evaluate(const Problem&, const std::vector<double>&, const double&, Slopes);
+template Values<Interval> evaluate(const Problem&, const std::vector<Interval>&, const Interval&,
+                                   Slopes);
+template Values<SlopesAlong> evaluate(const Problem&, const std::vector<SlopesAlong>&,
+                                      const SlopesAlong&, Slopes);
+template Values<Along> evaluate_without_slopes(const Problem&, const std::vector<Along>&,
+                                               const Along&);
+template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vector<Jet<1>>&,
+                                                const Jet<1>&);
+
+MatrixXd inverse(const MatrixXd& J) {
+    const auto [A, D_r, D_c] = equilibrated(J);
+    return D_c.asDiagonal() * Eigen::PartialPivLU<MatrixXd>(A).inverse() * D_r.asDiagonal();
+}
+
+// Newton's method until its steps are rounding. The last two steps share an inverse, unless they do
+// not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
+// point this is rounding.
+Approximate newton(const Problem& problem, const VectorXd& from, double a) {
+    constexpr int most = 12, last = 2, most_anew = 3;
+    constexpr double close = 1e-7;  // relative to the model's size
+    const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
+    Approximate at{from, {}};
+    const auto size_of = [&](const VectorXd& step) {
+        double size = 0;
+        for (int b = 0; b < problem.system.bodies; ++b) {
+            const int k = problem.system.pose(b);
+            size = std::max({size, step.segment<3>(k).norm() / problem.system.length,
+                             step.segment<4>(k + 3).norm()});
+        }
+        return size;
+    };
+    double before = std::numeric_limits<double>::infinity();
+    bool share = false;
+    for (int step = 0, shared = 0, anew = 0; shared < last && (at.settled || step < most); ++step) {
+        const Values<double> of =
+            evaluate(problem, doubles(at.y), a, share ? Slopes::no : Slopes::yes);
+        if (!share) at.Y = inverse(square(of.J, problem.size()));
+        const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
+        if (!dy.allFinite()) return {at.y, at.Y, false};
+        at.y += dy;
+        const double size = size_of(dy);
+        at.settled = at.settled || size < close;
+        shared += share ? 1 : 0;
+        const bool other_side =
+            share && !(size < before / 4 || size < rounding) && anew < most_anew;
+        share = at.settled && !other_side;
+        if (other_side) shared = 0, ++anew;
+        before = size;
+    }
+    return at;
+}
+
+Worth worth(const Problem& problem, const VectorXd& y, double a) {
+    const System& system = problem.system;
+    const Border there = border_at(system, y.head(system.n()), a, rounding_is_nothing(system));
+    const bool alike =
+        there.redundant == problem.border.redundant && there.count() == problem.border.count();
+    return {alike && !there.pushed && !there.open, alike && there.pushed, alike && there.open};
+}
+
+Approach approach(const System& system, const VectorXd& z, double a) {
+    const auto from = [&](const VectorXd& start, double nothing) {
+        Problem problem{system, border_at(system, start, a, nothing), z, false, {}, {}};
+        VectorXd y = VectorXd::Zero(problem.size());
+        y.head(system.n()) = start;
+        Approximate found = newton(problem, y, a);
+        Worth there;
+        if (found.settled && found.y.allFinite()) there = worth(problem, found.y, a);
+        return Approach{std::move(problem), std::move(found), there};
+    };
+    // Whether the border at the end is that of the start.
+    const auto arrives = [](const Worth& there) {
+        return there.sound || there.pushed || there.open;
+    };
+    const double rounding = rounding_is_nothing(system);
+    Approach first = from(z, rounding);
+    if (arrives(first.there)) return first;
+    // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge
+    // along it. So these motions are held first, by the looser threshold.
+    Approach held = from(z, little_is_nothing);
+    if (!held.found.settled) return first;
+    Approach again = from(held.found.y.head(system.n()), rounding);
+    return arrives(again.there) ? again : held;
+}
+
+}  // namespace elastocheck::reference::certificate

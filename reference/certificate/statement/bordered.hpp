@@ -1,0 +1,98 @@
+// Bordered system: regular where the mechanism has redundant constraints or idle motions:
+//
+//   E(z; a) + U μ = 0        redundant rows: U in the rows Φ, and μ is the remaining gap
+//                            idle motions:   U in the balances, and μ is the wrench that holds them
+//   gᵀ (z - z_g)  = 0        gauge: load sharing of redundant joints and idle motions as at z_g
+//   tᵀ (y - y_t)  = 0        only where a is an unknown too
+//
+// Unknowns y = (z, μ, a).
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "reference/certificate/statement/system.hpp"
+
+namespace elastocheck::reference::certificate {
+
+struct Border {
+    Eigen::MatrixXd U, g;  // [n × k]: redundant rows first, then idle motions
+    int redundant = 0;
+    bool open = false,
+         pushed = false;  // at z: the redundant rows by more, an idle motion by more than rounding
+    int count() const { return static_cast<int>(U.cols()); }
+};
+
+// Structural rank deficiency at z, independent of the stiffnesses:
+//
+//   redundant rows  y: yᵀ Φ_q = 0
+//   idle motions    v: no constraint and no deformation with stiffness changes, G v = 0; and the
+//                   acting forces rotate with the bodies so that the balance is kept,
+//                   B v + Cᵀ δR = 0 for some change δR of the reactions
+//                   (B: slopes of the balances at constant elastic forces, Cᵀ: those of reactions)
+//
+// G contains no stiffness, and B only that of loads and preloads: a soft motion is not idle,
+// however stiff its neighbours are. Values count as zero below `nothing`, relative to a row of G of
+// size one and to the acting forces on the moving bodies. At an equilibrium this is the rounding of
+// stored coordinates (rounding_is_nothing), at a state near one it is larger (little_is_nothing).
+double rounding_is_nothing(const System& system);
+constexpr double little_is_nothing = 1e-5;
+// The rounding of each equation [n]: relative to the forces on its body, to L or to a direction.
+Eigen::VectorXd rounding_of_equations(const System& system, const Eigen::VectorXd& z, double a);
+Border border_at(const System& system, const Eigen::VectorXd& z, double a, double nothing);
+
+// Names of the bodies moved by the idle motions, and of the joints of the redundant rows:
+// "'strut'".
+std::string idle_bodies(const System& system, const Border& border);
+std::string redundant_joints(const System& system, const Border& border);
+
+struct Problem {
+    const System& system;
+    Border border;
+    Eigen::VectorXd z_g;  // [n]
+    bool a_is_unknown = false;
+    Eigen::VectorXd t, y_t;  // [n + k + 1]
+    int n() const { return system.n(); }
+    int size() const { return n() + border.count() + (a_is_unknown ? 1 : 0); }
+};
+
+// The equations and, by rows [size × size], their Jacobian. A parameter that is no unknown is the
+// given `a`.
+template <class S>
+Values<S> evaluate(const Problem& problem, const std::vector<S>& y, const S& a, Slopes slopes);
+template <class S>
+Values<S> evaluate_without_slopes(const Problem& problem, const std::vector<S>& y, const S& a);
+
+Eigen::MatrixXd square(const std::vector<double>& J, Eigen::Index n);
+Eigen::MatrixXd middle(const std::vector<Interval>& J, Eigen::Index n);
+std::vector<double> doubles(const Eigen::VectorXd& x);
+std::vector<Interval> box(const Eigen::VectorXd& middle, const Eigen::VectorXd& radius);
+std::vector<Interval> thin(const Eigen::VectorXd& x);
+
+// Floating-point inverse of the Jacobian, and Newton's method with it: start of the proof.
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& J);
+struct Approximate {
+    Eigen::VectorXd y;
+    Eigen::MatrixXd Y;
+    bool settled = false;
+};
+Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a);
+
+// Validity of a border at y. `sound`: all its motions and rows are structurally idle or redundant
+// there, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
+// rounding. Nothing is proved unless it is sound.
+struct Worth {
+    bool sound = false, pushed = false, open = false;
+};
+Worth worth(const Problem& problem, const Eigen::VectorXd& y, double a);
+
+// Floating-point equilibrium near z, if one was found, with the border evaluated at that
+// equilibrium.
+struct Approach {
+    Problem problem;
+    Approximate found;
+    Worth there;
+};
+Approach approach(const System& system, const Eigen::VectorXd& z, double a);
+
+}  // namespace elastocheck::reference::certificate

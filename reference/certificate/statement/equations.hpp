@@ -1,0 +1,260 @@
+// Equilibrium equations of elements, joints and loads on each body, for all number types of
+// numbers.hpp.
+//
+// Derived from the energies of mechanism.hpp by virtual work: a connection of two bodies does the
+// work
+//
+//   δW = F_i · δr_i + M_i · δπ_i + F_j · δr_j + M_j · δπ_j
+//
+// when the bodies move by δr and rotate by δπ (ground axes); M is about each body's own origin.
+#pragma once
+
+#include "elastocheck/model.hpp"
+#include "models/overloaded.hpp"
+#include "reference/certificate/interval/laws.hpp"
+#include "reference/certificate/interval/rotations.hpp"
+
+namespace elastocheck::reference::certificate {
+
+template <class T>
+struct Frame {
+    Vec<T> r;
+    Quat<T> p;
+};
+
+// Action on one body: a force, and a moment about its origin.
+template <class T>
+struct Acting {
+    Vec<T> force, moment;
+};
+template <class T>
+struct OnBoth {
+    Acting<T> i, j;
+};
+
+template <class T>
+Vec<T> lever(const Frame<T>& body, const Eigen::Vector3d& s_local) {
+    return turned(body.p, constant<T>(s_local));
+}
+template <class T>
+Vec<T> position(const Frame<T>& body, const Eigen::Vector3d& s_local) {
+    return body.r + lever(body, s_local);
+}
+
+// Force F at x and moment M on i, and the opposite of both on j.
+template <class T>
+OnBoth<T> opposed(const Vec<T>& F, const Vec<T>& M, const Vec<T>& x, const Frame<T>& i,
+                  const Frame<T>& j) {
+    return {{F, cross(x - i.r, F) + M}, {-F, -(cross(x - j.r, F) + M)}};
+}
+
+// ---- Elastic elements
+
+// Deformation that enters the law: ℓ - ℓ₀.
+template <class T>
+T deformation(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
+              const Frame<T>& j) {
+    using std::sqrt;
+    return sqrt(squared(position(j, spring.j.s_local) - position(i, spring.i.s_local))) -
+           free_length;
+}
+
+// δℓ = n · (δp_j - δp_i), n from i to j: tensile force f(ℓ - ℓ₀) on the ends.
+template <class T, class ForceOf>
+OnBoth<T> pulling(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
+                  const Frame<T>& j, const ForceOf& f) {
+    using std::sqrt;
+    const Vec<T> p_i = position(i, spring.i.s_local), D = position(j, spring.j.s_local) - p_i;
+    const T length = sqrt(squared(D));
+    const Vec<T> F = D * (f(T(length - free_length)) / length);
+    const Vec<T> none = constant<T>(Eigen::Vector3d::Zero());
+    return opposed(F, none, p_i, i, j);
+}
+template <class T>
+OnBoth<T> acting(const AxialSpring& spring, const T& free_length, const Frame<T>& i,
+                 const Frame<T>& j) {
+    return pulling(spring, free_length, i, j, [&](const T& x) { return force(spring.law, x); });
+}
+
+// Deformation of a bushing. Where it does not depend on the relative rotation of its markers
+// (`rotational` is false) the angles are not computed, and may be arbitrary.
+template <class T>
+struct Measured {
+    Vec<T> p_j, D;     // marker j, and from marker i to it
+    Quat<T> A_i, B;    // axes of marker i to ground axes; of j to i
+    Quat<T> half;      // C, C² = B: frame in the middle only
+    Quat<T> A_f;       // axes of the frame to ground axes
+    Angles<T> angles;  // rotational only
+    std::array<T, 6> e;
+};
+template <class T>
+Measured<T> measured(const Bushing& bushing, bool rotational, const Frame<T>& i,
+                     const Frame<T>& j) {
+    Measured<T> m;
+    m.p_j = position(j, bushing.j.s_local);
+    m.D = m.p_j - position(i, bushing.i.s_local);
+    m.A_i = product(i.p, direction_of<T>(bushing.i.A_local));
+    m.A_f = m.A_i;
+    const bool middle = bushing.formulation.frame == Formulation::Frame::middle;
+    m.angles.theta = constant<T>(Eigen::Vector3d::Zero());
+    if (rotational || middle)
+        m.B = product(conjugate(m.A_i), product(j.p, direction_of<T>(bushing.j.A_local)));
+    if (middle) {
+        m.half = half_of(short_way(m.B));
+        m.A_f = product(m.A_i, m.half);
+    }
+    if (rotational) m.angles = angles_of(bushing.formulation.angles, m.B);
+    const Vec<T> d = turned(conjugate(m.A_f), m.D);
+    m.e = {d[0], d[1], d[2], m.angles.theta[0], m.angles.theta[1], m.angles.theta[2]};
+    return m;
+}
+
+template <class T>
+std::array<T, 6> deformation(const Bushing& bushing, const Measured<T>& m) {
+    std::array<T, 6> e = m.e;
+    for (std::size_t k = 0; k < 6; ++k)
+        e[k] = e[k] - Base<T>(bushing.undeformed[static_cast<int>(k)]);
+    return e;
+}
+
+// (f, g) = ∂u/∂e + preload. With F = A_f f and the frame rotating by δπ_f,
+//
+//   f · δd = F · (δp_j - δp_i) - (D × F) · δπ_f        g · δθ = (A_i G g) · (δπ_j - δπ_i)
+//
+// The forces on the bodies are the opposite. Frame on i, δπ_f = δπ_i: on j, -F at p_j and -A_i G g;
+// on i, F at p_i with D × F, which equals F at p_j, and A_i G g.
+//
+// Frame in the middle: with C² = B and δB = w̃ B, w = A_iᵀ (δπ_j - δπ_i), C rotates by c where
+// c + C c = w, and (I + C)⁻¹ = ½ (I - t̃), t = tan(|θ|/4) θ/|θ| = v_C / w_C. So δπ_f = δπ_i + ½ A_i
+// (I - t̃) w. Of the moment D × F that is conjugate to the rotation of the frame, j has ½
+// (D × F + t × (D × F)), t in ground axes, and i the rest.
+//
+// Not conjugate: A_i g, or A_f g, which are equal for a frame on i. Without the offset moment, F
+// acts on i at p_i, and D × F on neither body.
+template <class T>
+OnBoth<T> acting(const Bushing& bushing, const std::array<T, 6>& u, const Measured<T>& m,
+                 bool rotational, const Frame<T>& i, const Frame<T>& j) {
+    const Formulation& formulation = bushing.formulation;
+    const Vec<T> F = turned(m.A_f, Vec<T>{{u[0], u[1], u[2]}});
+    Vec<T> M = constant<T>(Eigen::Vector3d::Zero());
+    if (rotational) {
+        Vec<T> g{{u[3], u[4], u[5]}};
+        if (formulation.conjugate)
+            g = m.angles.G[0] * u[3] + m.angles.G[1] * u[4] + m.angles.G[2] * u[5];
+        M = turned(m.A_i, g);
+    }
+    if (!formulation.offset_moment) {
+        OnBoth<T> on = opposed(F, M, m.p_j, i, j);
+        on.i.moment = on.i.moment - cross(m.D, F);
+        return on;
+    }
+    if (formulation.frame == Formulation::Frame::middle) {
+        const Vec<T> offset = cross(m.D, F);
+        const Vec<T> t{{m.half.v[0] / m.half.w, m.half.v[1] / m.half.w, m.half.v[2] / m.half.w}};
+        const T half = constant<T>(0.5);
+        M = M - (offset + cross(turned(m.A_i, t), offset)) * half;
+    }
+    return opposed(F, M, m.p_j, i, j);
+}
+
+// ---- Constraints
+
+// One constraint row: its value, and the action of a unit reaction [N or N·m], from the rates of Φ
+// by virtual work.
+template <class T>
+struct Row {
+    T Phi;
+    OnBoth<T> reaction;
+};
+template <class T>
+using Rows = std::array<Row<T>, 3>;
+
+// δΦ = n · (δp_i - δp_j), p a common place of both: n at p on i, -n on j.
+template <class T>
+Row<T> of_points(const T& Phi, const Vec<T>& n, const Vec<T>& p, const Frame<T>& i,
+                 const Frame<T>& j) {
+    return {Phi, opposed(n, constant<T>(Eigen::Vector3d::Zero()), p, i, j)};
+}
+// δ(u_i · u_j) = (u_i × u_j) · (δπ_i - δπ_j)
+template <class T>
+Row<T> of_directions(const T& Phi, const Vec<T>& u_i, const Vec<T>& u_j) {
+    const Vec<T> about = cross(u_i, u_j), none = constant<T>(Eigen::Vector3d::Zero());
+    return {Phi, {{none, about}, {none, -about}}};
+}
+
+template <class T>
+Rows<T> rows_of(const CoincidentPoints& c, const T&, const Frame<T>& i, const Frame<T>& j) {
+    const Vec<T> p = position(i, c.i.s_local), gap = p - position(j, c.j.s_local);
+    Rows<T> rows;
+    for (std::size_t k = 0; k < 3; ++k)
+        rows[k] =
+            of_points(gap[k], constant<T>(Eigen::Vector3d::Unit(static_cast<int>(k))), p, i, j);
+    return rows;
+}
+// The normal rotates with j: δ(n · (p_i - p_j)) = n · (δp_i - δp_j*), p_j* the point of j at the
+// place of p_i.
+template <class T>
+Rows<T> rows_of(const PointInPlane& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
+    const Vec<T> p = position(i, c.i.s_local), n = lever(j, c.normal_j.u_local);
+    return {of_points(T(dot(n, p - position(j, c.j.s_local)) - value), n, p, i, j)};
+}
+template <class T>
+Rows<T> rows_of(const PerpendicularDirections& c, const T&, const Frame<T>& i, const Frame<T>& j) {
+    const Vec<T> u_i = lever(i, c.i.u_local), u_j = lever(j, c.j.u_local);
+    return {of_directions(dot(u_i, u_j), u_i, u_j)};
+}
+template <class T>
+Rows<T> rows_of(const DistanceBetween& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
+    using std::sqrt;
+    const Vec<T> p = position(i, c.i.s_local), bar = p - position(j, c.j.s_local);
+    const T length = sqrt(squared(bar));
+    const Vec<T> n{{bar[0] / length, bar[1] / length, bar[2] / length}};
+    return {of_points(T(length - value), n, p, i, j)};
+}
+template <class T>
+Rows<T> rows_of(const DirectionAtAngle& c, const T& value, const Frame<T>& i, const Frame<T>& j) {
+    const Turned<T> at = cos_sin_of(value);
+    const Vec<T> u_i = lever(i, c.i.u_local),
+                 across = lever(j, c.y_j.u_local) * at.cos - lever(j, c.j.u_local) * at.sin;
+    return {of_directions(dot(u_i, across), u_i, across)};
+}
+
+inline bool is_direction(const ConstraintKind& kind) {
+    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
+                                 [](const PointInPlane&) { return false; },
+                                 [](const PerpendicularDirections&) { return true; },
+                                 [](const DistanceBetween&) { return false; },
+                                 [](const DirectionAtAngle&) { return true; }},
+                      kind);
+}
+
+// ---- Loads of unit factor
+
+template <class T>
+Acting<T> acting(const DeadForce& load, const Frame<T>& body) {
+    const Vec<T> f = constant<T>(load.f);
+    return {f, cross(lever(body, load.at.s_local), f)};
+}
+template <class T>
+Acting<T> acting(const DeadMoment& load, const Frame<T>&) {
+    return {constant<T>(Eigen::Vector3d::Zero()), constant<T>(load.m)};
+}
+template <class T>
+Acting<T> acting(const FollowerForce& load, const Frame<T>& body) {
+    const Vec<T> f = lever(body, load.f_local);
+    return {f, cross(lever(body, load.at.s_local), f)};
+}
+template <class T>
+Acting<T> acting(const FollowerMoment& load, const Frame<T>& body) {
+    return {constant<T>(Eigen::Vector3d::Zero()), lever(body, load.m_local)};
+}
+
+inline BodyId body_of(const LoadKind& load) {
+    return std::visit(overloaded{[](const DeadForce& l) { return l.at.body; },
+                                 [](const DeadMoment& l) { return l.body; },
+                                 [](const FollowerForce& l) { return l.at.body; },
+                                 [](const FollowerMoment& l) { return l.body; }},
+                      load);
+}
+
+}  // namespace elastocheck::reference::certificate

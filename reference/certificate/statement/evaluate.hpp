@@ -1,0 +1,391 @@
+// Assembly of the system and its Jacobian by forward automatic differentiation, part by part. A
+// part is an element, a constraint or a load with at most two bodies; its derivatives are taken
+// with respect to their 7 or 14 coordinates and a.
+#pragma once
+
+#include "reference/certificate/statement/system.hpp"
+
+namespace elastocheck::reference::certificate {
+
+// Derivative slots of a part: the poses of its bodies, and a as the last.
+struct Slots {
+    BodyId i = ground, j = ground;
+    int at_i() const { return 0; }
+    int at_j() const { return i == ground ? 0 : 7; }
+    bool two() const { return i != ground && j != ground; }
+};
+
+template <class S>
+struct Assembly {
+    const System& system;
+    const std::vector<S>& z;
+    const S& a;
+    Values<S> out;
+    bool fixed_forces = false;  // elastic forces are constant: slopes of the geometry alone
+    // Σ |force| + |moment| / L of the parts on each body; not computed if empty
+    std::vector<double> acts = {};
+
+    // ---- Bodies, with or without slopes
+
+    template <class T>
+    T unknown(int k, int slot) const {
+        if constexpr (std::is_same_v<T, S>) {
+            return z[static_cast<std::size_t>(k)];
+        } else {
+            T x;
+            x.v = z[static_cast<std::size_t>(k)];
+            x.d.at(static_cast<std::size_t>(slot)) = constant<S>(1.);
+            return x;
+        }
+    }
+    template <class T>
+    Frame<T> frame(BodyId body, int slot) const {
+        const T one = constant<T>(1.), zero = constant<T>(0.);
+        if (body == ground)
+            return {constant<T>(Eigen::Vector3d(-system.c)), {one, {{zero, zero, zero}}}};
+        const int k = system.pose(body);
+        const auto x = [&](int q) { return unknown<T>(k + q, slot + q); };
+        return {{{x(0), x(1), x(2)}}, {x(3), {{x(4), x(5), x(6)}}}};
+    }
+    template <class T>
+    T parameter() const {
+        if constexpr (std::is_same_v<T, S>) {
+            return a;
+        } else {
+            T x;
+            x.v = a;
+            x.d.back() = constant<S>(1.);
+            return x;
+        }
+    }
+
+    // ---- Sums
+
+    void add(const Slots&, int row, const S& x) {
+        S& E = out.E[static_cast<std::size_t>(row)];
+        E = E + x;
+    }
+    template <int N>
+    void add(const Slots& slots, int row, const Dual<S, N>& x) {
+        add(slots, row, x.v);
+        const auto columns = [&](BodyId body, int from) {
+            if (body == ground) return;
+            for (int q = 0; q < 7; ++q)
+                add_slope(row, system.pose(body) + q, x.d.at(static_cast<std::size_t>(from + q)));
+        };
+        columns(slots.i, slots.at_i());
+        columns(slots.j, slots.at_j());
+        if (!is_zero(x.d.back())) {
+            S& E_a = out.E_a[static_cast<std::size_t>(row)];
+            E_a = E_a + x.d.back();
+        }
+    }
+    void add_slope(int row, int column, const S& d) {
+        if (is_zero(d)) return;
+        S& J = out.J[static_cast<std::size_t>(row) * static_cast<std::size_t>(system.n()) +
+                     static_cast<std::size_t>(column)];
+        J = J + d;
+    }
+    static const S& value(const S& x) { return x; }
+    template <int N>
+    static const S& value(const Dual<S, N>& x) {
+        return x.v;
+    }
+
+    template <class T>
+    void count(BodyId body, const Acting<T>& on, double times = 1) {
+        if (acts.empty()) return;
+        double force = 0, moment = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            force = std::max(force, mag(range(on.force[k])));
+            moment = std::max(moment, mag(range(on.moment[k])));
+        }
+        acts[static_cast<std::size_t>(body)] += std::abs(times) * (force + moment / system.length);
+    }
+    template <class T>
+    void add(const Slots& slots, BodyId body, const Acting<T>& on) {
+        if (body == ground) return;
+        count(body, on);
+        const int row = system.balance(body);
+        for (int k = 0; k < 3; ++k) {
+            add(slots, row + k, on.force[static_cast<std::size_t>(k)]);
+            add(slots, row + 3 + k, on.moment[static_cast<std::size_t>(k)]);
+        }
+    }
+    // Adds the action times R, the unknown in column `of`.
+    template <class T>
+    void add_times(const Slots& slots, BodyId body, const Acting<T>& on, const S& R, int of) {
+        if (body == ground) return;
+        count(body, on, mag(range(R)));
+        const int row = system.balance(body);
+        const auto one = [&](int to, const T& x) {
+            add(slots, to, T(x * R));
+            if constexpr (!std::is_same_v<T, S>) add_slope(to, of, x.v);
+        };
+        for (int k = 0; k < 3; ++k) {
+            one(row + k, on.force[static_cast<std::size_t>(k)]);
+            one(row + 3 + k, on.moment[static_cast<std::size_t>(k)]);
+        }
+    }
+
+    // ---- Parts
+
+    template <class T>
+    void element(std::size_t e) {
+        const ElementPath& path = system.elements[e];
+        std::visit(
+            [&](const auto& kind) {
+                const Slots slots{kind.i.body, kind.j.body};
+                const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
+                if (std::is_same_v<std::decay_t<decltype(kind)>, AxialSpring> && path.apart[0])
+                    return;
+                const OnBoth<T> on = acting_at(kind, path, i, j);
+                add(slots, slots.i, on.i);
+                add(slots, slots.j, on.j);
+            },
+            system.model->elastics[e].kind);
+    }
+    template <class T>
+    OnBoth<T> acting_at(const AxialSpring& spring, const ElementPath& path, const Frame<T>& i,
+                        const Frame<T>& j) {
+        return pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+            const T f = force(spring.law, x);
+            return fixed_forces ? constant_of(f) : f;
+        });
+    }
+    template <class T>
+    OnBoth<T> acting_at(const Bushing& bushing, const ElementPath& path, const Frame<T>& i,
+                        const Frame<T>& j) {
+        const Measured<T> m = measured(bushing, path.rotational, i, j);
+        std::array<T, 6> u = force(bushing.law, deformation(bushing, m), path.apart);
+        for (std::size_t k = 0; k < 6; ++k) u[k] = u[k] + path.preload[k].at(parameter<T>());
+        if (fixed_forces) {
+            for (T& x : u) x = constant_of(x);
+            u = turned_back(u, path, m.A_f, -1);
+        }
+        return acting(bushing, u, m, path.rotational, i, j);
+    }
+
+    static S constant_of(const S& x) { return x; }
+    template <int N>
+    static Dual<S, N> constant_of(const Dual<S, N>& x) {
+        Dual<S, N> of;
+        of.v = x.v;
+        return of;
+    }
+
+    static Quat<S> constant_of(const Quat<S>& q) { return q; }
+    template <int N>
+    static Quat<Dual<S, N>> constant_of(const Quat<Dual<S, N>>& q) {
+        return {constant_of(q.w),
+                {{constant_of(q.v[0]), constant_of(q.v[1]), constant_of(q.v[2])}}};
+    }
+    // Slopes of components in the frame's axes as if the frame did not rotate about the axes of
+    // `turns_freely` (`by` = +1), or rotated about these alone (-1): x' ± ω × x.
+    template <class T>
+    static std::array<T, 6> turned_back(std::array<T, 6> x, const ElementPath& path,
+                                        const Quat<T>& A_f, double by) {
+        // zero, with the slopes of half the rotation
+        const Vec<T> half_turn = product(conjugate(constant_of(A_f)), A_f).v;
+        const std::array<T, 6> from = x;
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!path.turns_freely[k]) continue;
+            const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+            const T turn = half_turn[k] * Base<T>(2 * by);
+            x[i] = x[i] - turn * constant_of(from[j]);
+            x[j] = x[j] + turn * constant_of(from[i]);
+        }
+        return x;
+    }
+
+    // Deformation of a separated law, and the actions of its unit force.
+    template <class T>
+    struct OfOne {
+        T x;
+        OnBoth<T> on;
+    };
+    template <class T>
+    OfOne<T> of_one(const AxialSpring& spring, const ElementPath& path, std::size_t,
+                    const Frame<T>& i, const Frame<T>& j) {
+        OfOne<T> of;
+        of.on = pulling(spring, path.free_length.at(parameter<T>()), i, j, [&](const T& x) {
+            of.x = x;
+            return constant<T>(1.);
+        });
+        return of;
+    }
+    template <class T>
+    OfOne<T> of_one(const Bushing& bushing, const ElementPath& path, std::size_t axis,
+                    const Frame<T>& i, const Frame<T>& j) {
+        const Measured<T> m = measured(bushing, path.rotational, i, j);
+        std::array<T, 6> u;
+        u.fill(constant<T>(0.));
+        u[axis] = constant<T>(1.);
+        return {deformation(bushing, m)[axis], acting(bushing, u, m, path.rotational, i, j)};
+    }
+    template <class T>
+    void corner(std::size_t c) {
+        const Apart& of = system.apart[c];
+        const ScalarLaw& law = law_of(system, of);
+        const int to = system.corner(c), x_at = system.deformation(c), f_at = x_at + 1;
+        const S &x = z[static_cast<std::size_t>(x_at)], &f = z[static_cast<std::size_t>(f_at)];
+        std::visit(
+            [&](const auto& kind) {
+                const Slots slots{kind.i.body, kind.j.body};
+                const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
+                const OfOne<T> one = of_one(kind, system.elements[of.element], of.axis, i, j);
+                add(slots, to, T(one.x - x));
+                add_times(slots, slots.i, one.on.i, f, f_at);
+                add_times(slots, slots.j, one.on.j, f, f_at);
+            },
+            system.model->elastics[of.element].kind);
+        if constexpr (std::is_same_v<T, S>) {
+            add({}, to + 1, f - force(law, x));
+        } else {
+            Dual<S, 1> at;
+            at.v = x;
+            at.d[0] = constant<S>(1.);
+            at = force(law, at);
+            add({}, to + 1, f - at.v);
+            add_slope(to, x_at, constant<S>(-1.));
+            add_slope(to + 1, x_at, -at.d[0]);
+            add_slope(to + 1, f_at, constant<S>(1.));
+        }
+    }
+
+    template <class T>
+    void constraint(std::size_t c) {
+        const ConstraintKind& kind = system.model->constraints[c].kind;
+        std::visit(
+            [&](const auto& k) {
+                const Slots slots{k.i.body, k.j.body};
+                const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
+                const Rows<T> rows = rows_of(k, system.values[c].at(parameter<T>()), i, j);
+                for (int n = 0; n < elastocheck::rows(kind); ++n) {
+                    const Row<T>& row = rows[static_cast<std::size_t>(n)];
+                    const int of = system.reaction(c) + n;
+                    const S& R = z[static_cast<std::size_t>(of)];
+                    add(slots, system.closure(c) + n, row.Phi);
+                    add_times(slots, slots.i, row.reaction.i, R, of);
+                    add_times(slots, slots.j, row.reaction.j, R, of);
+                }
+            },
+            kind);
+    }
+
+    template <class T>
+    void load(const LoadPath& path) {
+        const Slots slots{body_of(path.kind), ground};
+        const auto body = frame<T>(slots.i, 0);
+        const T factor = path.factor.at(parameter<T>());
+        std::visit(
+            [&](const auto& kind) {
+                const Acting<T> on = acting(kind, body);
+                add(slots, slots.i, Acting<T>{on.force * factor, on.moment * factor});
+            },
+            path.kind);
+    }
+
+    template <class T>
+    void norm(BodyId body) {
+        const Slots slots{body, ground};
+        const Quat<T> p = frame<T>(body, 0).p;
+        add(slots, system.norm(body), T(sqr(p.w) + squared(p.v) - Base<T>(1.)));
+    }
+};
+
+// Assembles all parts; `One` and `Two` are the number types for parts with one and with two bodies.
+template <class S, class One, class Two>
+void assemble(Assembly<S>& sum, Slopes slopes) {
+    const System& system = sum.system;
+    const Model& model = *system.model;
+    const auto n = static_cast<std::size_t>(system.n());
+    sum.out.E.assign(n, constant<S>(0.));
+    if (slopes == Slopes::yes) {
+        sum.out.J.assign(n * n, constant<S>(0.));
+        sum.out.E_a.assign(n, constant<S>(0.));
+    }
+    const auto two = [](const auto& kind) {
+        return std::visit([](const auto& k) { return Slots{k.i.body, k.j.body}.two(); }, kind);
+    };
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        two(model.elastics[e].kind) ? sum.template element<Two>(e) : sum.template element<One>(e);
+    for (std::size_t c = 0; c < system.apart.size(); ++c)
+        two(model.elastics[system.apart[c].element].kind) ? sum.template corner<Two>(c)
+                                                          : sum.template corner<One>(c);
+    for (std::size_t c = 0; c < model.constraints.size(); ++c)
+        two(model.constraints[c].kind) ? sum.template constraint<Two>(c)
+                                       : sum.template constraint<One>(c);
+    for (const LoadPath& load : system.loads)
+        if (body_of(load.kind) != ground) sum.template load<One>(load);
+    for (BodyId body = 0; body < system.bodies; ++body) sum.template norm<One>(body);
+}
+
+template <class S>
+Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a) {
+    Assembly<S> sum{system, z, a, {}};
+    assemble<S, S, S>(sum, Slopes::no);
+    return std::move(sum.out);
+}
+template <class S>
+Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes) {
+    if (slopes == Slopes::no) return evaluate_without_slopes(system, z, a);
+    Assembly<S> sum{system, z, a, {}};
+    assemble<S, Dual<S, 8>, Dual<S, 15>>(sum, slopes);
+    return std::move(sum.out);
+}
+
+// ---- Wrenches of joints
+
+// Action on the joint's body i, moved from the body's origin to the joint's point.
+template <class S>
+JointWrench<S> about_joint(const Assembly<S>& at, const ModelJoint& joint, const Acting<S>& on) {
+    const Vec<S> arm = position(at.template frame<S>(joint.at.body, 0), joint.at.s_local) -
+                       at.template frame<S>(joint.i, 0).r;
+    return {on.force, on.moment - cross(arm, on.force)};
+}
+
+template <class S>
+std::vector<JointWrench<S>> unit_wrenches(const System& system, int joint, const std::vector<S>& z,
+                                          const S& a) {
+    const Assembly<S> at{system, z, a, {}};
+    const ModelJoint& of = system.model->joints[static_cast<std::size_t>(joint)];
+    std::vector<JointWrench<S>> columns;
+    for (std::size_t c = 0; c < system.model->constraints.size(); ++c) {
+        const Constraint& constraint = system.model->constraints[c];
+        if (constraint.joint != joint) continue;
+        std::visit(
+            [&](const auto& kind) {
+                const auto i = at.template frame<S>(kind.i.body, 0),
+                           j = at.template frame<S>(kind.j.body, 0);
+                const Rows<S> rows = rows_of(kind, system.values[c].at(a), i, j);
+                for (int n = 0; n < elastocheck::rows(constraint.kind); ++n) {
+                    const OnBoth<S>& reaction = rows[static_cast<std::size_t>(n)].reaction;
+                    columns.push_back(
+                        about_joint(at, of, kind.i.body == of.i ? reaction.i : reaction.j));
+                }
+            },
+            constraint.kind);
+    }
+    return columns;
+}
+
+template <class S>
+std::vector<JointWrench<S>> wrenches(const System& system, const std::vector<S>& z, const S& a) {
+    std::vector<JointWrench<S>> all;
+    for (int joint = 0; joint < static_cast<int>(system.model->joints.size()); ++joint) {
+        const auto columns = unit_wrenches(system, joint, z, a);
+        const auto rows = rows_of_joint(system, joint);
+        JointWrench<S> sum{constant<S>(Eigen::Vector3d::Zero()),
+                           constant<S>(Eigen::Vector3d::Zero())};
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const S& R = z[static_cast<std::size_t>(7 * system.bodies + rows[k])];
+            sum.force = sum.force + columns[k].force * R;
+            sum.moment = sum.moment + columns[k].moment * R;
+        }
+        all.push_back(sum);
+    }
+    return all;
+}
+
+}  // namespace elastocheck::reference::certificate

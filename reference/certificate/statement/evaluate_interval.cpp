@@ -1,0 +1,38 @@
+#include "reference/certificate/statement/evaluate.hpp"
+
+namespace elastocheck::reference::certificate {
+
+template Values<Interval> evaluate_without_slopes(const System&, const std::vector<Interval>&,
+                                                  const Interval&);
+template Values<Interval> evaluate(const System&, const std::vector<Interval>&, const Interval&,
+                                   Slopes);
+template std::vector<JointWrench<Interval>> wrenches(const System&, const std::vector<Interval>&,
+                                                     const Interval&);
+template std::vector<JointWrench<Interval>> unit_wrenches(const System&, int,
+                                                          const std::vector<Interval>&,
+                                                          const Interval&);
+
+std::vector<std::array<Interval, 6>> deformations(const System& system,
+                                                  const std::vector<Interval>& z,
+                                                  const Interval& a) {
+    const Assembly<Interval> at{system, z, a, {}};
+    std::vector<std::array<Interval, 6>> all;
+    for (std::size_t e = 0; e < system.elements.size(); ++e)
+        all.push_back(
+            std::visit(overloaded{[&](const AxialSpring& spring) {
+                                      return std::array<Interval, 6>{
+                                          deformation(spring, system.elements[e].free_length.at(a),
+                                                      at.frame<Interval>(spring.i.body, 0),
+                                                      at.frame<Interval>(spring.j.body, 0))};
+                                  },
+                                  [&](const Bushing& bushing) {
+                                      return deformation(
+                                          bushing, measured(bushing, system.elements[e].rotational,
+                                                            at.frame<Interval>(bushing.i.body, 0),
+                                                            at.frame<Interval>(bushing.j.body, 0)));
+                                  }},
+                       system.model->elastics[e].kind));
+    return all;
+}
+
+}  // namespace elastocheck::reference::certificate

@@ -1,0 +1,256 @@
+#include "reference/certificate/statement/system.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "models/branch.hpp"
+
+namespace elastocheck::reference::certificate {
+namespace {
+
+using Eigen::Vector3d;
+
+double value_of(const ConstraintKind& kind) {
+    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
+                                 [](const PointInPlane& c) { return c.offset; },
+                                 [](const PerpendicularDirections&) { return 0.0; },
+                                 [](const DistanceBetween& c) { return c.length; },
+                                 [](const DirectionAtAngle& c) { return c.angle; }},
+                      kind);
+}
+
+ElementPath undriven(const ElasticKind& kind) {
+    ElementPath path;
+    std::visit(
+        overloaded{[&](const AxialSpring& spring) { path.free_length.start = spring.free_length; },
+                   [&](const Bushing& bushing) {
+                       for (std::size_t k = 0; k < 6; ++k)
+                           path.preload[k].start = bushing.preload[static_cast<int>(k)];
+                   }},
+        kind);
+    return path;
+}
+
+// Adds `times` (start + rate·a) of a driver.
+void add(Affine& to, const Driver& driver, double times) {
+    to.start += Interval(times) * Interval(driver.start);
+    to.rate += Interval(times) * Interval(driver.rate);
+}
+
+template <class Kind>
+void expect_kind(const Model& model, int elastic, const char* has_no) {
+    const auto& element = model.elastics.at(static_cast<std::size_t>(elastic));
+    if (!std::holds_alternative<Kind>(element.kind))
+        throw std::invalid_argument("element '" + element.name + "' has no " + has_no +
+                                    " to be driven");
+}
+
+void set_paths(System& system) {
+    const Model& model = *system.model;
+    for (const auto& constraint : model.constraints) {
+        system.values.push_back({value_of(constraint.kind), 0.});
+        system.first_row.push_back(system.rows);
+        system.rows += rows(constraint.kind);
+    }
+    for (const auto& elastic : model.elastics) system.elements.push_back(undriven(elastic.kind));
+    for (const auto& load : model.static_loads) system.loads.push_back({load.kind, {1., 0.}});
+    for (const auto& driver : system.branch->drivers)
+        std::visit(
+            overloaded{
+                [&](const Load& load) {
+                    system.loads.push_back({load.kind, {driver.start, driver.rate}});
+                },
+                [&](const Motion& motion) {
+                    const auto& joint = model.joints.at(static_cast<std::size_t>(motion.joint));
+                    if (joint.driven < 0)
+                        throw std::invalid_argument("joint '" + joint.name +
+                                                    "' has no offset to be driven");
+                    add(system.values[static_cast<std::size_t>(joint.driven)], driver, 1);
+                },
+                [&](const FreeLength& length) {
+                    expect_kind<AxialSpring>(model, length.elastic, "free length");
+                    add(system.elements[static_cast<std::size_t>(length.elastic)].free_length,
+                        driver, 1);
+                },
+                [&](const Preload& preload) {
+                    expect_kind<Bushing>(model, preload.elastic, "preload");
+                    auto& path = system.elements[static_cast<std::size_t>(preload.elastic)];
+                    for (std::size_t k = 0; k < 6; ++k)
+                        add(path.preload[k], driver, preload.direction[static_cast<int>(k)]);
+                }},
+            driver.what);
+}
+
+bool resists_rotation(const SpatialLaw& law) {
+    return std::visit(
+        overloaded{[](const LinearStiffness& u) {
+                       return (u.K.bottomRows<3>().array() != 0).any() ||
+                              (u.K.rightCols<3>().array() != 0).any();
+                   },
+                   [](const PerAxis& u) {
+                       return !(is_zero(u.axis[3]) && is_zero(u.axis[4]) && is_zero(u.axis[5]));
+                   }},
+        law);
+}
+
+// Whether the law is isotropic in two axes of the frame: k (d_i² + d_j²) / 2.
+bool is_round(const Bushing& bushing, const ElementPath& path, std::size_t i, std::size_t j) {
+    const auto I = static_cast<Eigen::Index>(i), J = static_cast<Eigen::Index>(j);
+    for (const std::size_t k : {i, j})
+        if (bushing.undeformed[static_cast<Eigen::Index>(k)] != 0 ||
+            !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate))
+            return false;
+    return std::visit(
+        overloaded{[&](const LinearStiffness& u) {
+                       Matrix6 coupled = u.K;
+                       coupled(I, I) = coupled(J, J) = 0;
+                       return u.K(I, I) == u.K(J, J) && (coupled.row(I).array() == 0).all() &&
+                              (coupled.row(J).array() == 0).all() &&
+                              (coupled.col(I).array() == 0).all() &&
+                              (coupled.col(J).array() == 0).all();
+                   },
+                   [&](const PerAxis& u) {
+                       const auto *of_i = std::get_if<LinearRate>(&u.axis[i]),
+                                  *of_j = std::get_if<LinearRate>(&u.axis[j]);
+                       return of_i != nullptr && of_j != nullptr && of_i->k == of_j->k;
+                   }},
+        bushing.law);
+}
+
+bool has_energy(const LoadKind& load) {
+    return std::visit(
+        overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
+                   [](const FollowerForce&) { return false; },
+                   [](const FollowerMoment&) { return false; }},
+        load);
+}
+
+void set_formulations(System& system) {
+    for (const auto& load : system.loads)
+        if (body_of(load.kind) != ground && !has_energy(load.kind)) system.conservative = false;
+    for (std::size_t e = 0; e < system.elements.size(); ++e) {
+        const auto& elastic = system.model->elastics[e];
+        const auto* bushing = std::get_if<Bushing>(&elastic.kind);
+        if (bushing == nullptr) continue;
+        ElementPath& path = system.elements[e];
+        path.rotational = resists_rotation(bushing->law);
+        for (std::size_t k = 3; k < 6; ++k)
+            path.rotational |= !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate);
+        for (std::size_t k = 0; k < 3; ++k)
+            path.turns_freely[k] = is_round(*bushing, path, (k + 1) % 3, (k + 2) % 3);
+        const Formulation& f = bushing->formulation;
+        if (f.frame == Formulation::Frame::on_j ||
+            (f.frame == Formulation::Frame::middle && !f.conjugate))
+            throw std::invalid_argument("bushing '" + elastic.name +
+                                        "' has a frame that this leg has no law for");
+        if (!elastocheck::has_energy(f)) system.conservative = false;
+    }
+}
+
+template <class Visit>
+void for_corners(const Model& model, const Visit& visit) {
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        std::visit(overloaded{[&](const AxialSpring& spring) {
+                                  if (has_corner(spring.law)) visit(Apart{e, 0});
+                              },
+                              [&](const Bushing& bushing) {
+                                  const auto* law = std::get_if<PerAxis>(&bushing.law);
+                                  for (std::size_t k = 0; law != nullptr && k < 6; ++k)
+                                      if (has_corner(law->axis[k])) visit(Apart{e, k});
+                              }},
+                   model.elastics[e].kind);
+}
+
+// Origin and size of the model. The proof does not depend on them.
+void set_size(System& system) {
+    std::vector<Vector3d> points;
+    const auto add = [&](BodyId body, const Vector3d& s_local) {
+        if (body == ground) return points.push_back(s_local);
+        const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
+        points.push_back(pose.r + pose.p * s_local);
+    };
+    const auto add_end =
+        overloaded{[&](const Point& p) { add(p.body, p.s_local); },
+                   [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
+    const auto add_ends = [&](const auto& kind) { add_end(kind.i), add_end(kind.j); };
+    for (const auto& body : system.model->bodies) points.push_back(body.design.r);
+    for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
+    for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
+    for (const auto& p : points) system.c += p / static_cast<double>(points.size());
+    // of the coordinates: coincident points may differ by this
+    constexpr double rounding = 0x1p-42;
+    double radius = 0, farthest = 0;
+    for (const auto& p : points) {
+        radius = std::max(radius, (p - system.c).norm());
+        farthest = std::max(farthest, p.norm());
+    }
+    if (std::isfinite(radius) && radius > rounding * farthest) system.length = radius;
+    if (std::isfinite(farthest)) system.farthest = std::max(system.length, farthest);
+    if (!system.c.allFinite()) system.c.setZero();
+}
+
+}  // namespace
+
+bool has_corners(const Model& model) {
+    bool any = false;
+    for_corners(model, [&](const Apart&) { any = true; });
+    return any;
+}
+
+std::string too_large(const System& system) {
+    if (system.n() <= most_unknowns) return {};
+    return fmt::format("not tried: {} unknowns, proofs are tried up to {}", system.n(),
+                       most_unknowns);
+}
+
+const ScalarLaw& law_of(const System& system, const Apart& corner) {
+    return std::visit(
+        overloaded{[](const AxialSpring& spring) -> const ScalarLaw& { return spring.law; },
+                   [&](const Bushing& bushing) -> const ScalarLaw& {
+                       return std::get<PerAxis>(bushing.law).axis[corner.axis];
+                   }},
+        system.model->elastics[corner.element].kind);
+}
+
+void set_corners(const System& system, Eigen::VectorXd& z, double a) {
+    if (system.apart.empty()) return;
+    const auto x = deformations(system, {z.data(), z.data() + z.size()}, Interval(a));
+    for (std::size_t k = 0; k < system.apart.size(); ++k) {
+        const Apart& corner = system.apart[k];
+        const double at = mid(x[corner.element][corner.axis]);
+        z[system.deformation(k)] = at;
+        z[system.deformation(k) + 1] = force(law_of(system, corner), at);
+    }
+}
+
+System make_system(const Model& model, const Branch& branch, Corners corners) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument(
+            "branch '" + branch.name +
+            "' wants one way from 0, and the model as it stands there (on_branch)");
+    System system;
+    system.model = &model;
+    system.branch = &branch;
+    system.bodies = static_cast<int>(model.bodies.size());
+    set_paths(system);
+    set_formulations(system);
+    set_size(system);
+    if (corners == Corners::apart)
+        for_corners(model, [&](const Apart& corner) {
+            system.apart.push_back(corner);
+            system.elements[corner.element].apart[corner.axis] = true;
+        });
+    return system;
+}
+
+std::vector<int> rows_of_joint(const System& system, int joint) {
+    std::vector<int> all;
+    for (std::size_t c = 0; c < system.values.size(); ++c)
+        if (system.model->constraints[c].joint == joint)
+            for (int n = 0; n < rows(system.model->constraints[c].kind); ++n)
+                all.push_back(system.first_row[c] + n);
+    return all;
+}
+
+}  // namespace elastocheck::reference::certificate

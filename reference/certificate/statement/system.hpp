@@ -1,0 +1,145 @@
+// Square system of this leg, as a function of the unknowns z and of the branch's parameter a:
+//
+//   unknowns z    per body    r - c [m], the quaternion (w, x, y, z) [-]
+//                 per row     its reaction R [N, N·m]
+//                 per corner  deformation x, force f
+//   equations E   per body    Σ forces [N], Σ moments about its origin [N·m]
+//                 per row     Φ [m, -]
+//                 per corner  x(r, p; a) - x, f - ∂u/∂x
+//                 per body    |p|² - 1
+//
+// A corner is a law whose slope jumps. It is separated: its deformation x and force f become
+// unknowns, so that its slope is in one entry of ∂E/∂z. Across the corner that entry is an
+// interval, and the rest of the matrix is numbers. Inside its element the interval would be in each
+// of the twelve rows and fourteen columns and vary in each independently, which fails for any stop
+// much stiffer than its surroundings. The solutions are the same: x and f are functions of (r, p).
+//
+// c is a double near the model, the origin of all positions, so that the origin of the ground frame
+// does not matter. Every quantity that a driver may move is start + rate·a in intervals: stored
+// numbers enter exactly, and no product is rounded before the proof begins.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "elastocheck/equilibrium_path.hpp"
+#include "reference/certificate/statement/equations.hpp"
+
+namespace elastocheck::reference::certificate {
+
+struct Affine {
+    Interval start, rate;
+    template <class T>
+    T at(const T& a) const {
+        return a * constant<Base<T>>(rate) + constant<Base<T>>(start);
+    }
+};
+
+// Driven quantities of an element along the branch; only the one of its kind is used.
+struct ElementPath {
+    Affine free_length;             // of a spring [m]
+    std::array<Affine, 6> preload;  // of a bushing [N, N·m]
+    bool rotational = false;        // bushing forces depend on the markers' relative rotation
+    std::array<bool, 6> apart{};    // separated laws; of a spring the first
+    // Axes of a bushing's frame with equal rates across: rotating the frame about one leaves the
+    // forces unchanged.
+    std::array<bool, 3> turns_freely{};
+};
+// A law with a corner, separated: its deformation and force are unknowns.
+struct Apart {
+    std::size_t element = 0, axis = 0;
+};
+struct LoadPath {
+    LoadKind kind;
+    Affine factor;
+};
+
+struct System {
+    const Model* model = nullptr;
+    const Branch* branch = nullptr;
+    std::vector<Affine> values;         // per Model::constraints: its offset, length or angle
+    std::vector<int> first_row;         // per Model::constraints
+    std::vector<ElementPath> elements;  // per Model::elastics
+    std::vector<LoadPath> loads;        // static and driven
+    std::vector<Apart> apart;           // separated corners
+    Eigen::Vector3d c = {0, 0, 0};      // [m]
+    double length = 1;                  // L, size of the model: reference length of scaling [m]
+    // largest distance of a point from the origin of the stored coordinates, at least `length` [m]
+    double farthest = 1;
+    int bodies = 0, rows = 0;  // nb, m
+    bool conservative = true;  // no follower, no formulation without energy
+    int corners() const { return 2 * static_cast<int>(apart.size()); }
+    int n() const { return 7 * bodies + rows + corners(); }
+    int pose(BodyId body) const { return 7 * body; }
+    int reaction(std::size_t constraint) const { return 7 * bodies + first_row[constraint]; }
+    int balance(BodyId body) const { return 6 * body; }
+    int closure(std::size_t constraint) const { return 6 * bodies + first_row[constraint]; }
+    int deformation(std::size_t corner) const {
+        return 7 * bodies + rows + 2 * static_cast<int>(corner);
+    }
+    int corner(std::size_t corner) const {
+        return 6 * bodies + rows + 2 * static_cast<int>(corner);
+    }
+    int norm(BodyId body) const { return 6 * bodies + rows + corners() + body; }
+};
+
+// Throws std::invalid_argument where model and branch do not fit, or a driver moves a quantity that
+// does not exist.
+enum class Corners { in_place, apart };
+System make_system(const Model& model, const Branch& branch, Corners corners = Corners::in_place);
+bool has_corners(const Model& model);
+// Largest number of unknowns for a proof. Its matrices are dense, so its time grows with the cube
+// (0.3 s per point at 500).
+inline constexpr int most_unknowns = 500;
+// Reason why no proof is tried; empty where one is.
+std::string too_large(const System& system);
+const ScalarLaw& law_of(const System& system, const Apart& corner);
+// Sets x and f of the corners from the poses of z.
+void set_corners(const System& system, Eigen::VectorXd& z, double a);
+
+// E, and if requested ∂E/∂z by rows [n × n] and ∂E/∂a.
+template <class S>
+struct Values {
+    std::vector<S> E, J, E_a;
+};
+enum class Slopes { no, yes };
+template <class S>
+Values<S> evaluate(const System& system, const std::vector<S>& z, const S& a, Slopes slopes);
+// Number types along a branch piece: for the equations and for their Jacobian.
+using Along = Jet<6>;
+using SlopesAlong = Jet<2>;
+template <class S>
+Values<S> evaluate_without_slopes(const System& system, const std::vector<S>& z, const S& a);
+
+// ∂E/∂z by rows [n × n] at constant elastic forces, and the size of the acting forces on each body,
+// Σ |force| + |moment| / L over its elements, reactions and loads [N].
+struct Geometry {
+    std::vector<double> J, acts;
+};
+Geometry geometry(const System& system, const std::vector<double>& z, double a);
+// ∂e/∂z of the deformation of an element, springs in the first row only [6 × 7 nb].
+Eigen::MatrixXd deformation_slopes(const System& system, std::size_t element,
+                                   const std::vector<double>& z, double a);
+
+// Wrenches of the joints: on body i, about ModelJoint::at.
+template <class S>
+struct JointWrench {
+    Vec<S> force, moment;
+};
+template <class S>
+std::vector<JointWrench<S>> wrenches(const System& system, const std::vector<S>& z, const S& a);
+
+// Wrench of the joint for a unit reaction in each of its rows, as columns.
+template <class S>
+std::vector<JointWrench<S>> unit_wrenches(const System& system, int joint, const std::vector<S>& z,
+                                          const S& a);
+// Positions of the rows of a joint among all rows.
+std::vector<int> rows_of_joint(const System& system, int joint);
+
+// Deformation that enters the law of each element; for springs only the first entry.
+std::vector<std::array<Interval, 6>> deformations(const System& system,
+                                                  const std::vector<Interval>& z,
+                                                  const Interval& a);
+
+}  // namespace elastocheck::reference::certificate

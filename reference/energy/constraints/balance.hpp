@@ -1,0 +1,67 @@
+// First-order conditions of a constrained minimum: Lagrange multipliers, projected gradient, and
+// modes of motion.
+//
+// All in scaled coordinates ξ (x = S ξ), scaled constraints D Φ, and energies in units of F·L.
+#pragma once
+
+#include "reference/energy/constraints/constraints.hpp"
+#include "reference/energy/constraints/scales.hpp"
+#include "reference/energy/potential/potential.hpp"
+
+namespace elastocheck::reference::energy {
+
+// Stationarity of V + λᵀΦ. The multipliers are the least-squares ones, of minimum norm where not
+// unique.
+struct Balance {
+    Eigen::VectorXd lambda;  // [m], of D Φ
+    Eigen::VectorXd left;    // ∂V/∂ξ + (∂DΦ/∂ξ)ᵀ λ, the projected gradient [6nb]
+    Eigen::VectorXd Phi;     // D Φ [m]
+    Eigen::MatrixXd J_t;     // (∂DΦ/∂ξ)ᵀ [6nb × m]
+    Eigen::MatrixXd across;  // orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank]
+    // orthonormal basis of its null space: the motions that the constraints allow [6nb × f]
+    Eigen::MatrixXd along;
+    // linearly independent rows of Φ, by column-pivoted QR of (∂DΦ/∂ξ)ᵀ [rank]
+    std::vector<int> independent;
+};
+Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd& gradient,
+                const ConstraintValues& values);
+Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                const Chart& chart);
+
+// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly, the rest by differences of
+// hand-derived gradients at constant stress and λ. It is used for the metric, the predictor and
+// stability; no result depends on its last digits.
+Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                        const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
+int hessian_evaluations(const Model& model);  // number of gradient evaluations for one Hessian
+
+// Unsymmetric stiffness A of a dead moment: with a small rotation φ of its body, the balance of
+// moments changes by ½ φ × m more than the gradient of the chart's potential does. In ξ
+// [6nb × 6nb].
+Eigen::MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, int n);
+
+// Modes of motion that the constraints allow: eigenvectors of the reduced Hessian (reduced to
+// `along`).
+struct Modes {
+    Eigen::MatrixXd Z;          // orthonormal [6nb × f]
+    Eigen::VectorXd stiffness;  // ascending [f]
+    double idle_limit = 0;      // a stiffness up to this is indistinguishable from zero
+
+    int count() const { return static_cast<int>(stiffness.size()); }
+    bool idle(int mode) const { return std::abs(stiffness[mode]) <= idle_limit; }
+    std::vector<int> resisting() const;    // the modes that are not idle
+    Eigen::MatrixXd idle_motions() const;  // [6nb × idle modes]
+    bool unstable() const { return count() > 0 && !(stiffness[0] >= -idle_limit); }
+};
+Modes modes_of(const Balance& at, const Eigen::MatrixXd& H);
+
+// Acceptance measure, to be ≤ tolerance: the largest of the constraints and of the projected
+// gradient in each mode. In a stiff mode the rounding of a position is allowed for:
+// |Zᵀg| ≤ tolerance + roundoff · stiffness.
+double excess(const Eigen::VectorXd& left, const Eigen::VectorXd& Phi, const Modes& modes,
+              const Scales& scales, double tolerance);
+
+// Largest absolute entry; NaN if any entry is NaN, 0 if there is none.
+double largest(const Eigen::Ref<const Eigen::VectorXd>& v);
+
+}  // namespace elastocheck::reference::energy

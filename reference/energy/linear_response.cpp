@@ -1,0 +1,236 @@
+#include "reference/energy/linear_response.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "models/branch.hpp"
+#include "reference/energy/minimise/branch.hpp"
+#include "reference/energy/minimise/cost.hpp"
+#include "reference/energy/potential/conservative.hpp"
+#include "reference/energy/potential/overloaded.hpp"
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
+constexpr double idle_push = 1e-8;       // of the disturbance: smallest load on an idle mode
+constexpr double unanswered = 1e-6;  // of the disturbance: largest remainder after the corrections
+constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
+constexpr int corrections = 2;
+
+// Eighth-order central differences: for a function that varies over a tenth of L as much as over L,
+// the truncation error of this step is 1e-13, and so is the rounding error.
+constexpr double difference = 0.005;  // of L or 1 rad
+constexpr std::array weights{4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+
+void check(const Model& model, const Equilibrium& state,
+           std::span<const Disturbance> disturbances) {
+    const auto require = [](bool met, const char* what) {
+        if (!met) throw std::invalid_argument(what);
+    };
+    require(state.poses.size() == model.bodies.size(), "the state is of another model");
+    for (const auto& disturbance : disturbances)
+        std::visit(
+            overloaded{[&](const UnitWrench& wrench) {
+                           require(static_cast<std::size_t>(wrench.at.body) < model.bodies.size(),
+                                   "a disturbance acts on no body of the model");
+                       },
+                       [&](const Motion& motion) {
+                           const auto joint = static_cast<std::size_t>(motion.joint);
+                           require(joint < model.joints.size() && model.joints[joint].driven >= 0,
+                                   "a disturbance moves a joint that has no offset to move");
+                       }},
+            disturbance);
+}
+
+// The prescribed quantities grow with s as along a branch that drives only this disturbance.
+Prescribed rate_of(const Model& model, const Disturbance& disturbance) {
+    Branch branch;
+    const auto drive = [&](const Driven& what) { branch.drivers.push_back({what, 0, 1}); };
+    std::visit(overloaded{[&](const UnitWrench& wrench) {
+                              drive(Load{"", DeadForce{wrench.at, wrench.force}});
+                              drive(Load{"", DeadMoment{wrench.at.body, wrench.moment}});
+                          },
+                          [&](const Motion& motion) { drive(motion); }},
+               disturbance);
+    return course_of(model, branch).rate;
+}
+
+std::string name_of(const Model& model, const Disturbance& disturbance) {
+    return std::visit(
+        overloaded{
+            [&](const UnitWrench& wrench) {
+                return fmt::format("a wrench on '{}'",
+                                   model.bodies[static_cast<std::size_t>(wrench.at.body)].name);
+            },
+            [&](const Motion& motion) {
+                return fmt::format("moving '{}'",
+                                   model.joints[static_cast<std::size_t>(motion.joint)].name);
+            }},
+        disturbance);
+}
+
+// Linearised state, in ξ and units of F·L.
+struct Tangent {
+    const Path& path;
+    const State& state;
+    Prescribed prescribed;
+    VectorXd S, D, lambda;            // lambda of Φ, SI
+    MatrixXd stiffness, A;            // Σ Eᵀ K E, and A of dead moments
+    MatrixXd Z, idle;                 // resisting motions, and idle ones
+    Eigen::PartialPivLU<MatrixXd> W;  // Zᵀ (H + A) Z with the approximate Hessian
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
+};
+
+Tangent tangent_of(const Path& path, const State& state) {
+    const int n = coordinates(path.model);
+    Tangent t{path,
+              state,
+              at(path.course, state.a),
+              path.scales.coordinates(n),
+              path.scales.rows(path.model),
+              {},
+              {},
+              {},
+              {},
+              {},
+              {},
+              {}};
+    t.lambda = path.scales.energy() * t.D.cwiseProduct(state.at.lambda);
+    const MatrixXd K = energy::stiffness(path.model, t.prescribed, chart_about(state.poses));
+    t.stiffness = t.S.asDiagonal() * K * t.S.asDiagonal() / path.scales.energy();
+    t.A = moment_stiffness(t.prescribed, path.scales, n);
+    t.Z = state.modes.Z(Eigen::all, state.modes.resisting());
+    t.idle = state.modes.idle_motions();
+    if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * (state.H + t.A) * t.Z);
+    t.J.setThreshold(rank_threshold);
+    if (t.D.size() > 0) t.J.compute(state.at.J_t.transpose());
+    return t;
+}
+
+// (H + A) t to rounding. Only the geometric part of the Hessian and the curvature of the
+// constraints are differenced, along t itself.
+VectorXd times(const Tangent& at, const VectorXd& t) {
+    VectorXd product = at.stiffness * t + at.A * t;
+    const double size = largest(t);
+    if (!(size > 0)) return product;
+    const double h = difference / size;
+    Chart chart = chart_about(at.state.poses);
+    const auto gradient = [&](double step) -> VectorXd {
+        move_to(chart, step * at.S.cwiseProduct(t));
+        return at.S.cwiseProduct(
+            gradient_at_centre_stress(at.path.model, at.prescribed, chart) +
+            transposed_times(constraints(at.path.model, at.prescribed, chart).Phi_q, at.lambda));
+    };
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        const double step = h * static_cast<double>(k + 1);
+        product += weights[k] / h * (gradient(step) - gradient(-step)) / at.path.scales.energy();
+    }
+    return product;
+}
+
+struct Answer {
+    Outcome outcome = Outcome::converged;
+    std::string what;
+    VectorXd t;
+};
+
+Answer answer(const Tangent& at, const Prescribed& rate) {
+    const Model& model = at.path.model;
+    const Chart chart = chart_about(at.state.poses);
+    VectorXd b = gradient_rate(model, at.prescribed, rate, chart);
+    VectorXd t = VectorXd::Zero(b.size());
+    if (!rate.offset.isZero(0)) {
+        const ConstraintRates rates = constraint_rates(model, at.prescribed, rate, chart);
+        b += transposed_times(rates.Phi_qa, at.lambda);
+        const VectorXd asked = -at.D.cwiseProduct(rates.Phi_a);
+        t = at.J.solve(asked);
+        if (!((at.state.at.J_t.transpose() * t - asked).norm() <= open * asked.norm()))
+            return {Outcome::inconsistent_constraints,
+                    "joints that repeat each other do not let it move",
+                    {}};
+    }
+    b = at.S.cwiseProduct(b) / at.path.scales.energy();
+
+    VectorXd left = b + times(at, t);
+    const double size = largest(b) + largest(left - b);
+    if (at.Z.cols() > 0)
+        for (int k = 0; k <= corrections; ++k) {
+            t -= at.Z * at.W.solve(at.Z.transpose() * left);
+            left = b + times(at, t);
+        }
+    if (!t.allFinite()) return {Outcome::not_finite, "the answer is not finite", {}};
+    // Where the stiffness in the approximate Hessian is only its error, the iteration does not
+    // converge to a solution.
+    if (!(largest(at.Z.transpose() * left) <= unanswered * size))
+        return {Outcome::singular, "what resists a motion is spent", {}};
+    if (!(largest(at.idle.transpose() * left) <= idle_push * size))
+        return {Outcome::loaded_idle_mode, "a motion that nothing resists is pushed", {}};
+    return {Outcome::converged, "", t};
+}
+
+}  // namespace
+
+Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
+                         std::span<const Disturbance> disturbances) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument("the model does not stand on branch '" + branch.name +
+                                    "', or it goes two ways");
+    check(model, state, disturbances);
+    const auto fail = [&](Outcome outcome, const std::string& what) {
+        return Response{outcome, fmt::format("branch '{}': {}", branch.name, what), {}};
+    };
+    if (const auto what = without_potential(model, branch))
+        return fail(Outcome::not_conservative, *what);
+    if (const double operations = cost_of(model, 1).operations(); operations > most_operations)
+        return fail(
+            Outcome::too_large,
+            fmt::format(
+                "the energy leg is not asked: some {:.1g} operations for {} coordinates, at "
+                "most {:.1g} are worth it",
+                operations, coordinates(model), most_operations));
+
+    const Options options;
+    const Course course = course_of(model, branch);
+    const std::array ends{state.load, branch.to};
+    Counts unused;
+    const Path path{model,
+                    options,
+                    scales_of(model, course, ends),
+                    course,
+                    turning_bushings(model, course),
+                    std::abs(state.load),
+                    unused};
+    const State here = state_at(path, state.load, state.poses);
+    if (!here.at.left.allFinite() || !here.at.Phi.allFinite() || !here.H.allFinite())
+        return fail(Outcome::not_finite, "the state has no finite potential");
+    if (!within_laws(model, path.turning, state.poses))
+        return fail(Outcome::branch_lost, turned_over);
+    const Tangent tangent = tangent_of(path, here);
+    if (answer(tangent, course.rate).outcome == Outcome::loaded_idle_mode)
+        return fail(Outcome::singular,
+                    "what resists a motion is spent, the branch turns back here");
+    Response response;
+    for (const auto& disturbance : disturbances) {
+        const Answer answered = answer(tangent, rate_of(model, disturbance));
+        if (answered.outcome != Outcome::converged)
+            return fail(answered.outcome, name_of(model, disturbance) + ": " + answered.what);
+        auto& increments = response.increments.emplace_back(model.bodies.size());
+        const VectorXd x = tangent.S.cwiseProduct(answered.t);
+        for (std::size_t b = 0; b < increments.size(); ++b) {
+            const auto at = static_cast<Eigen::Index>(6 * b);
+            increments[b] = {x.segment<3>(at), x.segment<3>(at + 3)};
+        }
+    }
+    return response;
+}
+
+}  // namespace elastocheck::reference::energy

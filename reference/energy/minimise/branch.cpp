@@ -1,0 +1,368 @@
+// Continuation with step acceptance by tangents. A minimiser alone would jump past a limit point
+// and report the far side. So a step is accepted only if it agrees with the tangents t = dξ/da at
+// both its ends, which must agree with each other (largest entries):
+//
+//   |Δξ - t_0 Δa| ≤ ½ |t_0 Δa|,   |t_1 Δa - t_0 Δa| ≤ ½ |t_0 Δa|,
+//   |Δξ - ½ (t_0 + t_1) Δa| ≤ ⅒ |t_0 Δa|
+//
+// Along a smooth curve these fall with the first, first and second power of Δa; between different
+// curves they do not. The new pose must be a minimum (no mode of negative stiffness), the
+// stiffnesses must agree with their prediction (stability.hpp), and no bushing may have turned
+// through the end of its law. Otherwise the step is halved. At a kink of the curve t jumps: the
+// step over it is accepted once it is negligibly short.
+//
+// Tangent, by differentiating Φ(ξ; a) = 0 and Zᵀ ∂(V + λᵀΦ)/∂ξ = 0 with J = ∂Φ/∂ξ, J Z = 0, W = Zᵀ
+// H Z:
+//
+//   J t = -∂Φ/∂a               t = p + Z y,   p = -J⁺ ∂Φ/∂a
+//   Zᵀ (H t + b) = 0           y = -W⁻¹ Zᵀ (b + H p),   b = ∂²(V + λᵀΦ)/∂ξ∂a
+//
+// where a dead moment adds its unsymmetric part A to H (balance.hpp).
+#include "reference/energy/minimise/branch.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <cmath>
+#include <numbers>
+
+#include "reference/energy/minimise/minimise.hpp"
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Consecutive halvings of a step. Where a stop closes, the tangent jumps, and no step over it
+// agrees with both tangents: it is accepted once it is negligible, after about twenty halvings of
+// the whole span.
+constexpr int halvings = 26;
+constexpr double resolution = 1e-9;  // of the parameter: smallest step
+// Smallest step for laws that are almost flat at their start, which looks like a limit point until
+// steps are shorter than the flat part. For other laws it would only make limit points more
+// expensive.
+constexpr double finest = 1e-12;
+constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
+// of the span: instabilities that appear and vanish within this length are not searched for
+constexpr double look = 1e-3;
+constexpr int internal_points = 2000;    // between two requested values
+constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
+constexpr double largest_step = 0.1;     // of L or 1 rad, by the tangent
+constexpr double negligible = 1e-6;      // of L or 1 rad
+constexpr double idle_push = 1e-8;       // of F or F·L: smallest load on an idle mode
+constexpr double spent = 0.01;           // of its first stiffness: the mode will soon be unstable
+
+// A small gradient does not bound the error along a soft mode. Newton corrections are applied until
+// the last one is at most `last_correction`; after `corrections` of them at most `known` is
+// accepted.
+constexpr double last_correction = 1e-10, known = 1e-9;  // of L or 1 rad
+constexpr int corrections = 4;
+
+constexpr const char* not_finite = "a number stopped being finite";
+constexpr const char* jumped = "the nearest minimum is not a continuation of the branch";
+constexpr const char* sudden = "the stiffness changes too fast to be followed";
+constexpr const char* unstable = "the equilibrium stops being a minimum of the potential";
+constexpr const char* turns_back = "a limit point, past which no equilibrium continues the branch";
+constexpr const char* divides =
+    "another curve of equilibria crosses the branch: the equilibrium stops being a minimum of the "
+    "potential";
+
+VectorXd coordinate_scales(const Path& path) {
+    return path.scales.coordinates(coordinates(path.model));
+}
+
+VectorXd scaled_increment(const Path& path, const std::vector<Pose>& from,
+                          const std::vector<Pose>& to) {
+    return increment(from, to).cwiseQuotient(coordinate_scales(path));
+}
+
+// Increment between two states without the idle motions, whose size is arbitrary.
+VectorXd resisted_increment(const Path& path, const State& from, const State& to) {
+    const VectorXd xi = scaled_increment(path, from.poses, to.poses);
+    const MatrixXd idle = to.modes.idle_motions();
+    return xi - idle * (idle.transpose() * xi);
+}
+
+// A of K = H + A; empty without an acting moment.
+std::optional<MatrixXd> unsymmetric_stiffness(const Path& path, const State& state) {
+    if (path.course.start.moments.empty() && path.course.rate.moments.empty()) return {};
+    return moment_stiffness(at(path.course, state.a), path.scales,
+                            static_cast<int>(state.H.rows()));
+}
+
+// Newton increment -Z (ZᵀKZ)⁻¹ Zᵀ b over the resisting modes, in ξ. The modes are those of H, so
+// without A nothing is factorised.
+VectorXd newton_increment(const State& state, const std::optional<MatrixXd>& A, const VectorXd& b) {
+    const auto resisting = state.modes.resisting();
+    if (resisting.empty()) return VectorXd::Zero(b.size());
+    const MatrixXd Z = state.modes.Z(Eigen::all, resisting);
+    const VectorXd g = Z.transpose() * b;
+    if (!A) return -Z * g.cwiseQuotient(state.modes.stiffness(resisting));
+    return -Z * (Z.transpose() * (state.H + *A) * Z).partialPivLu().solve(g);
+}
+
+bool is_near(const VectorXd& actual, const VectorXd& expected) {
+    return largest(actual - expected) <= std::max(0.5 * largest(expected), negligible);
+}
+
+bool is_continuous(const VectorXd& actual, const VectorXd& t_0, const VectorXd& t_1) {
+    return is_near(actual, t_0) && is_near(t_1, t_0) &&
+           largest(actual - 0.5 * (t_0 + t_1)) <= std::max(0.1 * largest(t_0), negligible);
+}
+
+// Whether logarithm and angles of the bushings stay on the same sheet: otherwise one of them jumps
+// by half a turn or more.
+bool bushings_continue(const Path& path, const State& from, const State& to) {
+    const Eigen::Matrix3Xd change = rotations(path.model, path.turning, to.poses) -
+                                    rotations(path.model, path.turning, from.poses);
+    return change.cols() == 0 || change.colwise().norm().maxCoeff() <= std::numbers::pi / 2;
+}
+
+// Whether the prescribed loads at a push an unresisted motion.
+bool idle_mode_loaded(const Path& path, const State& from, double a) {
+    const Balance then =
+        balance(path.model, at(path.course, a), path.scales, chart_about(from.poses));
+    const VectorXd push = from.modes.Z.transpose() * then.left;
+    for (int i = 0; i < from.modes.count(); ++i)
+        if (from.modes.idle(i) && std::abs(push[i]) > idle_push) return true;
+    return false;
+}
+
+// Whether the softest mode that resists at the start of the branch has lost almost all of its
+// stiffness.
+bool is_spent(const Modes& first, const Modes& now) {
+    const auto softest = first.idle_motions().cols();
+    return softest < first.count() && now.stiffness[softest] <= spent * first.stiffness[softest];
+}
+
+// Classifies the singular point at which the softest mode z is spent. The tangent there is t = -z
+// (z · b) / w + ..., b the rate of the balance. It grows as the stiffness w falls, and the branch
+// turns back (limit point), unless z · b = 0 and another curve of equilibria crosses (bifurcation).
+// So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a dead
+// moment w is that of the minimum and does not classify the branch.
+Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
+    if (unsymmetric_stiffness(path, walk.state)) return Failure{Outcome::branch_lost, unstable};
+    constexpr double still_there = 0.02;
+    const auto softest = path.first.idle_motions().cols();
+    const double left =
+        std::abs(walk.state.modes.stiffness[softest] / path.first.stiffness[softest]);
+    return left * largest(t) >= still_there * walk.first_tangent && largest(t) > 0
+               ? Failure{Outcome::limit_point, turns_back}
+               : Failure{Outcome::bifurcation_point, divides};
+}
+
+// Whether a law has a nonzero slope below a thousandth of its steepest.
+bool hardly_rises(const Model& model) {
+    constexpr double hardly = 1e-3;
+    const auto flattens = [](const ScalarLaw& law) {
+        const auto* curve = std::get_if<Curve>(&law);
+        if (curve == nullptr) return false;
+        double steepest = 0;
+        for (const auto& piece : curve->pieces) steepest = std::max(steepest, piece[1]);
+        return std::ranges::any_of(curve->pieces, [&](const auto& piece) {
+            return piece[1] > 0 && piece[1] < hardly * steepest;
+        });
+    };
+    return std::ranges::any_of(model.elastics, [&](const auto& element) {
+        if (const auto* spring = std::get_if<AxialSpring>(&element.kind))
+            return flattens(spring->law);
+        const auto* axes = std::get_if<PerAxis>(&std::get<Bushing>(element.kind).law);
+        return axes != nullptr && std::ranges::any_of(axes->axis, flattens);
+    });
+}
+
+Attempt lost(Attempt attempt, const char* why) {
+    attempt.failure = {Outcome::branch_lost, why};
+    return attempt;
+}
+
+// One continuation step; `expected` is the predictor along the tangent.
+Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expected) {
+    const State& from = walk.state;
+    Attempt attempt =
+        minimum_from(path, a, moved(path, from.poses, expected), from.modes.idle_motions());
+    const State& to = attempt.state;
+    if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
+    const VectorXd actual = resisted_increment(path, from, to);
+    if (!is_near(actual, expected)) return lost(attempt, jumped);
+    if (attempt.failure) return attempt;
+    if (!is_continuous(actual, expected, tangent(path, to) * (a - from.a)))
+        return lost(attempt, jumped);
+    if (!within_laws(path.model, path.turning, to.poses)) return lost(attempt, turned_over);
+    if (!bushings_continue(path, from, to)) return lost(attempt, turned_over);
+    if (to.modes.unstable()) return lost(attempt, unstable);
+    if (std::abs(a - from.a) > look * path.span && !as_foreseen(walk.record, a, to.modes))
+        return lost(attempt, sudden);
+    return attempt;
+}
+
+// Next value towards `to`: limited by the stride, by the range of the tangent and by the predicted
+// stability.
+double next_value(const Path& path, const Walk& walk, const VectorXd& t, double to) {
+    const double rest = to - walk.state.a;
+    double h = std::copysign(std::min(std::abs(rest), walk.stride), rest);
+    const double size = largest(t) * std::abs(h);
+    if (size > largest_step) h *= largest_step / size;
+    const double seen = std::abs(foreseen_step(walk.record, h));
+    h = std::copysign(std::min(std::abs(h), std::max(seen, look * path.span)), rest);
+    return std::abs(rest) <= std::abs(h) ? to : walk.state.a + h;
+}
+
+}  // namespace
+
+std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const VectorXd& xi) {
+    Chart chart = chart_about(from);
+    move_to(chart, coordinate_scales(path).cwiseProduct(xi));
+    return poses(chart);
+}
+
+Walk walk_from(const Path& path, const State& state) {
+    Walk walk{state, first_stride * path.span, {}};
+    walk.record.add(state.a, state.modes);
+    return walk;
+}
+
+State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
+    const Prescribed prescribed = at(path.course, a);
+    State state{.a = a, .poses = poses, .at = {}, .H = {}, .modes = {}};
+    state.at = balance(path.model, prescribed, path.scales, chart_about(poses));
+    state.H = hessian(path.model, prescribed, path.scales, poses, state.at.lambda);
+    state.modes = modes_of(state.at, state.H);
+    path.counts.evaluations += 1 + hessian_evaluations(path.model);
+    path.counts.factorisations += 1;
+    return state;
+}
+
+// p = -J⁺ Φ,   y = -W⁻¹ Zᵀ (left + H p)
+VectorXd correction(const Path& path, const State& state, const VectorXd& left,
+                    const VectorXd& Phi) {
+    const auto A = unsymmetric_stiffness(path, state);
+    if (Phi.isZero(0)) return newton_increment(state, A, left);
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
+    J.setThreshold(rank_threshold);
+    J.compute(state.at.J_t.transpose());
+    path.counts.factorisations += 1;
+    const VectorXd p = J.solve(-Phi);
+    VectorXd b = left + state.H * p;
+    if (A) b += *A * p;
+    return p + newton_increment(state, A, b);
+}
+
+VectorXd tangent(const Path& path, const State& state) {
+    const Prescribed prescribed = at(path.course, state.a);
+    const Prescribed& rate = path.course.rate;
+    const Chart chart = chart_about(state.poses);
+    const VectorXd S = coordinate_scales(path), D = path.scales.rows(path.model);
+    VectorXd b =
+        S.cwiseProduct(gradient_rate(path.model, prescribed, rate, chart)) / path.scales.energy();
+    if (rate.offset.isZero(0) && rate.gap.isZero(0)) return correction(path, state, b, VectorXd());
+    const ConstraintRates rates = constraint_rates(path.model, prescribed, rate, chart);
+    b += S.cwiseProduct(transposed_times(rates.Phi_qa, D.cwiseProduct(state.at.lambda)));
+    return correction(path, state, b, D.cwiseProduct(rates.Phi_a));
+}
+
+bool is_stationary(const Path& path, const State& state) {
+    const double e =
+        excess(state.at.left, state.at.Phi, state.modes, path.scales, path.options.tolerance);
+    return std::isfinite(e) && e <= path.options.tolerance;
+}
+
+namespace {
+
+// Newton corrections of a stationary state along its soft modes.
+Attempt corrected(const Path& path, State state) {
+    for (int k = 0;; ++k) {
+        const VectorXd ahead =
+            newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
+        const double far = largest(ahead);
+        if (far <= last_correction || (k == corrections && far <= known))
+            return {std::move(state), {}};
+        if (k == corrections || !(far <= largest_step))
+            return {std::move(state), Failure{Outcome::iteration_limit,
+                                              fmt::format("what is stiff leaves the minimum along "
+                                                          "a soft motion unknown to {:.1g} of the "
+                                                          "model's size",
+                                                          far)}};
+        state = state_at(path, state.a, moved(path, state.poses, ahead));
+    }
+}
+
+}  // namespace
+
+Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
+                     const MatrixXd& idle) {
+    const Options& options = path.options;
+    const Prescribed prescribed = at(path.course, a);
+    const int per_chart =
+        std::max(10, options.evaluation_limit / std::max(1, options.recentre_limit));
+    long evaluations = 0;
+    State state = state_at(path, a, start);
+    for (int i = 0; i < options.recentre_limit && evaluations < options.evaluation_limit; ++i) {
+        const Minimisation m = minimise(path.model, prescribed, path.scales, state.poses, state.at,
+                                        state.H, state.modes, idle, options.tolerance, per_chart);
+        evaluations += m.evaluations;
+        path.counts.iterations += 1;
+        path.counts.evaluations += m.evaluations;
+        path.counts.factorisations += m.evaluations;
+        if (!std::isfinite(m.excess)) return {state, Failure{Outcome::not_finite, not_finite}};
+        const VectorXd moved_by = scaled_increment(path, state.poses, m.poses);
+        state = state_at(path, a, m.poses);
+        if (is_stationary(path, state)) {
+            Attempt attempt = corrected(path, state);
+            if (attempt.failure || is_stationary(path, attempt.state)) return attempt;
+            state = std::move(attempt.state);
+        }
+        if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same
+        if (prescribed.moments.empty()) continue;
+        // A new centre rotates the moments relative to the bodies. Without this Newton increment
+        // the charts converge only linearly.
+        const VectorXd ahead =
+            newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
+        if (largest(ahead) <= largest_step)
+            state = state_at(path, a, moved(path, state.poses, ahead));
+    }
+    return {state,
+            Failure{Outcome::iteration_limit, "the minimisation did not reach its tolerance"}};
+}
+
+std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
+    State& state = walk.state;
+    const double smallest = resolution * std::max(std::abs(to), std::abs(state.a));
+    int halved = 0;  // since the last equilibrium
+    for (int points = 0; state.a != to; ++points) {
+        if (points == internal_points)
+            return Failure{Outcome::iteration_limit, "too many steps were needed on the way"};
+        const VectorXd t = tangent(path, state);
+        if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
+        if (walk.record.samples.size() == 1) walk.first_tangent = largest(t);
+        const double a = next_value(path, walk, t, to), h = a - state.a;
+        const Attempt attempt = step(path, walk, a, t * h);
+        if (!attempt.failure) {
+            walk.stride = std::max(a == to ? walk.stride : 0.0, 2 * std::abs(h));
+            halved = 0;
+            state = attempt.state;
+            walk.record.add(a, state.modes);
+            continue;
+        }
+        if (idle_mode_loaded(path, state, a))
+            return Failure{Outcome::loaded_idle_mode,
+                           "a motion that nothing resists is pushed by the load"};
+        if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
+        walk.stride = 0.5 * std::abs(h);
+        if (++halved <= halvings &&
+            (walk.stride > smallest ||
+             (walk.stride > finest / resolution * smallest && hardly_rises(path.model))))
+            continue;
+        // The end of a bushing's law takes precedence as the reason.
+        const bool may_be_spent = attempt.failure->outcome == Outcome::iteration_limit ||
+                                  (attempt.failure->outcome == Outcome::branch_lost &&
+                                   attempt.failure->what != turned_over);
+        if (may_be_spent && is_spent(path.first, state.modes)) return spent_mode(path, walk, t);
+        return attempt.failure;
+    }
+    return {};
+}
+
+}  // namespace elastocheck::reference::energy

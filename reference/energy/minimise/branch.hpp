@@ -1,0 +1,85 @@
+// Continuation of a branch of constrained minima.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium_path.hpp"
+#include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/minimise/stability.hpp"
+
+namespace elastocheck::reference::energy {
+
+// Reasons for the end of a branch, as half a sentence.
+inline constexpr const char* turned_over =
+    "a bushing has turned to where its law ends, half a turn or what its angles allow";
+
+struct Failure {
+    Outcome outcome;
+    std::string what;  // half a sentence
+};
+
+// Poses at a parameter value with balance, Hessian and modes.
+struct State {
+    double a = 0;  // parameter of the branch
+    std::vector<Pose> poses;
+    Balance at;
+    Eigen::MatrixXd H;
+    Modes modes;
+};
+
+// Constant data of a branch: everything but the parameter.
+struct Path {
+    const Model& model;
+    const Options& options;
+    Scales scales;
+    Course course;
+    std::vector<int> turning;  // bushings with rotational stiffness
+    double span;               // the largest requested |a|
+    Counts& counts;
+    Modes first = {};  // modes where the branch starts
+};
+
+// State of the continuation.
+struct Walk {
+    State state;               // the last accepted equilibrium
+    double stride;             // |step| to try next
+    StiffnessRecord record;    // stiffnesses of the equilibria so far
+    double first_tangent = 0;  // largest entry of the tangent at the start
+};
+
+Walk walk_from(const Path& path, const State& state);
+
+// Poses, balance, Hessian and modes at parameter a; the poses need not be an equilibrium.
+State state_at(const Path& path, double a, const std::vector<Pose>& poses);
+
+// Whether the state satisfies the first-order conditions of the constrained minimum, to
+// options.tolerance.
+bool is_stationary(const Path& path, const State& state);
+
+// Minimises at parameter a from `start`, chart after chart, until stationary. `idle` motions
+// [6nb × their number] are held (minimise.hpp).
+struct Attempt {
+    State state;
+    std::optional<Failure> failure;
+};
+Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
+                     const Eigen::MatrixXd& idle);
+
+// Poses after the increment ξ from `from`.
+std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);
+
+// Newton correction ξ for a projected gradient `left` and a constraint residual Φ [6nb], without
+// idle motion.
+Eigen::VectorXd correction(const Path& path, const State& state, const Eigen::VectorXd& left,
+                           const Eigen::VectorXd& Phi);
+
+// Tangent dξ/da of the branch at the equilibrium `state` [6nb].
+Eigen::VectorXd tangent(const Path& path, const State& state);
+
+// Continues the walk to parameter `to` with its own step-size control. On failure it stays at the
+// last equilibrium reached.
+std::optional<Failure> advance(const Path& path, Walk& walk, double to);
+
+}  // namespace elastocheck::reference::energy

@@ -1,0 +1,225 @@
+// Measures that make SLSQP converge to the last digits; without them it stops at 1e-6 of the
+// gradient.
+//
+// 1. Coordinates y, ξ = T y, in which the problem is well scaled: T = [N B] with
+//      B = Z |W|^-½                      the modes along the constraints, each with unit stiffness
+//      N = (1 - Z W⁻¹ Zᵀ H) Y, scaled    the directions across them, conjugate to the modes
+//    SLSQP's first Hessian, the unit matrix, is then the right one, and its first steps are Newton
+//    steps.
+//
+// 2. The function is V + λᵀΦ with λ fixed at the least-squares multipliers of the centre. It equals
+//    V wherever Φ = 0, so it has the same constrained minima, but its gradient is small and its own
+//    multipliers almost vanish. The line search on V + Σ μ|Φ| then accepts full steps; with V alone
+//    the curvature of loaded constraints makes it reject them (Maratos effect, 1978).
+//
+// 3. All values are changes since the centre, summed without cancellation (potential.hpp,
+//    constraints.hpp): the function-value test has its floor at the roundoff of the change, not of
+//    V. Charts of large steps end there; the next chart, centred at their result, has a far lower
+//    floor.
+//
+// 4. Motions that were idle at the last equilibrium get a stiffness about the centre. V does not
+//    change along them, so this selects one of many equal minima, where the added stiffness
+//    vanishes. Without it, the small stiffness that they show away from equilibrium would cause
+//    arbitrary steps. If V did change along them, the acceptance measure, which excludes this term,
+//    would show it. Modes that are idle only at the centre are left out of T.
+//
+// 5. Dependent rows of Φ are withheld from SLSQP, whose least-squares subproblem fails on them.
+//    They stay in the acceptance measure.
+#include "reference/energy/minimise/minimise.hpp"
+
+#include <nlopt.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double aim = 0.01;   // of the tolerance: stop at once below it
+constexpr double holding = 1;  // stiffness given to idle motions, in units of F·L
+constexpr int same_point =
+    20;  // consecutive calls at one point: SLSQP's step has vanished and it would loop for ever
+constexpr int patience = 5;        // evaluations without improvement, once within the tolerance
+constexpr int long_patience = 20;  // before that: a chart of large steps ends at their roundoff
+// A chart that has reduced its residual by this factor and needs more evaluations than this is
+// ended: the Hessian of the next chart achieves in one step what SLSQP's update learns slowly (long
+// chains, closing stops).
+constexpr double closer = 1e-3;
+constexpr int long_enough = 8;
+
+MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& modes) {
+    const auto resisting = modes.resisting();
+    const MatrixXd Z = modes.Z(Eigen::all, resisting);
+    const VectorXd W = modes.stiffness(resisting);
+    const int rank = static_cast<int>(at.across.cols());
+    MatrixXd T(H.rows(), rank + Z.cols());
+    T.leftCols(rank) =
+        at.across - Z * (W.cwiseInverse().asDiagonal() * (Z.transpose() * (H * at.across)));
+    for (int i = 0; i < rank; ++i) {
+        const double stiffness = std::abs(T.col(i).dot(H * T.col(i)));
+        T.col(i) /= std::sqrt(std::max(stiffness, 1.0));
+    }
+    T.rightCols(Z.cols()) = Z * W.cwiseAbs().cwiseSqrt().cwiseInverse().asDiagonal();
+    return T;
+}
+
+struct Problem {
+    const Model& model;
+    const Prescribed& prescribed;
+    const Scales& scales;
+    const Balance& at;
+    double tolerance;
+    int evaluation_limit;
+    const Modes& modes;
+    const MatrixXd& idle;
+    MatrixXd T_t;        // ξ = T y
+    VectorXd lambda, D;  // multipliers of D Φ
+    VectorXd row_scale;  // scales the rows of ∂c/∂y to unit vectors at the centre
+    Chart chart;
+    nlopt_opt opt = nullptr;
+
+    // the last point evaluated
+    VectorXd y{}, c{};
+    double f = 0;
+    VectorXd f_y{};
+    MatrixXd c_y_t{};  // (∂c/∂y)ᵀ [size of y × rank]
+
+    Minimisation best;
+    double excess_at_centre = std::numeric_limits<double>::quiet_NaN();
+    int since_best = 0;
+    int repeats = 0;  // calls at the same y
+};
+
+double measure(Problem& p, const VectorXd& g, const MatrixXd& J_t, const VectorXd& Phi) {
+    VectorXd left = g;
+    if (J_t.cols() > 0) {
+        const Eigen::HouseholderQR<MatrixXd> qr(J_t);
+        left.applyOnTheLeft(qr.householderQ().adjoint());
+        left.head(J_t.cols()).setZero();
+        left.applyOnTheLeft(qr.householderQ());
+    }
+    return excess(left, Phi, p.modes, p.scales, p.tolerance);
+}
+
+// Evaluates f, c and their derivatives at y, and the stop criteria.
+void evaluate(Problem& p, const VectorXd& y) {
+    if (p.best.evaluations > 0 && p.y == y) {
+        if (++p.repeats >= same_point && p.opt) nlopt_force_stop(p.opt);
+        return;
+    }
+    p.y = y;
+    p.repeats = 0;
+    const VectorXd xi = p.T_t.transpose() * y;
+    const VectorXd S = p.scales.coordinates(static_cast<int>(xi.size()));
+    move_to(p.chart, S.cwiseProduct(xi));
+    const Potential V = potential(p.model, p.prescribed, p.chart);
+    const ConstraintValues Phi = constraints(p.model, p.prescribed, p.chart);
+    const int n = coordinates(p.model), rank = static_cast<int>(p.at.independent.size());
+    const double energy = p.scales.energy();
+    const VectorXd DPhi = p.D.cwiseProduct(Phi.Phi);
+    const Jacobian J = scaled(Phi.Phi_q, p.D, S);  // ∂DΦ/∂ξ [m × 6nb]
+    const MatrixXd J_t = transposed(J);
+    const VectorXd g = S.cwiseProduct(V.gradient) / energy + J_t * p.lambda;
+
+    MatrixXd selected(n, rank);
+    p.c.resize(rank);
+    for (int i = 0; i < rank; ++i) {
+        selected.col(i) = J_t.col(p.at.independent[static_cast<std::size_t>(i)]);
+        p.c[i] = p.row_scale[i] * DPhi[p.at.independent[static_cast<std::size_t>(i)]];
+    }
+    const VectorXd idle = p.idle.transpose() * xi;
+    p.f = V.change / energy + p.lambda.dot(p.D.cwiseProduct(Phi.dPhi)) +
+          0.5 * holding * idle.squaredNorm();
+    p.f_y = p.T_t * (g + holding * p.idle * idle);
+    p.c_y_t = times_transposed(p.T_t, J)(Eigen::all, p.at.independent) * p.row_scale.asDiagonal();
+
+    ++p.best.evaluations;
+    const double e = measure(p, g, selected, DPhi);
+    if (!std::isfinite(e) || !std::isfinite(p.f)) p.f = HUGE_VAL;  // SLSQP then shortens its step
+    if (std::isfinite(e) && !(p.best.excess <= e)) {
+        p.best.excess = e;
+        p.best.poses = poses(p.chart);
+        p.since_best = 0;
+    } else {
+        ++p.since_best;
+    }
+    if (p.best.evaluations == 1) p.excess_at_centre = e;
+    const bool good = p.best.excess <= p.tolerance;
+    const bool left =
+        p.best.evaluations >= long_enough && p.best.excess <= closer * p.excess_at_centre && !good;
+    if (left || p.best.excess <= aim * p.tolerance ||
+        p.since_best >= (good ? patience : long_patience) ||
+        p.best.evaluations >= p.evaluation_limit || !std::isfinite(p.best.excess))
+        if (p.opt) nlopt_force_stop(p.opt);
+}
+
+double objective(unsigned n, const double* y, double* gradient, void* data) {
+    Problem& p = *static_cast<Problem*>(data);
+    evaluate(p, Eigen::Map<const VectorXd>(y, n));
+    if (gradient) Eigen::Map<VectorXd>(gradient, n) = p.f_y;
+    return p.f;
+}
+
+void constraint_vector(unsigned m, double* result, unsigned n, const double* y, double* gradient,
+                       void* data) {
+    Problem& p = *static_cast<Problem*>(data);
+    evaluate(p, Eigen::Map<const VectorXd>(y, n));
+    Eigen::Map<VectorXd>(result, m) = p.c;
+    if (gradient)
+        Eigen::Map<MatrixXd>(gradient, n, m) =
+            p.c_y_t;  // row-major [m × n] is column-major [n × m]
+}
+
+}  // namespace
+
+Minimisation minimise(const Model& model, const Prescribed& prescribed, const Scales& scales,
+                      const std::vector<Pose>& centre, const Balance& at, const MatrixXd& H,
+                      const Modes& free, const MatrixXd& idle, double tolerance,
+                      int evaluation_limit) {
+    const int rank = static_cast<int>(at.independent.size());
+    const MatrixXd H_held = H + holding * idle * idle.transpose();
+    const Modes modes = idle.cols() > 0 ? modes_of(at, H_held) : free;
+    const MatrixXd T = round_coordinates(at, H_held, modes);
+    const int n = static_cast<int>(T.cols());
+    Problem p{.model = model,
+              .prescribed = prescribed,
+              .scales = scales,
+              .at = at,
+              .tolerance = tolerance,
+              .evaluation_limit = evaluation_limit,
+              .modes = modes,
+              .idle = idle,
+              .T_t = T.transpose(),
+              .lambda = at.lambda,
+              .D = scales.rows(model),
+              .row_scale = VectorXd::Ones(rank),
+              .chart = chart_about(centre),
+              .best = {centre, std::numeric_limits<double>::quiet_NaN(), 0}};
+    if (n == 0) {
+        evaluate(p, VectorXd(0));
+        return p.best;
+    }
+
+    const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> opt(
+        nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(n)), nlopt_destroy);
+    p.opt = opt.get();
+    for (int i = 0; i < rank; ++i)
+        p.row_scale[i] =
+            1 / (T.transpose() * at.J_t.col(at.independent[static_cast<std::size_t>(i)])).norm();
+    nlopt_set_min_objective(opt.get(), objective, &p);
+    const std::vector<double> no_tolerance(static_cast<std::size_t>(rank), 0.0);
+    if (rank > 0)
+        nlopt_add_equality_mconstraint(opt.get(), static_cast<unsigned>(rank), constraint_vector,
+                                       &p, no_tolerance.data());
+    VectorXd y = VectorXd::Zero(n);
+    double f = 0;
+    nlopt_optimize(opt.get(), y.data(), &f);
+    return p.best;
+}
+
+}  // namespace elastocheck::reference::energy

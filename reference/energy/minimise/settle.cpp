@@ -1,0 +1,168 @@
+// Homotopy to the equilibrium at a = 0. The design pose need not be that equilibrium: loads are
+// held, springs preloaded, joints held away from their design position, links given another length.
+// All of these are applied along a branch of their own, from τ = 1, where the design pose is in
+// equilibrium, to τ = 0, where they have their full values:
+//
+//   offsets   c + τ (c_drawn - c)      of lengths, planes and angles
+//   gaps      Φ = τ Φ_design           of what has no offset
+//   loads     (1 - τ) f
+//   stresses  ∂U/∂e - τ σ_design
+//
+// This homotopy fails where the loads first act on an unresisted motion (the weight of a pendulum),
+// or where its path turns back. It is then repeated with every body on springs to the ground,
+//
+//   τ ½ κ (|r - r_design|² / L² + |θ|²),   κ in units of F L
+#include "reference/energy/minimise/settle.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double hold = 1;               // κ
+constexpr int closing_steps = 100;       // Gauss-Newton on |Φ|²
+constexpr int closing_halvings = 20;     // of each of them
+constexpr double at_rest = 0.999;        // times the previous |Φ|: stagnation
+constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
+
+Course settling_course(const Model& model, const Prescribed& held) {
+    const Chart design = chart_about(design_poses(model));
+    Prescribed drawn = held, change = nothing_prescribed(model);
+    for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+        const auto index = static_cast<Eigen::Index>(k);
+        const auto& kind = model.constraints[k].kind;
+        if (const auto measured = measured_offset(kind, design))
+            change.offset[index] = *measured - own_offset(kind) - held.offset[index];
+    }
+    drawn.offset += change.offset;
+    change.forces = sum(nothing_prescribed(model), -1, held).forces;
+    change.moments = sum(nothing_prescribed(model), -1, held).moments;
+    change.gap = constraints(model, drawn, design).Phi;
+    change.preload = -stresses(model, held, design);
+    return {held, change};
+}
+
+// Adds a bushing to the ground for every body, stress-free in the design pose.
+Model on_springs(Model model, const Scales& scales) {
+    LinearStiffness law;
+    law.K.setZero();
+    law.K.diagonal() << Eigen::Vector3d::Constant(hold * scales.force / scales.length),
+        Eigen::Vector3d::Constant(hold * scales.energy());
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const Pose& drawn = model.bodies[b].design;
+        model.elastics.push_back({"hold", Bushing{{ground, drawn.r, drawn.p},
+                                                  {static_cast<BodyId>(b), {0, 0, 0}, {1, 0, 0, 0}},
+                                                  law}});
+    }
+    return model;
+}
+
+// Settling course of a model with springs, from `held` of the model without them: the added springs
+// have full strength at τ = 1 and none at τ = 0.
+Course with_springs(const Model& model, Prescribed held) {
+    const auto before = held.strength.size(),
+               all = static_cast<Eigen::Index>(model.elastics.size());
+    held.free_length.conservativeResizeLike(VectorXd::Zero(all));
+    held.preload.conservativeResizeLike(MatrixXd::Zero(6, all));
+    held.strength.conservativeResizeLike(VectorXd::Constant(all, -1));
+    Course course = settling_course(model, held);
+    course.rate.strength.tail(all - before).setOnes();
+    return course;
+}
+
+std::string joint_of_row(const Model& model, int row) {
+    int next = 0;
+    for (const auto& constraint : model.constraints) {
+        next += rows(constraint.kind);
+        if (next > row) return model.joints[static_cast<std::size_t>(constraint.joint)].name;
+    }
+    return {};
+}
+
+// Continuation from τ = 1 to 0. On failure the state is the last one reached.
+std::optional<Failure> follow(const Path& settling, State& state) {
+    state = state_at(settling, 1, design_poses(settling.model));
+    if (!is_stationary(settling, state)) {
+        const Attempt closed = minimum_from(settling, 1, state.poses, state.modes.idle_motions());
+        if (closed.failure) return closed.failure;
+        state = closed.state;
+    }
+    Path path = settling;
+    path.first = state.modes;
+    Walk walk = walk_from(path, state);
+    const auto failure = advance(path, walk, 0);
+    state = walk.state;
+    if (!failure) return {};
+    return Failure{failure->outcome, fmt::format("{}, with {:.3g} % of what is held applied",
+                                                 failure->what, 100 * (1 - state.a))};
+}
+
+}  // namespace
+
+// Gauss-Newton on |Φ|², each step halved until |Φ| falls. At stagnation with Φ ≠ 0 the joints are
+// inconsistent; the row with the largest gap names one.
+std::optional<std::string> contradicting_joint(const Path& path, double a,
+                                               const std::vector<Pose>& poses_then) {
+    const Prescribed prescribed = at(path.course, a);
+    const VectorXd S = path.scales.coordinates(coordinates(path.model)),
+                   D = path.scales.rows(path.model);
+    Chart chart = chart_about(poses_then);
+    for (int i = 0; i < closing_steps; ++i) {
+        const ConstraintValues values = constraints(path.model, prescribed, chart);
+        const VectorXd Phi = D.cwiseProduct(values.Phi);
+        const double error = largest(Phi);
+        if (!std::isfinite(error) || error <= path.options.tolerance) return {};
+        Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
+        J.setThreshold(rank_threshold);
+        J.compute(transposed(scaled(values.Phi_q, D, S)).transpose());
+        VectorXd x = S.cwiseProduct(J.solve(-Phi));
+        double after = INFINITY;
+        for (int halved = 0; halved <= closing_halvings && !(after <= at_rest * Phi.norm());
+             ++halved) {
+            move_to(chart, x);
+            after = D.cwiseProduct(constraints(path.model, prescribed, chart).Phi).norm();
+            x *= 0.5;
+        }
+        if (!(after <= at_rest * Phi.norm())) {
+            int worst = 0;
+            Phi.cwiseAbs().maxCoeff(&worst);
+            return joint_of_row(path.model, worst);
+        }
+        chart = chart_about(poses(chart));
+    }
+    return {};
+}
+
+std::optional<Failure> settle(const Path& path, State& state) {
+    state = state_at(path, 0, design_poses(path.model));
+    if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite())
+        return Failure{Outcome::not_finite, "the design pose has no finite potential"};
+    if (!within_laws(path.model, path.turning, state.poses))
+        return Failure{Outcome::branch_lost, turned_over};
+    if (is_stationary(path, state) && !state.modes.unstable()) return {};
+
+    const Prescribed held = at(path.course, 0);
+    const auto along = [&](const Model& model, const Course& course) {
+        return Path{model, path.options, path.scales, course, turning_bushings(model, course),
+                    1,     path.counts};
+    };
+    const auto failure = follow(along(path.model, settling_course(path.model, held)), state);
+    if (!failure) return {};
+    const Model on = on_springs(path.model, path.scales);
+    if (State settled; !follow(along(on, with_springs(on, held)), settled)) {
+        state = state_at(path, 0, settled.poses);
+        return {};
+    }
+    if (const auto joint = contradicting_joint(path, 0, state.poses))
+        return Failure{Outcome::inconsistent_constraints,
+                       fmt::format("joint '{}' cannot be closed", *joint)};
+    return failure;
+}
+
+}  // namespace elastocheck::reference::energy

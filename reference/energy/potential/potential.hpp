@@ -1,0 +1,60 @@
+// Total potential energy V(x) and its hand-derived gradient.
+//
+//   V(x; a) = Σ U(e(x); a) - Σ f(a)·p(x) - Σ m(a)·φ,   U(e; a) = s(a) u(e - e₀(a)) + b(a)ᵀ e
+//
+// e(x) is an element's deformation: ℓ of a spring, (d, θ) of a bushing; u its law (laws.hpp), e₀
+// the spring's free length or the bushing's undeformed offset, b the preload. s = 1, except for
+// auxiliary elements while a model settles (settle.cpp). No forces are assembled: a gradient is
+// Eᵀ ∂U/∂e with E = ∂e/∂x.
+#pragma once
+
+#include "reference/energy/potential/chart.hpp"
+#include "reference/energy/potential/prescribed.hpp"
+
+namespace elastocheck::reference::energy {
+
+// The value is V(x) - V(0), summed from changes to keep its relative accuracy near the centre of
+// the chart.
+struct Potential {
+    double change = 0;         // [J]
+    Eigen::VectorXd gradient;  // ∂V/∂x [6nb], N and N·m
+};
+Potential potential(const Model& model, const Prescribed& prescribed, const Chart& chart);
+
+// [6nb], with `rate` the derivatives of `prescribed` with respect to a:
+//
+//   ∂²V/∂x∂a = Σ Eᵀ (b' + s' ∂u/∂e - s ∂²u/∂e² e₀') - Σ (∂p/∂x)ᵀ f' - Σ m'
+Eigen::VectorXd gradient_rate(const Model& model, const Prescribed& prescribed,
+                              const Prescribed& rate, const Chart& chart);
+
+// Gradient with every ∂U/∂e kept at its value at the centre: Σ E(x)ᵀ (∂U/∂e)_c - ... Its derivative
+// at the centre is the geometric part of the Hessian, due to the stress of the elements; the rest
+// is `stiffness`.
+Eigen::VectorXd gradient_at_centre_stress(const Model& model, const Prescribed& prescribed,
+                                          const Chart& chart);
+
+// Σ Eᵀ K E at the centre [6nb × 6nb], K = s ∂²u/∂e².
+Eigen::MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart);
+
+// ∂U/∂e of every element at the centre, row 0 of springs [6 × elements].
+Eigen::Matrix<double, 6, Eigen::Dynamic> stresses(const Model& model, const Prescribed& prescribed,
+                                                  const Chart& chart);
+
+// Size of the elastic forces at the centre [N]: Σ |forces| + |moments| / length.
+double stress_size(const Model& model, const Prescribed& prescribed, const Chart& chart,
+                   double length);
+
+// The bushings whose energy depends on their rotation somewhere along the branch.
+std::vector<int> turning_bushings(const Model& model, const Course& course);
+
+// Rotations of these bushings, principal values: the angles, and the rotation vector for a frame in
+// the middle (zero for the others) [3 × twice their number].
+Eigen::Matrix3Xd rotations(const Model& model, const std::vector<int>& bushings,
+                           const std::vector<Pose>& poses);
+
+// Whether all bushings are within the range where their formulation is differentiable
+// (way_to_the_end in relative_rotation.hpp).
+bool within_laws(const Model& model, const std::vector<int>& bushings,
+                 const std::vector<Pose>& poses);
+
+}  // namespace elastocheck::reference::energy

@@ -1,0 +1,103 @@
+// Continuation along a branch: from the design pose to the settled state at a = 0, then from point
+// to point.
+//
+// Past a limit point Newton's method may converge to an equilibrium of another branch. So a step is
+// accepted only if it is a short, nearly straight piece of one curve without a singular point: the
+// chord between two equilibria and the tangents at both ends agree within a quarter, the Jacobian
+// has the same orientation at both, and the stiffness stays positive over the whole step
+// (stability.hpp). Otherwise the step is halved; if that does not help, the branch ends here. The
+// requested points do not affect these decisions.
+//
+// These criteria assume that every element stays on one piece of its law. At a knot of a law the
+// branch has a kink, and the continuation restarts there (knots.hpp).
+#pragma once
+
+#include <optional>
+
+#include "reference/equilibrium/continuation/knots.hpp"
+#include "reference/equilibrium/continuation/newton.hpp"
+#include "reference/equilibrium/continuation/stability.hpp"
+#include "reference/equilibrium/linear_algebra/linearisation.hpp"
+
+namespace elastocheck::reference::equilibrium {
+
+// The continuation has two stages with a parameter t each: the homotopy from the design pose (t
+// from 0 to 1), and the branch (t = a).
+enum class Stage { settling, branch };
+
+// An accepted equilibrium.
+struct Station {
+    double t = 0;
+    Eigen::VectorXd x;
+    Linearisation linearised;
+    Stiffness stiffness;
+    Eigen::VectorXd E;        // remaining residual [n]
+    Eigen::VectorXd E_rate;   // dE/dt [n]
+    Eigen::VectorXd tangent;  // dx/dt [n]
+    Eigen::VectorXd mu;       // part of dE/dt outside the range of J [k]
+    std::vector<OnCurve> curves;
+};
+
+struct Walk {
+    const System& system;
+    const Options& options;
+    double length = 1;  // of the stage in t, the unit of the smallest step
+    // least stiffness and size of the tangent [1/t] at the start of the branch
+    double first_stiffness = 1;
+    double first_tangent = 0;
+    Stage stage = Stage::settling;
+    Pieces pieces = {};  // current pieces of the curves
+    Station here = {};
+    std::optional<Station> before = std::nullopt;  // on the same pieces
+    Counts counts = {};
+};
+
+inline Loading loading_at(const Walk& walk, double t) {
+    return walk.stage == Stage::settling ? Loading{0, 1 - t, 0, -1, walk.pieces}
+                                         : Loading{t, 0, 1, 0, walk.pieces};
+}
+
+enum class Verdict {
+    accepted,
+    out_of_reach,    // the tangent predicts a movement too large for one step
+    past_knot,       // an equilibrium of pieces that end before it
+    unsolved,        // the residual stays above the tolerance
+    another_branch,  // an equilibrium, but not on this branch
+    unsettled,       // on this branch, but a further Newton step is above its tolerance
+    uncertain,       // on this branch, but ends and middle do not determine the stability between
+    turned_over,     // on this branch, but past a singular point
+};
+
+struct Trial {
+    Verdict verdict;
+    Attempt attempt = {};
+    Station station = {};
+    double knot = 0;  // approximate t at which the first piece ends
+};
+
+struct Failure {
+    Outcome outcome;
+    std::string what;
+};
+
+Walk start(const System& system, const Options& options);  // at the design pose, held
+void hold(Walk& walk);  // restarts at the design pose, with the present system
+
+// After settling: starts the branch at a = 0; its points extend to `reach`.
+std::optional<Failure> begin_branch(Walk& walk, double reach);
+
+// Continues from the current station to t = target with as few steps as possible.
+std::optional<Failure> advance(Walk& walk, double target);
+
+// Reason why the branch does not continue from the current station towards t, from the most
+// informative trial.
+Failure failure(Walk& walk, double t, const Trial& trial);
+
+// Reason of an unsolvable right-hand side, from its left null vector: a load on an idle mode, or
+// inconsistent joints.
+Failure unanswerable(const System& system, const Eigen::VectorXd& left);
+
+// Failure where a mode is resisted by elements but too softly for the precision of J.
+Failure too_soft(const System& system, const Eigen::VectorXd& left);
+
+}  // namespace elastocheck::reference::equilibrium

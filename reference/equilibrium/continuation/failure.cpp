@@ -1,0 +1,192 @@
+// Diagnosis of the end of a branch.
+#include <fmt/format.h>
+
+#include "reference/equilibrium/continuation/continuation.hpp"
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::VectorXd;
+
+std::string body_with_largest(const System& system, const VectorXd& n) {
+    double largest_part = -1;
+    std::string name;
+    for (int body = 0; body < system.bodies; ++body) {
+        const double part = n.segment<6>(6 * body).norm();
+        if (part > largest_part * 1.000001) {
+            largest_part = part;
+            name = system.model->bodies[static_cast<std::size_t>(body)].name;
+        }
+    }
+    return name;
+}
+
+// Names of the joints that take part in a dependency of the constraints, one entry per row [m].
+std::string joints_in(const System& system, const VectorXd& by_row) {
+    constexpr double no_part = 1e-6;  // below round-off
+    std::string names;
+    int row = 0, last = -1;
+    for (const auto& constraint : system.model->constraints) {
+        const double part = by_row.segment(row, rows(constraint.kind)).norm();
+        row += rows(constraint.kind);
+        if (!(part > no_part * by_row.norm()) || constraint.joint == last) continue;
+        last = constraint.joint;
+        names += (names.empty() ? "'" : ", '") +
+                 system.model->joints[static_cast<std::size_t>(last)].name + "'";
+    }
+    return names;
+}
+
+// Remaining gap of the constraints near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ.
+// Where the constraints are inconsistent the iteration ends at Φ_qᵀ Φ = 0, so that Φ names the
+// conflicting ones.
+VectorXd gap(Walk& walk, double a, VectorXd x) {
+    // quadratic convergence for consistent constraints; no accuracy needed otherwise
+    constexpr int iterations = 30;
+    const System& system = walk.system;
+    const int m = system.constraint_rows;
+    const auto Phi = [&] { return VectorXd(residual(system, {a}, x).tail(m)); };
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+        const Sparse J = derivatives(system, {a}, x, walk.counts).J;
+        if (!is_finite(J)) break;
+        VectorXd dx = VectorXd::Zero(system.equations());
+        dx.head(6 * system.bodies) =
+            -least_squares(J.bottomLeftCorner(m, 6 * system.bodies), Phi());
+        if (!dx.allFinite()) break;
+        x = moved(system, x, dx);
+        ++walk.counts.factorisations;
+    }
+    return Phi();
+}
+
+// Tolerance of the scaled Φ: smaller gaps count as closed.
+constexpr double closed = 1e-9;
+
+// Whether a limit point lies just ahead, in contrast to a bifurcation. With u the left null vector
+// of J at the singular point, M u = 0, the tangent near it is x' = -(u · dE/dt) / μ v + ..., μ the
+// least stiffness. It grows as μ falls unless u · dE/dt = 0, that is, unless dE/dt is in the range
+// of J and another curve crosses this one. So at a limit point μ |x'| keeps its value, at a
+// bifurcation it goes to zero with μ.
+bool turns_back(const Walk& walk) {
+    constexpr double gone = 0.15, still_there = 0.02;  // relative to their values at a = 0
+    const double left = walk.here.stiffness.least / walk.first_stiffness;
+    return walk.stage == Stage::branch && std::abs(left) <= gone &&
+           std::abs(left) * pose_size(walk.system, walk.here.tangent) >=
+               still_there * walk.first_tangent;
+}
+
+// Whether a bifurcation was passed: beyond the singular point the same curve continues with a
+// negative eigenvalue of M, so another curve crosses it. M does not show a bifurcation of the
+// constraints.
+bool has_divided(const Walk& walk, const Trial& trial) {
+    const Stiffness& past = trial.station.stiffness;
+    return trial.verdict == Verdict::turned_over && past.least < -past.round_off &&
+           constraints_keep_their_side(walk.system, walk.here.linearised, trial.station.linearised);
+}
+
+}  // namespace
+
+Failure unanswerable(const System& system, const VectorXd& left) {
+    // Truly redundant joints balance each other, and leave only round-off on the bodies.
+    constexpr double repeated = 1e-11;
+    const double of_joints = left.tail(system.constraint_rows).norm(),
+                 of_bodies = left.head(6 * system.bodies).norm();
+    if (of_joints > of_bodies && of_bodies > repeated * of_joints)
+        return {Outcome::iteration_limit,
+                fmt::format("the joints {} so nearly repeat each other that arithmetic cannot tell "
+                            "what they leave free",
+                            joints_in(system, left.tail(system.constraint_rows)))};
+    if (of_joints > of_bodies)
+        return {Outcome::inconsistent_constraints,
+                fmt::format("the joints {} contradict each other",
+                            joints_in(system, left.tail(system.constraint_rows)))};
+    return {Outcome::loaded_idle_mode,
+            fmt::format("body '{}' is pushed along a motion that nothing resists",
+                        body_with_largest(system, left))};
+}
+
+Failure too_soft(const System& system, const VectorXd& left) {
+    return {Outcome::iteration_limit, fmt::format("body '{}' is pushed along a motion so much "
+                                                  "softer than others that arithmetic cannot tell "
+                                                  "its stiffness",
+                                                  body_with_largest(system, left))};
+}
+
+Failure failure(Walk& walk, double t, const Trial& trial) {
+    const System& system = walk.system;
+    const Attempt& attempt = trial.attempt;
+    const auto at = [&](double a) { return parameter(*system.branch, a); };
+    const bool settling = walk.stage == Stage::settling;
+    const std::string where =
+        settling
+            ? fmt::format("while settling at {}, {:.0f} % of the way", at(0), 100 * walk.here.t)
+        : at(walk.here.t) == at(t) ? "at " + at(t)
+                                   : fmt::format("between {} and {}", at(walk.here.t), at(t));
+
+    if (!settling && has_divided(walk, trial))
+        return {Outcome::bifurcation_point,
+                "the branch divides: another curve of equilibria crosses it, and past that it is "
+                "unstable, " +
+                    where};
+    if (trial.verdict == Verdict::turned_over)
+        return {Outcome::singular,
+                "the system is singular and the branch may divide or lose its stability " + where};
+    if (trial.verdict == Verdict::uncertain)
+        return {Outcome::singular,
+                "the system is too nearly singular to say that the branch goes on " + where};
+    // A mechanism at the end of its range has almost no gap here: its gap is evaluated farther on.
+    constexpr double further = 12, far = 1.8e-4;  // trial steps; share of the whole stage
+    const double target =
+        settling
+            ? 0
+            : walk.here.t +
+                  std::copysign(std::max(further * std::abs(t - walk.here.t), far * walk.length),
+                                t - walk.here.t);
+    const VectorXd Phi = system.constraint_rows > 0 ? gap(walk, target, walk.here.x) : VectorXd();
+    if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
+        return {Outcome::inconsistent_constraints,
+                settling
+                    ? fmt::format("no pose near the design pose satisfies all joints at {}: {} "
+                                  "cannot be closed",
+                                  at(0), joints_in(system, Phi))
+                    : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
+                                  at(walk.here.t), joints_in(system, Phi))};
+    if (const std::string bushing = bushing_without_angles(system, walk.here.x); !bushing.empty())
+        return {Outcome::branch_lost, fmt::format("{}, {}", bushing, where)};
+    if (turns_back(walk))
+        return {Outcome::limit_point,
+                "a limit point, past which no equilibrium continues the branch, " + where};
+    if (trial.verdict == Verdict::past_knot)
+        return {Outcome::iteration_limit, "no step ends at the knot of a law " + where};
+    if (trial.verdict == Verdict::out_of_reach)
+        return {Outcome::branch_lost, "the branch becomes too steep to be followed " + where};
+    if (trial.verdict == Verdict::unsettled)
+        return {Outcome::iteration_limit,
+                "the solution does not settle within arithmetic " + where};
+    if (trial.verdict == Verdict::unsolved) {
+        if (!std::isfinite(attempt.residual))
+            return {Outcome::not_finite, "the equations gave a number that is not finite " + where};
+        const VectorXd left_over = residual(system, loading_at(walk, t), attempt.x);
+        const Sparse& U = walk.here.linearised.modes.left;
+        constexpr double mostly = 0.9;
+        if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
+            return unanswerable(system, U * (U.transpose() * left_over));
+        // At a limit point a large part of the step remains unsolved. A far smaller remainder is
+        // the rounding limit, for poses of the model's own size, or proportionally larger farther
+        // from the origin.
+        constexpr double good_part = 1e-6, at_home = 1e-13;
+        double away = 1;
+        for (int body = 0; body < system.bodies; ++body)
+            away = std::max(away, walk.here.x.segment<3>(7 * body).norm());
+        const double end_of_arithmetic = away * at_home;
+        const double step = std::abs(t - walk.here.t) * largest(walk.here.E_rate);
+        if (attempt.out_of_time ||
+            attempt.residual <= std::max(good_part * step, end_of_arithmetic))
+            return {Outcome::iteration_limit,
+                    fmt::format("the scaled residual is {:.1e} after the last iteration {}",
+                                attempt.residual, where)};
+    }
+    return {Outcome::branch_lost, "no equilibrium continues the branch " + where};
+}
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,276 @@
+#include "reference/equilibrium/continuation/stability.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Round-off of an eigenvalue, relative to the largest entry of ∂(balance)/∂q.
+constexpr double eigenvalue_round_off = 1e-13;
+
+// Share of its least node below which the parabola may not dip; otherwise the step is halved.
+constexpr double deepest_dip = 0.5;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// The blocks ∂(balance)/∂q and Φ_q of J.
+Sparse balance_rows(const System& system, const Sparse& J) {
+    return J.topLeftCorner(6 * system.bodies, 6 * system.bodies);
+}
+Sparse constraint_rows(const System& system, const Sparse& J) {
+    return J.bottomLeftCorner(system.constraint_rows, 6 * system.bodies);
+}
+
+// Extremes of the eigenvalues μ of M, for Stiffness.
+struct Spectrum {
+    double least = std::numeric_limits<double>::infinity(), modulus = least;
+    int negative = 0;
+    void see(const std::complex<double>& mu) {
+        const bool real = mu.imag() == 0;
+        least = std::min(least, real ? mu.real() : std::abs(mu));
+        modulus = std::min(modulus, std::abs(mu));
+        negative += real && mu.real() < 0;
+    }
+    Stiffness of(const System& system, double round_off) const {
+        if (system.conservative) return {least, round_off};
+        return {negative % 2 == 0 ? modulus : -modulus, round_off, negative};
+    }
+};
+
+// ---- Definiteness without forming M
+
+// Idle modes are fixed by adding a stiffness to one unknown per mode in which the mode is large. By
+// inertia, k added terms create at most k positive eigenvalues, so a matrix with k null vectors
+// that becomes positive definite had no negative eigenvalue.
+std::vector<Index> held_unknowns(const Sparse& modes, Index n) {
+    std::vector<Index> held;
+    for (Index k = 0; k < modes.cols(); ++k) {
+        Index largest = -1;
+        double size = 0;
+        for (Sparse::InnerIterator at(modes, k); at; ++at)
+            if (at.row() < n && std::abs(at.value()) > size &&
+                std::ranges::find(held, at.row()) == held.end())
+                largest = at.row(), size = std::abs(at.value());
+        if (largest >= 0) held.push_back(largest);
+    }
+    return held;
+}
+
+// Whether no eigenvalue of the symmetric part of M is below -round_off. `false` is inconclusive: ρ
+// may be too small for the negative part of K, or so large that round-off dominates.
+bool surely_stable(const Sparse& K, const Sparse& Phi_q, const NullSpaces& idle, double size,
+                   double round_off) {
+    constexpr double strengths[] = {1e4, 1e7, 1e10};  // ρ over the largest entry of K
+    const Index n = K.rows();
+    Sparse held(n, n), K_T = K.transpose(), Phi_T = Phi_q.transpose();
+    std::vector<Eigen::Triplet<double>> diagonal;
+    for (int k = 0; k < n; ++k) diagonal.emplace_back(k, k, round_off);
+    for (const Index k : held_unknowns(idle.right, n))
+        diagonal.emplace_back(static_cast<int>(k), static_cast<int>(k), size);
+    held.setFromTriplets(diagonal.begin(), diagonal.end());
+    const Sparse S = (K + K_T) / 2 + held, constraints = Phi_T * Phi_q;
+    for (const double rho : strengths) {
+        const Eigen::SimplicialLDLT<Sparse> factors(Sparse(S + rho * size * constraints));
+        if (factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all()) return true;
+        if (Phi_q.rows() == 0) break;
+    }
+    return false;
+}
+
+// x = Z M⁻¹ Zᵀ b, with the idle modes projected out of b and x: P = 1 - V (VᵀV)⁻¹ Vᵀ, V the body
+// part of the modes. Some columns of V may be zero; the small number regularises these.
+struct Inverse {
+    const Linearisation& at;
+    Index n;
+    Sparse V;
+    Eigen::SimplicialLDLT<Sparse> gram;
+    Inverse(const Linearisation& linearised, Index size) : at(linearised), n(size) {
+        if (at.modes.count() == 0) return;
+        constexpr double nothing = 1e-14;
+        V = at.modes.right.topRows(n);
+        Sparse one(V.cols(), V.cols());
+        one.setIdentity();
+        gram.compute(Sparse(Sparse(V.transpose()) * V + nothing * one));
+    }
+    VectorXd without_idle(const VectorXd& b) const {
+        if (at.modes.count() == 0) return b;
+        return b - V * gram.solve(VectorXd(V.transpose() * b));
+    }
+    VectorXd operator()(const VectorXd& b) const {
+        VectorXd right = VectorXd::Zero(at.J.rows());
+        right.head(n) = without_idle(b);
+        return without_idle(answer(at.bordered, right).dx.head(n));
+    }
+};
+
+// Ritz values of an Arnoldi matrix H, and the size of the last entry of each eigenvector. Where an
+// energy makes M symmetric, H is nearly symmetric: each eigenvalue of S + N, S symmetric, is within
+// |N| of one of S (Bauer & Fike 1960). The eigenvalues of S are cheaper, and real where two
+// coincide.
+struct Ritz {
+    Eigen::VectorXcd theta;
+    VectorXd last;
+};
+std::optional<Ritz> ritz(const MatrixXd& H, bool conservative) {
+    constexpr double may_matter = 1e-3;
+    if (const MatrixXd S = (H + H.transpose()) / 2; conservative) {
+        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
+        if (solver.info() != Eigen::Success) return std::nullopt;
+        if ((H - S).norm() <= may_matter * solver.eigenvalues().cwiseAbs().maxCoeff())
+            return Ritz{solver.eigenvalues(),
+                        solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
+    }
+    const Eigen::EigenSolver<MatrixXd> solver(H);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    return Ritz{solver.eigenvalues(), solver.eigenvectors().bottomRows(1).transpose().cwiseAbs()};
+}
+
+// Eigenvalues of M next to zero by Arnoldi's method on M⁻¹, whose largest they are: the first ones,
+// to a relative error of 1e-8, as soon as the very first has converged; or `all`, which is the
+// complete spectrum without multiplicity if at most `most` motions are free.
+std::optional<Spectrum> next_to_zero(const Inverse& inverse, Index n, Index free, bool conservative,
+                                     bool all) {
+    constexpr Index most = 200, between_looks = 4;
+    constexpr double found = 1e-8, round_off = 1e-14;
+    const Index size = std::min(most, free);
+    MatrixXd Q(n, size), H = MatrixXd::Zero(size, size);
+    VectorXd next(n);  // generic start vector: fractions of multiples of the golden ratio
+    for (Index k = 0; k < n; ++k)
+        next[k] = std::fmod(0.6180339887498949 * static_cast<double>(k + 1), 1.) - 0.5;
+    next = inverse(next);
+    double left = next.norm();
+    if (!(std::isfinite(left) && left > 0)) return std::nullopt;
+    for (Index k = 0; k < size; ++k) {
+        if (k > 0) H(k, k - 1) = left;
+        Q.col(k) = next / left;
+        next = inverse(Q.col(k));
+        for (int pass = 0; pass < 2; ++pass) {
+            const VectorXd part = Q.leftCols(k + 1).transpose() * next;
+            next -= Q.leftCols(k + 1) * part;
+            H.col(k).head(k + 1) += part;
+        }
+        left = next.norm();
+        if (!std::isfinite(left)) return std::nullopt;
+        const MatrixXd H_k = H.topLeftCorner(k + 1, k + 1);
+        const bool last = k + 1 == size || left <= round_off * H_k.norm();
+        if (!last && (all || (k + 1) % between_looks != 0)) continue;
+        const auto values = ritz(H_k, conservative);
+        if (!values) return std::nullopt;
+        std::vector<Index> order(static_cast<std::size_t>(k + 1));
+        std::iota(order.begin(), order.end(), 0);
+        std::ranges::sort(order, std::greater{},
+                          [&](Index j) { return std::abs(values->theta[j]); });
+        const double largest = std::abs(values->theta[order.front()]);
+        const bool complete = last && (size == free || left <= round_off * largest);
+        Spectrum spectrum;
+        Index seen = 0;
+        for (const Index j : order) {
+            const double theta = std::abs(values->theta[j]);
+            if (theta <= round_off * largest ||
+                (!complete && left * values->last[j] > found * theta))
+                break;
+            spectrum.see(1. / values->theta[j]);
+            ++seen;
+        }
+        if (seen > 0) return spectrum;
+        if (last) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+// Self-stresses in the left null space: combinations of its vectors whose body part is zero.
+MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
+    constexpr double nothing = 1e-14;
+    const Index n = 6 * system.bodies, m = system.constraint_rows;
+    const Sparse of_bodies = modes.left.topRows(n);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(
+        MatrixXd(Sparse(of_bodies.transpose()) * of_bodies));
+    const Index count = (solver.eigenvalues().array() <= nothing).count();
+    return modes.left.bottomRows(m) * solver.eigenvectors().leftCols(count);
+}
+
+}  // namespace
+
+Stiffness stiffness(const System& system, const Linearisation& at) {
+    if (!is_finite(at.J)) return {nan, nan};
+    if (system.bodies == 0) return {};
+    const Index n = 6 * system.bodies, m = system.constraint_rows, k = at.modes.count();
+    const Index redundant = k == 0 ? 0 : self_stresses(system, at.modes).cols();
+    const Index free = n - (m - redundant) - (k - redundant);
+    if (free == 0) return {};
+    // Nearly redundant constraints: J and Φ_q disagree on the number of dependencies, so nothing
+    // can be decided.
+    if (free < 0) return {nan, nan};
+    const Sparse K = -balance_rows(system, at.J);
+    const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
+    const bool surely =
+        system.conservative &&
+        surely_stable(K, constraint_rows(system, at.J), at.modes, std::max(size, 1.0), round_off);
+    const auto spectrum = next_to_zero(Inverse(at, n), n, free, system.conservative, !surely);
+    return spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
+}
+
+bool constraints_keep_their_side(const System& system, const Linearisation& from,
+                                 const Linearisation& to) {
+    if (system.constraint_rows == 0) return true;
+    const Index m = system.constraint_rows;
+    const Sparse begin = constraint_rows(system, from.J), end = constraint_rows(system, to.J);
+    Sparse S = end * Sparse(begin.transpose());
+    if (const MatrixXd U =
+            from.modes.count() == 0 ? MatrixXd(m, 0) : self_stresses(system, from.modes);
+        U.cols() > 0) {
+        // ⎡ S   U ⎤
+        // ⎣ -Uᵀ 1 ⎦ has the determinant of S + U Uᵀ
+        std::vector<Eigen::Triplet<double>> entries;
+        for (Index j = 0; j < m; ++j)
+            for (Sparse::InnerIterator at(S, j); at; ++at)
+                entries.emplace_back(static_cast<int>(at.row()), static_cast<int>(j), at.value());
+        for (Index k = 0; k < U.cols(); ++k) {
+            const int border = static_cast<int>(m + k);
+            entries.emplace_back(border, border, 1.);
+            for (int i = 0; i < m; ++i)
+                if (U(i, k) != 0) {
+                    entries.emplace_back(i, border, U(i, k));
+                    entries.emplace_back(border, i, -U(i, k));
+                }
+        }
+        S = Sparse(m + U.cols(), m + U.cols());
+        S.setFromTriplets(entries.begin(), entries.end());
+    }
+    return Factors(S).sign() > 0;
+}
+
+// With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),
+// has its least value λ₀ - b² / 4c where 0 < -b / 2c < 1.
+Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to) {
+    const double l_0 = from.least, l_m = middle.least, l_1 = to.least;
+    const double round_off = std::max({from.round_off, middle.round_off, to.round_off});
+    const double least = std::min({l_0, l_m, l_1});
+    if (!(std::isfinite(l_0) && std::isfinite(l_m) && std::isfinite(l_1)))
+        return Stability::uncertain;
+    if (least < -round_off) return Stability::lost;
+    // Two eigenvalues became negative: through zero together, or around it as a complex pair. In
+    // the second case the least modulus is not small, and hardly changes over a sufficiently short
+    // step.
+    constexpr double hardly = 0.25;
+    const bool pair = from.negative != to.negative || from.negative != middle.negative;
+    if (pair && std::max({l_0, l_m, l_1}) > (1 + hardly) * least) return Stability::uncertain;
+    const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
+    const bool dips = c > 0 && b < 0 && -b < 2 * c;
+    if (dips && l_0 - b * b / (4 * c) < deepest_dip * least - round_off)
+        return Stability::uncertain;
+    return Stability::kept;
+}
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,236 @@
+#include "reference/equilibrium/linear_algebra/derivatives.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::VectorXd;
+
+// A term of the system depends on two bodies, at most three reactions and the parameter:
+// 6 + 6 + 3 + 1 derivatives.
+constexpr int first_reaction = 12, the_parameter = 15;
+using Jet = ceres::Jet<double, 16>;
+
+// Frame of a body after a step (δr / L, δπ). A rotation by δπ changes the quaternion by ½ (δπ, 0)
+// p: δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
+struct Seeds {
+    const System& system;
+    const VectorXd& x;
+
+    Frame<Jet> frame(const Part& part, int which) const {
+        const BodyId body = which == 0 ? part.i : part.j;
+        const Frame<double> at = frame_of(system, x, body);
+        Frame<Jet> frame{at.r.cast<Jet>(), at.p.cast<Jet>()};
+        if (body == ground) return frame;
+        const double hx = at.p.x() / 2, hy = at.p.y() / 2, hz = at.p.z() / 2, hw = at.p.w() / 2;
+        const int r = 6 * which, pi = r + 3;
+        for (int k = 0; k < 3; ++k) frame.r[k].v[r + k] = system.length;
+        frame.p.x().v.segment<3>(pi) << hw, hz, -hy;
+        frame.p.y().v.segment<3>(pi) << -hz, hw, hx;
+        frame.p.z().v.segment<3>(pi) << hy, -hx, hw;
+        frame.p.w().v.segment<3>(pi) << -hx, -hy, -hz;
+        return frame;
+    }
+    Jet reaction(const Part& part, int k) const {
+        return Jet(x[7 * system.bodies + part.row + k], first_reaction + k);
+    }
+};
+
+// Entries of J to which a term adds, in a fixed order: `entry(row, column, n)` receives the n-th
+// derivative. A direction does not depend on positions, nor a constraint on its own reactions.
+template <class Entry>
+void for_each_entry(const System& system, const Part& part, int row, bool balance,
+                    const Entry& entry) {
+    const int first = part.directions ? 3 : 0;
+    if (part.i != ground)
+        for (int k = first; k < 6; ++k) entry(row, 6 * part.i + k, k);
+    if (part.j != ground)
+        for (int k = first; k < 6; ++k) entry(row, 6 * part.j + k, 6 + k);
+    if (balance)
+        for (int k = 0; k < part.rows; ++k)
+            entry(row, 6 * system.bodies + part.row + k, first_reaction + k);
+}
+
+// Rows of the terms in assembly order: balance of a body, without forces for a direction
+// constraint, then the constraint.
+template <class Row>
+struct Rows {
+    const System& system;
+    Row& row;
+    void balance(const Part& part, BodyId body, const Vec3<Jet>& force, const Vec3<Jet>& moment) {
+        if (!part.directions)
+            for (int k = 0; k < 3; ++k) row(part, 6 * body + k, true, force[k]);
+        for (int k = 0; k < 3; ++k) row(part, 6 * body + 3 + k, true, moment[k]);
+    }
+    void constraint(const Part& part, int k, const Jet& Phi) {
+        row(part, 6 * system.bodies + part.row + k, false, Phi);
+    }
+};
+
+template <class Row>
+void for_each_row(const System& system, const Loading& loading, const VectorXd& x, Row row) {
+    Jet a(loading.a), held(loading.held);
+    a.v[the_parameter] = loading.a_rate;
+    held.v[the_parameter] = loading.held_rate;
+    Rows<Row> rows{system, row};
+    assemble<Jet>(system, a, held, loading.pieces, Seeds{system, x}, rows);
+}
+
+}  // namespace
+
+// Positions of the derivatives of each term in J, in assembly order.
+struct Pattern {
+    Sparse J;                 // zeros
+    std::vector<int> places;  // among its values
+};
+
+namespace {
+
+Pattern pattern_of(const System& system, const Loading& loading, const VectorXd& x) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for_each_row(system, loading, x, [&](const Part& part, int row, bool balance, const Jet&) {
+        for_each_entry(system, part, row, balance,
+                       [&](int i, int j, int) { entries.emplace_back(i, j, 0.); });
+    });
+    Pattern pattern{Sparse(system.equations(), system.equations()), {}};
+    pattern.J.setFromTriplets(entries.begin(), entries.end());
+    const int *start = pattern.J.outerIndexPtr(), *row = pattern.J.innerIndexPtr();
+    for (const auto& entry : entries)
+        pattern.places.push_back(static_cast<int>(
+            std::lower_bound(row + start[entry.col()], row + start[entry.col() + 1], entry.row()) -
+            row));
+    return pattern;
+}
+
+// Frame of a body that moves along dx; the quaternion as above.
+using Dual = ceres::Jet<double, 1>;
+Frame<Dual> at_rest(const Frame<double>& at) { return {at.r.cast<Dual>(), at.p.cast<Dual>()}; }
+Frame<Dual> moving_frame(const System& system, const VectorXd& x, const VectorXd& dx, BodyId body) {
+    const Frame<double> at = frame_of(system, x, body);
+    Frame<Dual> frame = at_rest(at);
+    if (body == ground) return frame;
+    const Eigen::Vector3d v = at.p.vec(), turn = dx.segment<3>(6 * body + 3);
+    const Eigen::Vector3d dv = (at.p.w() * turn + cross(turn, v)) / 2;
+    for (int k = 0; k < 3; ++k) frame.r[k].v[0] = system.length * dx[6 * body + k];
+    frame.p.x().v[0] = dv[0], frame.p.y().v[0] = dv[1], frame.p.z().v[0] = dv[2];
+    frame.p.w().v[0] = -v.dot(turn) / 2;
+    return frame;
+}
+
+}  // namespace
+
+Derivatives derivatives(const System& system, const Loading& loading, const VectorXd& x,
+                        Counts& counts) {
+    ++counts.evaluations;
+    if (!system.pattern)
+        system.pattern = std::make_shared<const Pattern>(pattern_of(system, loading, x));
+    Derivatives by{system.pattern->J, VectorXd::Zero(system.equations()),
+                   VectorXd::Zero(system.equations())};
+    double* values = by.J.valuePtr();
+    const int* place = system.pattern->places.data();
+    for_each_row(system, loading, x, [&](const Part& part, int row, bool balance, const Jet& term) {
+        by.E[row] += term.a;
+        by.E_rate[row] += term.v[the_parameter];
+        for_each_entry(system, part, row, balance,
+                       [&](int, int, int n) { values[*place++] += term.v[n]; });
+    });
+    by.E -= loading.held * system.at_design;
+    by.E_rate -= loading.held_rate * system.at_design;
+    return by;
+}
+
+VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x) {
+    struct Source {
+        const System& system;
+        const VectorXd& x;
+        Frame<Dual> frame(const Part& part, int which) const {
+            return at_rest(frame_of(system, x, which == 0 ? part.i : part.j));
+        }
+        Dual reaction(const Part& part, int k) const {
+            return Dual(x[7 * system.bodies + part.row + k]);
+        }
+    };
+    struct Sum {
+        const System& system;
+        VectorXd E_rate;
+        void balance(const Part&, BodyId body, const Vec3<Dual>& force, const Vec3<Dual>& moment) {
+            for (int k = 0; k < 3; ++k) {
+                E_rate[6 * body + k] += force[k].v[0];
+                E_rate[6 * body + 3 + k] += moment[k].v[0];
+            }
+        }
+        void constraint(const Part& part, int k, const Dual& Phi) {
+            E_rate[6 * system.bodies + part.row + k] += Phi.v[0];
+        }
+    };
+    Dual a(loading.a), held(loading.held);
+    a.v[0] = loading.a_rate;
+    held.v[0] = loading.held_rate;
+    Sum sum{system, -loading.held_rate * system.at_design};
+    assemble<Dual>(system, a, held, loading.pieces, Source{system, x}, sum);
+    return std::move(sum.E_rate);
+}
+
+Deforming deforming(const System& system, const Loading& loading, const VectorXd& x,
+                    const VectorXd& dx) {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const auto& elastics = system.model->elastics;
+    const auto rows = 6 * static_cast<Eigen::Index>(elastics.size());
+    Deforming all{VectorXd::Zero(rows), VectorXd::Zero(rows)};
+    for (std::size_t e = 0; e < elastics.size(); ++e) {
+        const auto [i, j] = bodies_of(elastics[e].kind);
+        const ElementPieces& on = loading.pieces.empty() ? all_by_themselves : loading.pieces[e];
+        const Vec6<Dual> d =
+            deformations(system, e, Dual(loading.a), moving_frame(system, x, dx, i),
+                         moving_frame(system, x, dx, j));
+        Vec6<Dual> force = Vec6<Dual>::Constant(Dual(0.0));
+        std::visit(
+            overloaded{
+                [&](const AxialSpring& spring) { force[0] = gradient(spring.law, d[0], on[0]); },
+                [&](const Bushing& bushing) { force = gradient(bushing.law, d, on); }},
+            elastics[e].kind);
+        const auto row = 6 * static_cast<Eigen::Index>(e);
+        for (int k = 0; k < 6; ++k) {
+            all.rate[row + k] = d[k].v[0];
+            all.answer[row + k] = force[k].v[0] / (system.force * system.length);
+        }
+        const auto* bushing = std::get_if<Bushing>(&elastics[e].kind);
+        const auto* coupled =
+            bushing != nullptr ? std::get_if<LinearStiffness>(&bushing->law) : nullptr;
+        if (coupled == nullptr) continue;
+        const Vector6 sizes = coupled->K.cwiseAbs() * all.rate.segment<6>(row).cwiseAbs();
+        for (int k = 0; k < 6; ++k)
+            if (std::abs(force[k].v[0]) <= rounding * sizes[k]) all.answer[row + k] = 0;
+    }
+    return all;
+}
+
+std::vector<OnCurve> on_curves(const System& system, const Loading& loading, const VectorXd& x,
+                               const VectorXd& dx) {
+    std::vector<OnCurve> all;
+    Dual a(loading.a);
+    a.v[0] = loading.a_rate;
+    const auto& elastics = system.model->elastics;
+    for (std::size_t e = 0; e < elastics.size(); ++e) {
+        std::array<const Curve*, 6> curves{};
+        for (std::size_t k = 0; k < 6; ++k)
+            curves[k] =
+                std::visit([&](const auto& kind) { return curve_of(kind, k); }, elastics[e].kind);
+        if (std::ranges::count(curves, nullptr) == 6) continue;
+        const auto [i, j] = bodies_of(elastics[e].kind);
+        const Vec6<Dual> now = deformations(system, e, a, moving_frame(system, x, dx, i),
+                                            moving_frame(system, x, dx, j));
+        for (std::size_t k = 0; k < 6; ++k)
+            if (curves[k] != nullptr) {
+                const Dual& value = now[static_cast<int>(k)];
+                all.push_back({e, k, curves[k], k < 3 ? system.length : 1, value.a, value.v[0]});
+            }
+    }
+    return all;
+}
+
+}  // namespace elastocheck::reference::equilibrium

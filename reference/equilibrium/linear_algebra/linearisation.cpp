@@ -1,0 +1,230 @@
+#include "reference/equilibrium/linear_algebra/linearisation.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// QR threshold on the equilibrated matrix: a column this close to the span of those before is
+// dependent. Healthy models stay above 1e-6.
+constexpr double null_threshold = 1e-11;
+
+// Exception: constraints that are redundant up to an angle σ do constrain, with a singular value of
+// σ² over a stiffness in J. Such a vector has an image larger than `nothing`, and consists of
+// reactions except for a part of about σ on bodies.
+constexpr double nothing = 1e-13, least_angle = 1e-9, largest_angle = 1e-3;
+
+// Below this condition number of the equilibrated matrix the null space is empty and is not
+// computed.
+constexpr double surely_regular = 1e8;
+
+// Equilibration sweeps; each halves the logarithm of the ratio of sizes.
+constexpr int equilibration_sweeps = 10;
+
+// Largest stiffness of a tracked mode, relative to the largest entry of J, that still counts as
+// idle.
+constexpr double idle_stiffness = 1e-10;
+
+// Relative to the length of a mode: smaller entries are round-off and dropped.
+constexpr double no_part = 1e-14;
+
+// Orthonormal basis of the columns with their orientation: Gram-Schmidt applied twice, which is as
+// accurate as Householder and keeps the sparsity of columns without a common row.
+Sparse orthonormal(const Sparse& columns) {
+    Sparse Q(columns.rows(), columns.cols());
+    std::vector<Eigen::SparseVector<double>> done;
+    for (Index k = 0; k < columns.cols(); ++k) {
+        Eigen::SparseVector<double> q = columns.col(k);
+        for (int pass = 0; pass < 2; ++pass)
+            for (const auto& before : done)
+                if (const double part = before.dot(q); part != 0) q -= part * before;
+        q /= q.norm();
+        q.prune(1., no_part);
+        Q.startVec(k);
+        for (Eigen::SparseVector<double>::InnerIterator at(q); at; ++at)
+            Q.insertBack(at.index(), k) = at.value();
+        done.push_back(std::move(q));
+    }
+    Q.finalize();
+    return Q;
+}
+
+// D_r A D_c with rows and columns of size one (Ruiz 2001).
+struct Equilibrated {
+    Sparse A;
+    VectorXd D_r, D_c;
+};
+Equilibrated equilibrated(const Sparse& J) {
+    Equilibrated of{J, VectorXd::Ones(J.rows()), VectorXd::Ones(J.cols())};
+    const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
+    for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
+        VectorXd r = VectorXd::Zero(J.rows()), c = VectorXd::Zero(J.cols());
+        for (Index k = 0; k < J.cols(); ++k)
+            for (Sparse::InnerIterator at(of.A, k); at; ++at) {
+                const double size = std::abs(at.value());
+                r[at.row()] = std::max(r[at.row()], size);
+                c[k] = std::max(c[k], size);
+            }
+        r = r.unaryExpr(scale), c = c.unaryExpr(scale);
+        for (Index k = 0; k < J.cols(); ++k)
+            for (Sparse::InnerIterator at(of.A, k); at; ++at) at.valueRef() *= r[at.row()] * c[k];
+        of.D_r.array() *= r.array();
+        of.D_c.array() *= c.array();
+    }
+    return of;
+}
+
+// Number of body unknowns: beyond them the diagonal block of A is zero.
+Index of_bodies(const Sparse& A) {
+    Index n = 0;
+    for (Index j = 0; j < A.cols(); ++j)
+        for (Sparse::InnerIterator at(A, j); at; ++at)
+            n = std::max(n, std::min<Index>(at.row(), j) + 1);
+    return n;
+}
+
+// Removes columns that are null only by the threshold. If one column is not quite null, all
+// combinations are searched, which takes a dense matrix.
+Sparse without_angles(const Sparse& A, const Sparse& columns) {
+    const Sparse images = A * columns;
+    bool all = true;
+    for (Index k = 0; k < columns.cols() && all; ++k)
+        all = images.col(k).norm() <= nothing * columns.col(k).norm();
+    if (all) return columns;
+    MatrixXd V = Eigen::HouseholderQR<MatrixXd>(MatrixXd(columns)).householderQ() *
+                 MatrixXd::Identity(columns.rows(), columns.cols());
+    const Eigen::JacobiSVD<MatrixXd> svd(V.topRows(of_bodies(A)), Eigen::ComputeThinV);
+    V *= svd.matrixV();
+    std::vector<Index> kept;
+    for (Index k = 0; k < V.cols(); ++k) {
+        const double part = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
+        if (!(part > least_angle && part < largest_angle && (A * V.col(k)).norm() > nothing))
+            kept.push_back(k);
+    }
+    return MatrixXd(V(Eigen::all, kept)).sparseView();
+}
+
+Sparse bordered_matrix(const Sparse& J, const NullSpaces& modes) {
+    const Index n = J.rows(), k = modes.count();
+    if (k == 0) return J;
+    // column j: the entries of the modes in unknown j
+    const Sparse V_rows = modes.right.transpose();
+    Sparse B(n + k, n + k);
+    B.reserve(J.nonZeros() + modes.left.nonZeros() + modes.right.nonZeros());
+    for (Index j = 0; j < n; ++j) {
+        B.startVec(j);
+        for (Sparse::InnerIterator at(J, j); at; ++at) B.insertBack(at.row(), j) = at.value();
+        for (Sparse::InnerIterator at(V_rows, j); at; ++at)
+            B.insertBack(n + at.row(), j) = at.value();
+    }
+    for (Index j = 0; j < k; ++j) {
+        B.startVec(n + j);
+        for (Sparse::InnerIterator at(modes.left, j); at; ++at)
+            B.insertBack(at.row(), n + j) = at.value();
+    }
+    B.finalize();
+    return B;
+}
+
+// Tracks the idle modes: with the old modes as border, J v + U μ = 0, Vᵀv = 1 gives the modes here
+// with the least rotation, valid as long as their stiffness μ is round-off.
+bool track(Linearisation& at) {
+    const Index n = at.J.rows(), k = at.modes.count();
+    MatrixXd ones = MatrixXd::Zero(n + k, k);
+    ones.bottomRows(k).setIdentity();
+    const MatrixXd right = at.bordered.solve(ones), left = at.bordered.solve_transposed(ones);
+    const double stiffness = right.bottomRows(k).cwiseAbs().maxCoeff();
+    if (!right.allFinite() || !left.allFinite() ||
+        !(stiffness <= idle_stiffness * largest_entry(at.J)))
+        return false;
+    at.modes = {orthonormal(right.topRows(n).sparseView(1., no_part)),
+                orthonormal(left.topRows(n).sparseView(1., no_part))};
+    return true;
+}
+
+}  // namespace
+
+// Rank is judged on the equilibrated matrix D_r J D_c, because a large ratio of stiffnesses is not
+// a singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
+NullSpaces null_spaces(const Sparse& J) {
+    const auto [A, D_r, D_c] = equilibrated(J);
+    if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
+    const auto [near_right, near_left] = null_bases(A, null_threshold);
+    const Sparse A_t = A.transpose();
+    Sparse right = without_angles(A, near_right), left = without_angles(A_t, near_left);
+    if (right.cols() != left.cols()) right = near_right, left = near_left;
+    return {orthonormal(D_c.asDiagonal() * right), orthonormal(D_r.asDiagonal() * left)};
+}
+
+Factors bordered_like(const Linearisation& like, const Sparse& J) {
+    return Factors(bordered_matrix(J, like.modes), &like.bordered);
+}
+
+Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
+    Linearisation at;
+    at.J = std::move(J);
+    if (at.J.rows() == 0 || !is_finite(at.J)) return at;
+    if (before != nullptr) {
+        at.modes = before->modes;
+        at.bordered = bordered_like(*before, at.J);
+        ++counts.factorisations;
+        at.modes_are_new = at.modes.count() > 0 && !track(at);
+        at.modes_are_soft = before->modes_are_soft;
+        if (!at.modes_are_new) return at;
+        at.modes_are_soft = false;
+    }
+    at.modes = null_spaces(at.J);
+    at.bordered = Factors(bordered_matrix(at.J, at.modes));
+    counts.factorisations += 2;
+    return at;
+}
+
+Rate answer(const Factors& bordered, const VectorXd& E_rate) {
+    const Index n = E_rate.size(), k = bordered.size() - n;
+    if (n == 0) return {};
+    if (bordered.sign() == 0)
+        return {VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN()),
+                VectorXd::Zero(std::max<Index>(k, 0))};
+    VectorXd right = VectorXd::Zero(n + k);
+    right.head(n) = -E_rate;
+    const VectorXd solution = bordered.solve(right);
+    return {solution.head(n), solution.tail(k)};
+}
+
+// Augmented system with the longer side of A first, so that its null space, which becomes the
+// border, contains only the dependencies of A:
+//
+//   ⎡ 1   A ⎤ ⎧ r ⎫   ⎧ b ⎫              ⎡ 1   Aᵀ ⎤ ⎧  x ⎫   ⎧ 0 ⎫
+//   ⎣ Aᵀ  0 ⎦ ⎩ x ⎭ = ⎩ 0 ⎭      or      ⎣ A   0  ⎦ ⎩ -y ⎭ = ⎩ b ⎭
+//
+// On the left: r is orthogonal to the columns of A, and x has no part in the null space. On the
+// right: x is in the row space of A, and the border takes the part of b outside the range of A.
+VectorXd least_squares(const Sparse& A, const VectorXd& b) {
+    const bool tall = A.rows() >= A.cols();
+    const Index first = std::max(A.rows(), A.cols()), size = A.rows() + A.cols();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index k = 0; k < first; ++k)
+        entries.emplace_back(static_cast<int>(k), static_cast<int>(k), 1.);
+    for (Index k = 0; k < A.cols(); ++k)
+        for (Sparse::InnerIterator at(A, k); at; ++at) {
+            const Index i = tall ? at.row() : at.col(), j = first + (tall ? at.col() : at.row());
+            entries.emplace_back(static_cast<int>(i), static_cast<int>(j), at.value());
+            entries.emplace_back(static_cast<int>(j), static_cast<int>(i), at.value());
+        }
+    Sparse G(size, size);
+    G.setFromTriplets(entries.begin(), entries.end());
+    VectorXd right = VectorXd::Zero(size);
+    right.segment(tall ? 0 : first, b.size()) = -b;
+    Counts counts;
+    const VectorXd solution = answer(linearise(std::move(G), nullptr, counts).bordered, right).dx;
+    return solution.segment(tall ? first : 0, A.cols());
+}
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,106 @@
+#include "reference/equilibrium/linear_algebra/soft_modes.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Deformations below this part of the motion are rounding; the threshold for G, relative to the
+// largest entry of J, is its square.
+constexpr double no_deformation = 1e-12;
+
+// Modes with a smaller part on bodies are self-stresses of redundant joints.
+constexpr double of_bodies = 1e-3;
+
+// Threshold of the null vectors of J, relative to its largest entry. The vector v of an idle motion
+// may contain a part δ of motions whose stiffness μ is above this threshold. Then G = μ δ² and
+// |J v| = μ δ, hence G ≤ |J v|² / threshold; a soft motion has G = |J v|.
+constexpr double threshold = 1e-11;
+
+// Relative to the largest eigenvalue of G: smaller ones are zero.
+constexpr double no_part = 1e-12;
+
+// Relative to the largest entry of J: smaller stiffnesses are below its rounding.
+constexpr double told = 16 * std::numeric_limits<double>::epsilon();
+
+// Largest allowed ratio of G to |J v|.
+constexpr double few = 4;
+
+struct Sorted {
+    Sparse idle;       // unresisted modes [n × k]
+    double least = 0;  // least stiffness of the others
+    Index resisted = 0;
+};
+Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, const Sparse& J,
+              const Sparse& modes) {
+    const Index n = 6 * system.bodies;
+    const double size = largest_entry(J);
+    std::vector<Index> idle, resisted;
+    std::vector<Deforming> by;
+    for (Index k = 0; k < modes.cols(); ++k) {
+        const VectorXd v = modes.col(k);
+        const double motion = v.head(n).norm(), left = (J * v).head(n).norm();
+        Deforming one = deforming(system, loading, x, v);
+        const double nothing =
+            std::max(std::pow(no_deformation * motion, 2) * size, left * left / (threshold * size));
+        // The elastic stiffness may be cancelled by the geometric one, as of a loaded bushing that
+        // spins: then G exceeds |J v|.
+        const double stored = one.rate.dot(one.answer), most = few * left * motion + told * size;
+        if (motion < of_bodies * v.norm() || !(stored > nothing && stored <= most)) {
+            idle.push_back(k);
+        } else {
+            resisted.push_back(k);
+            by.push_back(std::move(one));
+        }
+    }
+    const auto count = static_cast<Index>(resisted.size());
+    Sorted result{modes, 0, count};
+    if (count == 0) return result;
+    MatrixXd G(count, count);
+    for (Index a = 0; a < count; ++a)
+        for (Index b = 0; b < count; ++b)
+            G(a, b) =
+                by[static_cast<std::size_t>(a)].rate.dot(by[static_cast<std::size_t>(b)].answer);
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver((G + G.transpose()) / 2);
+    const double largest = solver.eigenvalues()[count - 1];
+    const Index nothing = (solver.eigenvalues().array() <= no_part * largest).count();
+    MatrixXd all(modes.rows(), static_cast<Index>(idle.size()) + nothing);
+    for (std::size_t k = 0; k < idle.size(); ++k)
+        all.col(static_cast<Index>(k)) = VectorXd(modes.col(idle[k]));
+    MatrixXd soft(modes.rows(), count);
+    for (Index k = 0; k < count; ++k)
+        soft.col(k) = VectorXd(modes.col(resisted[static_cast<std::size_t>(k)]));
+    all.rightCols(nothing) = soft * solver.eigenvectors().leftCols(nothing);
+    // relative to motions of size one
+    const VectorXd softest = soft * solver.eigenvectors().col(nothing);
+    result.idle = all.sparseView();
+    result.resisted = count - nothing;
+    result.least = solver.eigenvalues()[nothing] / softest.head(n).squaredNorm();
+    return result;
+}
+
+}  // namespace
+
+void free_what_is_resisted(const System& system, const Loading& loading, const VectorXd& x,
+                           Linearisation& at, Counts& counts) {
+    if (at.modes.count() == 0 || system.elements.empty()) return;
+    const double size = largest_entry(at.J);
+    const Sorted right = sorted(system, loading, x, at.J, at.modes.right);
+    if (right.resisted == 0) return;
+    const Sorted left = sorted(system, loading, x, at.J.transpose(), at.modes.left);
+    at.modes_are_soft = !(right.least > told * size) || left.resisted != right.resisted;
+    if (at.modes_are_soft) return;
+    at.modes = {right.idle, left.idle};
+    at.bordered = bordered_like(at, at.J);
+    ++counts.factorisations;
+}
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,267 @@
+// Square system of this leg: force and moment balance of every body and all constraints, scaled to
+// order one.
+//
+// Unknowns x [7 nb + m]: per body (r - centre) / L and the quaternion (x, y, z, w), then the
+// reactions R of the constraint rows over F, or F L where a row holds a direction. A step dx [n],
+// n = 6 nb + m, has per body (δr / L, δπ) instead. Residuals E [n], in this order:
+//
+//   per body   Σ forces / F,  Σ moments about its origin / (F L)
+//   per row    Φ / L, or Φ where it is a cosine
+//
+// L is the radius of the model about `centre`. F is the largest of the applied forces, the elastic
+// forces in the design pose and the force of the stiffest element at a deformation of a hundredth
+// of L. With this F the round-off of stiff elements stays well below the tolerance, for any driver,
+// units and ground frame.
+//
+// Every quantity that a driver may move, static or not, is start + rate·a. So E is a function of
+// (x, a), and ∂E/∂a comes from the same automatic differentiation as ∂E/∂x.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+
+#include "elastocheck/equilibrium_path.hpp"
+#include "reference/equilibrium/statement/equations.hpp"
+
+namespace elastocheck::reference::equilibrium {
+
+struct Affine {
+    double start = 0, rate = 0;
+    template <class T>
+    T at(const T& a) const {
+        return start + rate * a;
+    }
+};
+
+// Driven quantities of an element along the branch; only the one of its kind is used.
+struct ElementPath {
+    Affine free_length;             // of a spring [m]
+    std::array<Affine, 6> preload;  // of a bushing [N, N·m]
+    // design force of the element, ∂u/∂x or ∂u/∂e + preload, of which held · stored is subtracted
+    // while settling [N, N·m]
+    Vector6 stored = Vector6::Zero();
+    bool rotational = false;  // the bushing's forces depend on the relative rotation of its markers
+};
+
+// A load and its factor: 1 for static loads.
+struct LoadPath {
+    LoadKind kind;
+    Affine factor;
+};
+
+struct Pattern;  // of J (derivatives.hpp)
+
+struct System {
+    const Model* model = nullptr;
+    const Branch* branch = nullptr;
+    std::vector<Affine>
+        values;  // per Model::constraints: its offset, length or angle [m, rad], if it has one
+    // per Model::constraints: from such an angle to its design value [rad], or 0
+    std::vector<double> turns;
+    std::vector<ElementPath> elements;                 // per Model::elastics
+    std::vector<LoadPath> loads;                       // static and driven
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // [m], ground axes
+    double length = 1;                                 // L [m]
+    double force = 1;                                  // F [N]
+    int bodies = 0;                                    // nb
+    int constraint_rows = 0;                           // m
+    bool conservative = true;                          // no follower, no formulation without energy
+    bool grows = false;         // loads and element forces grow as `held` falls (settle.hpp)
+    double hold = 0;            // ground springs have stiffness hold · held [F / L, F L]
+    Eigen::VectorXd carried;    // reactions of the joints at the design pose [m]
+    Eigen::VectorXd at_design;  // E there, at a = 0 [n]
+    // computed with the first J; a system is not shared between threads
+    mutable std::shared_ptr<const Pattern> pattern;
+
+    int unknowns() const { return 7 * bodies + constraint_rows; }
+    int equations() const { return 6 * bodies + constraint_rows; }
+};
+
+// Equation to be solved: E(x; a, held) = held · at_design. With held = 1 the design pose is an
+// equilibrium. Towards held = 0 everything that is present at a = 0 is applied: static loads,
+// preloads, held values of drivers, and constraints that the design pose does not satisfy
+// (settle.hpp). A driven angle changes as value + held · turn: its row is a sine, and scaling the
+// row instead would lead to the nearer of two opposite directions.
+//
+// `pieces`: piece of its curve for each deformation, per Model::elastics, so that E is smooth
+// across knots; empty: the piece that contains the deformation.
+using Pieces = std::vector<ElementPieces>;
+struct Loading {
+    double a = 0;
+    double held = 0;                   // [-]
+    double a_rate = 0, held_rate = 0;  // d/dt along the current stage
+    Pieces pieces = {};
+};
+
+// `points` are values of a. Throws std::invalid_argument where model and branch do not fit, or a
+// driver moves a quantity that its joint or element does not have.
+System make_system(const Model& model, const Branch& branch, std::span<const double> points);
+
+// E at the design pose, a = 0 and held = 1, without the term held · at_design.
+Eigen::VectorXd held_at_design(const System& system);
+// Design force of element e: ElementPath::stored.
+Vector6 stored_at_design(const System& system, std::size_t e);
+
+Frame<double> frame_of(const System& system, const Eigen::VectorXd& x, BodyId body);
+
+Eigen::VectorXd design_unknowns(const System& system);
+// Unknowns for these poses and zero reactions. Throws std::invalid_argument unless there is one
+// pose per body.
+Eigen::VectorXd unknowns_at(const System& system, const std::vector<Pose>& poses);
+Eigen::VectorXd residual(const System& system, const Loading& loading, const Eigen::VectorXd& x);
+
+Eigen::VectorXd moved(const System& system, const Eigen::VectorXd& x, const Eigen::VectorXd& dx);
+Eigen::VectorXd step_between(const System& system, const Eigen::VectorXd& from,
+                             const Eigen::VectorXd& to);
+
+// The largest |δr| / L or |δπ| of a body, infinite when any entry is not finite.
+double pose_size(const System& system, const Eigen::VectorXd& dx);
+// largest absolute entry, NaN when any entry is not finite
+double largest(const Eigen::VectorXd& E);
+
+// Message about a bushing close to the singularity of its angles or of its middle frame: "bushing
+// 'x' is turned by half a turn, where its rotation has no value", or empty.
+std::string bushing_without_angles(const System& system, const Eigen::VectorXd& x);
+
+// "1500 N", "-40 mm": the branch's parameter in display units.
+std::string parameter(const Branch& branch, double a);
+
+Equilibrium state_of(const System& system, const Loading& loading, const Eigen::VectorXd& x);
+
+// The ground in the frame of the system, whose origin is `centre`.
+inline Frame<double> ground_frame(const System& system) {
+    return {-system.centre, Eigen::Quaterniond::Identity()};
+}
+
+// The preload of a bushing at a.
+template <class T>
+Vec6<T> preload_at(const ElementPath& path, const T& a) {
+    Vec6<T> preload;
+    for (int k = 0; k < 6; ++k) preload[k] = path.preload[static_cast<std::size_t>(k)].at(a);
+    return preload;
+}
+
+// Actions of element e on its two bodies.
+template <class T>
+OnBoth<T> interaction(const System& system, std::size_t e, const T& a, const T& held,
+                      const Pieces& pieces, const Frame<T>& i, const Frame<T>& j) {
+    const ElementPath& path = system.elements[e];
+    const ElementPieces& on = pieces.empty() ? all_by_themselves : pieces[e];
+    return std::visit(
+        overloaded{[&](const AxialSpring& spring) {
+                       const T preload = system.grows ? T(-held * path.stored[0]) : T(0.0);
+                       return interaction(spring, path.free_length.at(a), preload, on[0], i, j);
+                   },
+                   [&](const Bushing& bushing) {
+                       Vec6<T> preload = preload_at(path, a);
+                       if (system.grows)
+                           for (int k = 0; k < 6; ++k) preload[k] -= held * path.stored[k];
+                       return interaction(bushing, preload, path.rotational, on, i, j);
+                   }},
+        system.model->elastics[e].kind);
+}
+
+// Deformation that enters the law of element e: ℓ - ℓ₀ as first entry, or e - e₀.
+template <class T>
+Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Frame<T>& i,
+                     const Frame<T>& j) {
+    const ElementPath& path = system.elements[e];
+    return std::visit(overloaded{[&](const AxialSpring& spring) {
+                                     Vec6<T> x = Vec6<T>::Constant(T(0.0));
+                                     x[0] = deformation(spring, path.free_length.at(a), i, j);
+                                     return x;
+                                 },
+                                 [&](const Bushing& bushing) {
+                                     return Vec6<T>(measured(bushing, path.rotational, i, j).e -
+                                                    bushing.undeformed.cast<T>());
+                                 }},
+                      system.model->elastics[e].kind);
+}
+
+// Constraint c with the reactions R of its rows [N, N·m].
+template <class T>
+Holding<T> holding(const System& system, std::size_t c, const T& a, const T& held,
+                   const Frame<T>& i, const Frame<T>& j, const T* R) {
+    const T value = system.values[c].at(a) + held * system.turns[c];
+    return std::visit([&](const auto& kind) { return holding(kind, value, i, j, R); },
+                      system.model->constraints[c].kind);
+}
+
+// ---- Assembly, for double and for Jets
+
+// One term of the system: the bodies it couples, and its constraint rows, whose reactions enter.
+struct Part {
+    BodyId i = ground, j = ground;
+    int row = 0, rows = 0;
+    // its rows constrain directions: independent of the positions, with moments only
+    bool directions = false;
+};
+
+// `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)`
+// its scaled reactions; `sink.balance(part, body, force, moment)` and
+// `sink.constraint(part, k, Phi)` take the scaled terms, to be summed.
+template <class T, class Source, class Sink>
+void assemble(const System& system, const T& a, const T& held, const Pieces& pieces,
+              const Source& source, Sink& sink) {
+    const Model& model = *system.model;
+    const double per_force = 1 / system.force, per_moment = per_force / system.length,
+                 per_length = 1 / system.length;
+
+    const auto apply = [&](const Part& part, BodyId body, const Frame<T>& frame,
+                           const Interaction<T>& on, const T& factor) {
+        if (body == ground) return;
+        const Vec3<T> moment = on.moment + cross(Vec3<T>(on.at - frame.r), on.force);
+        sink.balance(part, body, Vec3<T>(on.force * T(factor * per_force)),
+                     Vec3<T>(moment * T(factor * per_moment)));
+    };
+
+    for (std::size_t e = 0; e < model.elastics.size(); ++e) {
+        const auto [i, j] = bodies_of(model.elastics[e].kind);
+        const Part part{i, j};
+        const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
+        const auto on = interaction(system, e, a, held, pieces, frame_i, frame_j);
+        apply(part, i, frame_i, on.i, T(+1.0));
+        apply(part, j, frame_j, on.j, T(+1.0));
+    }
+    for (const auto& load : system.loads) {
+        const Part part{body_of(load.kind), ground};
+        if (part.i == ground) continue;
+        const Frame<T> body = source.frame(part, 0);
+        apply(part, part.i, body,
+              std::visit([&](const auto& k) { return on_body(k, body); }, load.kind),
+              system.grows ? T(load.factor.at(a) * (1.0 - held)) : load.factor.at(a));
+    }
+
+    if (system.hold != 0)
+        for (int body = 0; body < system.bodies; ++body) {
+            const Part part{body, ground};
+            const Frame<T> frame = source.frame(part, 0);
+            const Pose& drawn = model.bodies[static_cast<std::size_t>(body)].design;
+            apply(
+                part, body, frame,
+                drawn_back(frame, Eigen::Vector3d(drawn.r - system.centre), drawn.p, system.length),
+                T(held * (system.hold * system.force)));
+        }
+
+    int row = 0;
+    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+        const auto& kind = model.constraints[c].kind;
+        const auto [i, j] = bodies_of(kind);
+        const bool directions = is_direction(kind);
+        const Part part{i, j, row, rows(kind), directions};
+        const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
+        T R[3];
+        for (int k = 0; k < part.rows; ++k)
+            R[k] = source.reaction(part, k) *
+                   (directions ? system.force * system.length : system.force);
+        const auto h = holding(system, c, a, held, frame_i, frame_j, R);
+        apply(part, i, frame_i, h.reaction, T(+1.0));
+        apply(part, j, frame_j, h.reaction, T(-1.0));
+        for (int k = 0; k < part.rows; ++k)
+            sink.constraint(part, k, T(h.Phi[k] * (directions ? 1.0 : per_length)));
+        row += part.rows;
+    }
+}
+
+}  // namespace elastocheck::reference::equilibrium

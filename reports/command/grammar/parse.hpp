@@ -1,0 +1,24 @@
+// Parses the command line by the registry of commands, and runs the given command.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/command/grammar/command.hpp"
+
+namespace elastocheck::reports {
+
+struct Program {
+    std::string name, description, version, footer;
+};
+inline constexpr const char* version_help =
+    "the version, the commit it was built from, and the libraries in it";
+inline constexpr const char* help_help = "this text; after a command, its options";
+
+// Returns the exit code. Prints --help and --version; reports an unknown word with the nearest
+// known one (exit code 2). Throws std::invalid_argument for a word that is not one line of UTF-8
+// (arguments.hpp), and what the command throws.
+int parse_and_run(const Program& program, const std::vector<Command>& commands, int argc,
+                  char** argv);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,170 @@
+#include "reports/command/options/candidate_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <stdexcept>
+
+#include "reports/files/files.hpp"
+#include "reports/files/subprocess.hpp"
+#include "reports/files/terminal.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+// "75=a.csv", or "a.csv" without a number.
+std::pair<int, std::string> steps_and_file(const std::string& text) {
+    const auto at = text.find('=');
+    int steps = 0;
+    if (at != text.npos) {
+        const auto [end, error] = std::from_chars(text.data(), text.data() + at, steps);
+        if (error == std::errc{} && end == text.data() + at && steps > 0)
+            return {steps, text.substr(at + 1)};
+    }
+    return {0, text};
+}
+
+std::string replaced(std::string text, std::string_view what, const std::string& by) {
+    for (auto at = text.find(what); at != text.npos; at = text.find(what, at + by.size()))
+        text.replace(at, what.size(), by);
+    return text;
+}
+
+std::vector<std::string> command_words(const std::string& command) {
+    std::vector<std::string> words;
+    try {
+        words = words_of(command);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(fmt::format("--candidate-command: {}", error.what()));
+    }
+    if (words.empty()) throw std::invalid_argument("--candidate-command: no program is named");
+    if (std::ranges::none_of(words,
+                             [](const std::string& w) { return w.find("{output}") != w.npos; }))
+        throw std::invalid_argument(
+            "--candidate-command: no {output} in it; allowed: words with {scene}, {steps} and "
+            "{output}, the "
+            "file that the "
+            "program is to write");
+    return words;
+}
+
+}  // namespace
+
+void add_candidate_options(std::vector<Option>& options, CandidateRequest& request) {
+    options.push_back(
+        {"--candidate", TextList{&request.files, TextList::Form::repeated, a_file("*.csv")},
+         "what another solver says: outputs (CSV) or states (JSON lines, CSV); STEPS=FILE where "
+         "it has steps"});
+    options.push_back(
+        {"--candidate-command", Text{&request.command},
+         "a solver to be run, without a shell: './mysolver {scene} {steps} {output}'"});
+    options.push_back({"--candidate-timeout", RealNumber{&request.timeout, 0.001, 86400},
+                       "seconds after which the command is killed (default: 60)"});
+    options.push_back({"--map", Text{&request.map, a_file("*.yaml")},
+                       "YAML: how the candidate names its columns, their units, signs, offsets"});
+}
+
+void check(const CandidateRequest& request, const Settings& settings) {
+    if (!request.map.empty()) {
+        if (!request.wanted())
+            throw std::invalid_argument("--map: says how to read a --candidate; give one");
+        (void)read_column_map(read_whole(request.map, largest_baseline), request.map);
+    }
+    if (request.command.empty()) return;
+    (void)command_words(request.command);
+    if (!settings.empty())
+        throw std::invalid_argument(
+            "--candidate-command: not with --set: the program reads the scene as it stands in its "
+            "file; "
+            "change it there");
+}
+
+std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const std::string& scene,
+                                        const std::vector<int>& steps) {
+    std::vector<CandidateOutput> list;
+    for (const auto& text : request.files) {
+        const auto [n, file] = steps_and_file(text);
+        list.push_back({.name = std::filesystem::path(file).stem().string(),
+                        .file = file,
+                        .steps = n,
+                        .content = read_whole(file, largest_measurement),
+                        .failed = {}});
+    }
+    if (request.command.empty()) return list;
+    const auto words = command_words(request.command);
+    const TemporaryFolder folder;
+    for (const int n : steps) {
+        const std::string output = folder.path() + fmt::format("/{}", n);
+        auto given = words;
+        for (auto& word : given)
+            word =
+                replaced(replaced(replaced(word, "{steps}", std::to_string(n)), "{output}", output),
+                         "{scene}", scene);
+        CandidateOutput& run_of = list.emplace_back();
+        run_of.name = std::filesystem::path(words.front()).filename().string();
+        run_of.file = fmt::format("{} with {} steps", run_of.name, n);
+        run_of.steps = n;
+        run_of.of_command = true;
+        progress(run_of.file);
+        const Ended ended = run(given, request.timeout);
+        run_of.seconds = ended.seconds, run_of.cpu = ended.cpu;
+        if (!ended.well()) {
+            run_of.failed = fmt::format("'{}' {}", words.front(), describe(ended, request.timeout));
+            if (!ended.said.empty()) print_error("{}: it said:\n{}\n", run_of.file, ended.said);
+            continue;
+        }
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(output, ignored))
+            run_of.failed = fmt::format("'{}' wrote no output file", words.front());
+        else
+            try {
+                run_of.content = read_whole(output, largest_measurement);
+                if (run_of.content.find_first_not_of(" \t\r\n") == std::string::npos)
+                    run_of.failed = fmt::format("'{}' wrote nothing", words.front());
+            } catch (const FileError& error) {
+                run_of.failed = error.what();
+            }
+        if (!run_of.failed.empty() && !ended.said.empty())
+            print_error("{}: it said:\n{}\n", run_of.file, ended.said);
+    }
+    progress("");
+    return list;
+}
+
+compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
+                                   const LoadedScene& loaded, const compare::Comparison& comparison,
+                                   const compare::Tolerance& tolerance, bool asked) {
+    compare::CandidateJudgement none;
+    none.name = output.name, none.tolerance = tolerance, none.asked = asked;
+    if (!output.failed.empty()) {
+        none.reasons.push_back(output.failed);
+        return none;
+    }
+    const ColumnMap map =
+        request.map.empty()
+            ? ColumnMap{}
+            : read_column_map(read_whole(request.map, largest_baseline), request.map);
+    try {
+        auto candidate = read_candidate(output.content, output.file, output.name, loaded.scene,
+                                        loaded.model, comparison, map);
+        candidate.complete = output.of_command;
+        return compare::judge_candidate(loaded.model, comparison, candidate, tolerance, asked);
+    } catch (const SheetError& error) {
+        if (!output.of_command) throw;
+        none.reasons.emplace_back(error.what());
+    } catch (const std::invalid_argument& error) {  // points that cannot be placed
+        if (!output.of_command) throw SheetError(fmt::format("{}: {}", output.file, error.what()));
+        none.reasons.emplace_back(error.what());
+    }
+    return none;
+}
+
+int steps_of(const Model& model) {
+    int most = 1;
+    for (const auto& branch : model.branches) most = std::max(most, branch.steps);
+    return most;
+}
+
+}  // namespace elastocheck::reports

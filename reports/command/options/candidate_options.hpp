@@ -1,0 +1,56 @@
+// Command-line options for external candidates, and their outputs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/candidate/candidate.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/options/load_scene.hpp"
+#include "reports/document/candidate_file.hpp"
+
+namespace elastocheck::reports {
+
+struct CandidateRequest {
+    std::vector<std::string> files;  // --candidate: FILE, or STEPS=FILE
+    std::string command;             // --candidate-command
+    double timeout = 60;             // --candidate-timeout [s]
+    std::string map;                 // --map
+
+    bool wanted() const { return !files.empty() || !command.empty(); }
+};
+void add_candidate_options(std::vector<Option>& options, CandidateRequest& request);
+
+// Output of one file or one run.
+struct CandidateOutput {
+    std::string name;  // of the file or of the program
+    std::string file;  // source of the content, for messages
+    int steps = 0;     // given or requested number of steps; 0: not given
+    bool of_command = false;
+    std::string content;
+    // reason for missing content: the command crashed, took too long, wrote nothing
+    std::string failed;
+    double seconds = 0, cpu = 0;  // of the command
+};
+
+// Throws std::invalid_argument for a request that is invalid for any candidate; called before the
+// work.
+void check(const CandidateRequest& request, const Settings& settings);
+
+// Reads the files, and runs the command once per number of steps. A failure of the command is not
+// an exception.
+std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const std::string& scene,
+                                        const std::vector<int>& steps);
+
+// A failed command or an unreadable output of it gives a judgement `could not judge`; an unreadable
+// file is bad input and throws SheetError.
+compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
+                                   const LoadedScene& loaded, const compare::Comparison& comparison,
+                                   const compare::Tolerance& tolerance, bool asked);
+
+// Default number of steps for a command: those of the recursion on the longest branch.
+int steps_of(const Model& model);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,72 @@
+#include "reports/command/options/limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "compare/outputs/channels.hpp"
+#include "models/branch.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+// Memory of one point: parameter, |Φ| and the outputs in a separate block, and the reserve of
+// doubling growth.
+double bytes_per_row(std::size_t channels, bool written) {
+    // Measured on the McPherson strut: a written number takes 270 bytes more, for JSON, its text,
+    // and a line of curves.csv.
+    constexpr double in_document = 270;
+    const auto numbers = static_cast<double>(channels + 2);
+    constexpr double overhead = 2 * (sizeof(double) + sizeof(std::vector<double>));
+    return overhead + numbers * (sizeof(double) + (written ? in_document : 0));
+}
+
+double points_of(const Branch& branch, const Asked& asked) {
+    return 1.0 + (asked.steps > 0 ? asked.steps : branch.steps) / asked.every;
+}
+
+void check(double points, double bytes, double steps_per_branch,
+           const std::string& points_of_what) {
+    if (points * bytes <= most_memory) return;
+    throw std::invalid_argument(fmt::format(
+        "{} would take about {:.1f} GB; allowed: {:.0f} GB, which is {:.0f} steps a branch",
+        points_of_what, 1e-9 * points * bytes, 1e-9 * most_memory,
+        std::floor(steps_per_branch * most_memory / (points * bytes)) - 1));
+}
+
+}  // namespace
+
+void check_memory(const Model& model, const Asked& asked) {
+    double points = 0;
+    for (const auto& branch : model.branches) points += points_of(branch, asked);
+    const auto branches = static_cast<double>(std::max<std::size_t>(1, model.branches.size()));
+    check(points, asked.legs * bytes_per_row(compare::channels(model).size(), asked.written),
+          asked.every * points / branches,
+          fmt::format("{:.0f} points on {} branches, by {} of the legs,", points,
+                      model.branches.size(), asked.legs));
+}
+
+void check_memory_of_rows(const Model& model, const Asked& asked, std::size_t channels) {
+    for (Branch branch : model.branches) {
+        if (asked.steps > 0) branch.steps = asked.steps;
+        const auto all = ways(branch);
+        if (all.size() < 2) continue;
+        const double points = points_of(all.front(), {.every = asked.every});
+        check(
+            points, bytes_per_row(channels, false), branch.steps,
+            fmt::format("{:.0f} points of branch '{}' that come in reverse", points, branch.name));
+    }
+}
+
+void check_every(const Model& model, int steps, int every) {
+    for (const auto& branch : model.branches)
+        if (const int has = steps > 0 ? steps : branch.steps; every > has)
+            throw std::invalid_argument(
+                fmt::format("--every {}: branch '{}' has {} steps; allowed: 1 to as many", every,
+                            branch.name, has));
+}
+
+}  // namespace elastocheck::reports

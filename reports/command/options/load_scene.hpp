@@ -1,0 +1,32 @@
+// Loads a scene for a command: reads, trims, compiles.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/model.hpp"
+#include "elastocheck/scene.hpp"
+#include "reports/command/grammar/command.hpp"
+
+namespace elastocheck::reports {
+
+// A requested trim was not reached or not confirmed by the second reference; the scene is not
+// judged. what() reads "FILE:LINE: trim: ...".
+struct NotTrimmed : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+struct LoadedScene {
+    Scene scene;  // trimmed
+    Model model;
+    std::optional<compare::TrimRecord> trim;
+};
+
+// Throws SceneError, also for an ill-posed trim; NotTrimmed.
+LoadedScene load_scene(const std::string& file, const Settings& settings,
+                       Detail detail = Detail::required);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,62 @@
+#include "reports/command/options/recursion_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "compare/studies/work_precision.hpp"
+#include "reports/command/options/limits.hpp"
+
+namespace elastocheck::reports {
+
+void add_recursion_options(std::vector<Option>& options, RecursionRequest& request) {
+    options.push_back({"--steps", Integer{&request.steps, 1, most_steps},
+                       "load steps per branch (default: as the scene says)"});
+    options.push_back({"--tolerance", Text{&request.tolerance},
+                       "of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)"});
+    options.push_back({"--order", Integer{&request.order, 1, 60}, "of the series (default: 16)"});
+    options.push_back(
+        {"--expansions", Integer{&request.expansions, 1, 1'000'000},
+         "of the series, at most; as many more for each knot gone over (default: 200)"});
+}
+
+recursive::Options recursion(const RecursionRequest& request) {
+    recursive::Options options;
+    options.method = recursive::find_method(request.method).value();
+    options.steps = request.steps;
+    auto* adaptive = std::get_if<recursive::Adaptive>(&options.method.kind);
+    auto* series = std::get_if<recursive::Series>(&options.method.kind);
+    const auto belongs = [&](bool given, bool has, std::string_view option, std::string_view to) {
+        if (given && !has)
+            throw std::invalid_argument(
+                fmt::format("{}: only with --method {}, not with {}", option, to, request.method));
+    };
+    belongs(!request.tolerance.empty(), adaptive || series, "--tolerance", "adaptive or series");
+    belongs(request.order > 0, series, "--order", "series");
+    belongs(request.expansions > 0, series, "--expansions", "series");
+    belongs(request.arc_length, series, "--arc-length", "series");
+    if (series) {
+        if (request.order > 0) series->order = request.order;
+        if (request.expansions > 0) series->expansions = request.expansions;
+        series->arc_length = request.arc_length;
+    }
+    if (request.tolerance.empty()) return options;
+    const compare::Tolerance tolerance = compare::parse_tolerance(request.tolerance);
+    if (series && std::isfinite(tolerance.deg))
+        throw std::invalid_argument(
+            "--tolerance: the series is told one length, such as 1e-9mm, which bounds positions "
+            "and, times "
+            "the "
+            "model's size, angles");
+    if (series) series->tolerance = 1e-3 * tolerance.mm;
+    if (adaptive && std::isfinite(tolerance.mm)) adaptive->length_tolerance = 1e-3 * tolerance.mm;
+    if (adaptive)
+        adaptive->angle_tolerance = std::isfinite(tolerance.deg)
+                                        ? tolerance.deg * std::numbers::pi / 180
+                                        : adaptive->length_tolerance;
+    return options;
+}
+
+}  // namespace elastocheck::reports

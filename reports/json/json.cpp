@@ -1,0 +1,38 @@
+#include "reports/json/json.hpp"
+
+#include <fmt/format.h>
+
+namespace elastocheck::reports {
+
+nlohmann::ordered_json parse_json(std::string_view text) {
+    // A value takes 16 bytes, in an object 48 with its name; a list or an object also has a heap
+    // vector with doubling growth.
+    constexpr double of_value = 2 * 48, of_list = 48;
+    int depth = 0;
+    double size = static_cast<double>(text.size());
+    bool in_string = false;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        if (in_string && c == '\\') {
+            ++k;
+        } else if (c == '"') {
+            in_string = !in_string;
+        } else if (!in_string) {
+            const bool opens = c == '[' || c == '{';
+            depth += opens - (c == ']' || c == '}');
+            size += opens ? of_value + of_list : c == ',' ? of_value : 0;
+            if (depth > deepest_json)
+                throw JsonError(fmt::format("nested more than {} deep", deepest_json));
+        }
+    }
+    if (size > largest_json)
+        throw JsonError(fmt::format("would take about {:.1f} GB of memory; allowed: {:.0f} GB",
+                                    1e-9 * size, 1e-9 * largest_json));
+    try {
+        return nlohmann::ordered_json::parse(text);
+    } catch (const nlohmann::json::exception& error) {
+        throw JsonError(fmt::format("is no JSON, or was cut off ({})", error.what()));
+    }
+}
+
+}  // namespace elastocheck::reports

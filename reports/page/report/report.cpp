@@ -1,0 +1,427 @@
+#include "reports/page/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <list>
+#include <set>
+#include <sstream>
+
+#include "reports/document/curves.hpp"
+#include "reports/document/document.hpp"
+#include "reports/files/files.hpp"
+#include "reports/files/folder.hpp"
+#include "reports/files/templates.hpp"
+#include "reports/json/json.hpp"
+#include "reports/json/json_cursor.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/plot.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/page/survival_map.hpp"
+#include "reports/page/svg.hpp"
+#include "reports/text/escape.hpp"
+#include "reports/text/numbers.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+// ---- Page
+
+json table_json(const Table& table) {
+    json columns = json::array(), rows = json::array();
+    for (const auto& column : table.columns)
+        columns.push_back({{"name", column.name}, {"words", column.words}});
+    for (const auto& row : table.rows) {
+        json cells = json::array();
+        for (std::size_t c = 0; c < row.size(); ++c)
+            cells.push_back({{"text", row[c]},
+                             {"words", c < table.columns.size() && table.columns[c].words},
+                             {"head", c == 0}});
+        rows.push_back({{"cells", cells}});
+    }
+    return {
+        {"caption", table.caption}, {"columns", columns}, {"rows", rows}, {"folded", table.folded}};
+}
+
+// Sentences of a section, one paragraph each.
+json paragraphs(const Section& section) {
+    json list = json::array();
+    std::istringstream lines(render("text/" + section.id, section.words, Escape::nothing));
+    for (std::string line; std::getline(lines, line);) {
+        while (!line.empty() && line.front() == ' ') line.erase(0, 1);
+        if (!line.empty()) list.push_back(line);
+    }
+    return list;
+}
+
+// A scene with its sections and its prefix for files and ids.
+struct ScenePart {
+    Field scene;
+    std::string id;
+    std::vector<Section> sections;
+    std::vector<Plot> plots{};
+};
+
+struct Page {
+    std::set<std::string> names{};
+    std::vector<Illustration> pictures{};
+    std::size_t next = 0;
+
+    std::string unique(const std::string& wanted) {
+        std::string name = wanted;
+        for (int n = 2; !names.insert(name).second; ++n) name = fmt::format("{}-{}", wanted, n);
+        return name;
+    }
+
+    ScenePart part(const Field& scene) {
+        ScenePart part{scene, unique(slug(fs::path(scene["source"].text()).stem().string())),
+                       sections_of(scene)};
+        for (const auto& section : part.sections)
+            for (const auto& group : section.figures)
+                for (const auto& figure : group.figures)
+                    part.plots.push_back(
+                        {&figure, unique(fmt::format("{}-{}", part.id, figure.id))});
+        return part;
+    }
+
+    json figure(const Plot& plot) {
+        return {{"name", plot.name},
+                {"title", plot.figure->title},
+                {"description", plot.figure->description},
+                {"svg", pictures.at(next++).inlined}};
+    }
+
+    json section(const Section& section, const ScenePart& part, std::size_t& plot) {
+        json single = json::array(), several = json::array(), tables = json::array();
+        for (const auto& group : section.figures) {
+            json figures = json::array();
+            for (std::size_t k = 0; k < group.figures.size(); ++k)
+                figures.push_back(figure(part.plots.at(plot++)));
+            json entry = {{"caption", group.caption},
+                          {"figures", figures},
+                          {"table", table_json(group.table)}};
+            entry["wide"] = group.figures.size() > 1;
+            entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet &&
+                             group.figures.front().sheet->width > 400;
+            (group.figures.size() > 1 ? several : single).push_back(entry);
+        }
+        for (const auto& table : section.tables) tables.push_back(table_json(table));
+        json groups = single;
+        for (const auto& entry : several) groups.push_back(entry);
+        json tiles = section.words.contains("tiles") ? section.words["tiles"] : json::array();
+        json all = paragraphs(section);
+        return {{"id", unique(fmt::format("{}-{}", part.id, section.id))},
+                {"title", section.title},
+                {"first", section.mark != Mark::none},
+                {"mark", section.mark == Mark::pass ? json{{"class", "pass"}, {"text", "pass"}}
+                         : section.mark == Mark::fail
+                             ? json{{"class", "fail"}, {"text", "fail"}}
+                             : json{{"class", "open"}, {"text", "not judged"}}},
+                {"paragraphs", all},
+                {"lead", all.empty() ? json("") : all[0]},
+                {"rest", all.size() > 1 ? json(std::vector<json>(all.begin() + 1, all.end()))
+                                        : json::array()},
+                {"has_tiles", !tiles.empty()},
+                {"tiles", tiles},
+                {"has_figures", !groups.empty()},
+                {"groups", groups},
+                {"tables", tables}};
+    }
+
+    json scene(const ScenePart& part) {
+        json sections = json::array();
+        std::size_t plot = 0;
+        std::string before;
+        for (const auto& one : part.sections) {
+            sections.push_back(section(one, part, plot));
+            sections.back()["part"] =
+                one.part != before && !one.part.empty()
+                    ? json{{"title", one.part}, {"id", unique(part.id + "-" + slug(one.part))}}
+                    : json(nullptr);
+            sections.back()["depth"] = one.part.empty() ? "###" : "####";
+            sections.back()["deep"] = !one.part.empty();
+            before = one.part;
+        }
+        return {{"id", part.id},
+                {"name", part.scene["name"].text()},
+                {"conclusive", part.scene["verdict"]["conclusive"].truth()},
+                {"sections", sections}};
+    }
+};
+
+// Summary of several scenes: deviation and verdict of each.
+Table summary(const std::list<ScenePart>& parts) {
+    Table table{
+        .caption =
+            "At a glance: the largest deviations of the linear recursion as published, and whether "
+            "they are within the tolerance",
+        .columns = {{"scene", true},
+                    {"verdict", true},
+                    {"position, at equal load or drive"},
+                    {"position, at equal travel"},
+                    {"angle, at equal load or drive"},
+                    {"angle, at equal travel"},
+                    {"wheel rate"},
+                    {"force, moment or rate, of its extent"},
+                    {"cheapest method within the tolerance", true}}};
+    for (const auto& part : parts) {
+        std::vector<std::string> row{part.scene["name"].text()};
+        const auto judgement = part.scene.find("judgement");
+        const std::string found = judgement && part.scene["verdict"]["conclusive"].truth()
+                                      ? (*judgement)["verdict"].text()
+                                      : "not judged";
+        row.push_back(found == "fail" ? "FAIL" : found);
+        for (const char* key : {"position", "position_across", "angle", "angle_across"}) {
+            const auto worst = judgement ? judgement->find(key) : std::nullopt;
+            row.push_back(!worst ? "–"
+                                 : quantity((*worst)["max"].number(), (*worst)["unit"].text()));
+        }
+        const auto rate = judgement ? judgement->find("wheel_rate") : std::nullopt;
+        const double off = rate ? (*rate)["off"].number() : NAN;
+        row.push_back(
+            !rate ? "–"
+                  : fmt::format("{} too {}", percent(std::abs(off)), off < 0 ? "soft" : "stiff"));
+        double other = -1;
+        for (const char* key : {"other", "other_across"})
+            if (const auto worst = judgement ? judgement->find(key) : std::nullopt)
+                other = std::max(other, (*worst)["share"].number());
+        row.push_back(other < 0 ? "–" : percent(other));
+        const auto trade = part.scene.find("trade");
+        const auto chosen = trade ? trade->find("recommendation") : std::nullopt;
+        row.push_back(chosen ? configuration(*chosen) : "–");
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+json provenance(const Field& result) {
+    const Field p = result["provenance"];
+    Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
+    table.rows = {
+        {"elastocheck", p["elastocheck"].text()},
+        {"commit", p["commit"].text() + (p["dirty"].truth() ? ", with uncommitted changes" : "")},
+        {"compiler", p["compiler"].text()},
+        {"flags", p["flags"].text()}};
+    if (const auto cpu = p.find("cpu")) table.rows.push_back({"CPU", cpu->text()});
+    for (const auto& [name, version] : p["libraries"].entries())
+        table.rows.push_back({name, version.text()});
+    for (const auto& scene : result["scenes"].items())
+        table.rows.push_back({scene["source"].text(), "hash " + scene["input_hash"].text()});
+    return table_json(table);
+}
+
+// Seeded faults (mutation tests), and the first failing check of each.
+json alarms(const Field& result) {
+    const auto found = result.find("alarms");
+    if (!found) return nullptr;
+    Table table{.caption = "Seeded faults, and the first alarm to ring",
+                .columns = {{"fault", true},
+                            {"in", true},
+                            {"what it simulates", true},
+                            {"first to ring", true},
+                            {"margin"},
+                            {"alarms"}},
+                .rows = {},
+                .folded = true};
+    int survived = 0;
+    for (const auto& fault : found->items()) {
+        const std::string first = fault["first"].text(), margin = fault["margin"].text();
+        survived += first.empty();
+        table.rows.push_back({fault["fault"].text(), fault["in"].text(), fault["simulates"].text(),
+                              first.empty() ? "survived" : first, margin.empty() ? "–" : margin,
+                              whole_number(fault["alarms"].whole())});
+    }
+    return {{"count", table.rows.size()},
+            {"survived", survived == 0 ? json("none") : json(survived)},
+            {"table", table_json(table)}};
+}
+
+}  // namespace
+
+std::string numbers_csv(const json& result, const std::string& file) {
+    std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
+    const Field root{&result, "", &file};
+    const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
+                         const std::string& quantity, double value, double tolerance) {
+        csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
+                           for_csv(fs::path(scene["source"].text()).stem().string()),
+                           for_csv(branch["name"].text()), for_csv(channel.name),
+                           for_csv(channel.unit), quantity, value, tolerance);
+    };
+    for (const auto& scene : root["scenes"].items())
+        for (const auto& branch : scene["branches"].items()) {
+            const LegCurve truth = curve_of(branch, "equilibrium");
+            const Sweep sweep = sweep_of(scene, branch);
+            const std::string by_parameter = "published " + sweep.at_equal_parameter(),
+                              by_abscissa = "published " + sweep.at_equal_abscissa();
+            for (const auto& channel : main_channels_of(scene)) {
+                const auto values = truth.channel(channel.name);
+                const auto load =
+                    branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
+                if (values.empty() || !load) continue;
+                // The references agree far better; a deviation contains the rounding of many steps.
+                const double range = (*load)["range"].number(), fine = 1e-6,
+                             coarse = 1e-6 + 1e-6 * range;
+                row(scene, branch, channel, "equilibrium at the end", values.back(), fine);
+                row(scene, branch, channel, by_parameter + ": deviation at the end",
+                    (*load)["end"].number(), coarse);
+                row(scene, branch, channel, by_parameter + ": largest deviation",
+                    (*load)["max"].number(), coarse);
+                if (const auto travel =
+                        branch["deviation"]["at_equal_abscissa"]["channels"].find(channel.name))
+                    row(scene, branch, channel, by_abscissa + ": largest deviation",
+                        (*travel)["max"].number(), coarse);
+            }
+        }
+    return csv;
+}
+
+namespace {
+
+// Checks also fields without a section, since they are copied to the report's own result.json. (It
+// escapes line ends.)
+void expect_plain(const Field& field) {
+    const auto check = [&](std::string text) {
+        std::ranges::replace_if(
+            text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+        if (const std::string wrong = flaw(text); !wrong.empty())
+            field.fail("expected plain text: " + wrong);
+    };
+    if (field.value->is_string()) check(field.value->get<std::string>());
+    if (field.value->is_array())
+        for (const auto& item : field.items()) expect_plain(item);
+    if (field.value->is_object())
+        for (const auto& [key, value] : field.value->items()) {
+            check(key);
+            expect_plain({&value, field.path.empty() ? key : field.path + "." + key, field.file});
+        }
+}
+
+}  // namespace
+
+json parse_result(std::string_view text, const std::string& file) {
+    json result;
+    const Field root{&result, "", &file};
+    try {
+        result = parse_json(text);
+    } catch (const JsonError& error) {
+        root.fail(error.what());
+    }
+    const Field schema = root["schema"];
+    if (schema.text() != result_schema)
+        schema.fail(
+            fmt::format("'{}' is not a document this program reads; allowed: '{}'. Run the command "
+                        "that made it again",
+                        schema.text(), result_schema));
+    if (root["scenes"].items().empty()) root["scenes"].fail("there is no scene in it");
+    expect_plain(root);
+    return result;
+}
+
+namespace {
+
+// A report before its figures are drawn.
+struct Draft {
+    Page page{};
+    std::list<ScenePart> parts{};  // pointers in `plots` refer to these
+    std::vector<Plot> plots{};
+};
+
+Draft draft(const Field& root) {
+    Draft made;
+    for (const auto& scene : root["scenes"].items()) {
+        made.parts.push_back(made.page.part(scene));
+        const auto& plots = made.parts.back().plots;
+        made.plots.insert(made.plots.end(), plots.begin(), plots.end());
+    }
+    return made;
+}
+
+// Pages and tables with their figures, and the answer of each scene.
+struct Texts {
+    std::vector<NamedContent> files{};
+    std::vector<Answer> answers{};
+};
+
+// `sections` as in Page::scene.
+Answer answer(const Field& scene, const json& sections) {
+    const Field verdict = scene["verdict"];
+    Answer made{.name = scene["name"].text(),
+                .source = scene["source"].text(),
+                .sentence = {},
+                .mark = {},
+                .conclusive = verdict["conclusive"].truth(),
+                .reasons = verdict["reasons"].texts()};
+    for (const auto& section : sections)
+        if (section["first"]) made.sentence = section["lead"];
+    const auto judgement = scene.find("judgement");
+    made.mark = judgement         ? (*judgement)["verdict"].text()
+                : made.conclusive ? "judged"
+                                  : "not judged";
+    return made;
+}
+
+Texts texts(Draft draft, const json& result, const std::string& file, bool archive) {
+    const Field root{&result, "", &file};
+    json scenes = json::array();
+    for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
+    json tints = json::array();
+    for (std::size_t k = 0; k < palette.size(); ++k)
+        tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
+    const json data = {
+        {"title",
+         scenes.size() == 1 ? scenes[0]["name"] : json(fmt::format("{} scenes", scenes.size()))},
+        {"several", scenes.size() > 1},
+        {"scenes", scenes},
+        {"summary", table_json(summary(draft.parts))},
+        {"provenance", provenance(root)},
+        {"reproduce", for_terminal(root["reproduce"].text())},
+        {"stress", survival(root)},
+        {"alarms", alarms(root)},
+        {"tints", tints}};
+    const std::string markdown = render("markdown/page", data, Escape::markdown);
+    Texts made;
+    if (archive)
+        made.files = {{"README.md", markdown}, {"numbers.csv", numbers_csv(result, file)}};
+    else
+        made.files = {{"report.html", render("html/page", data, Escape::html)},
+                      {"report.md", markdown},
+                      {"result.json", result.dump(1) + "\n"},
+                      {"curves.csv", curves_csv(result, file)},
+                      {"forces.csv", forces_csv(result, file)}};
+    for (auto text = scenes.begin(); const auto& part : draft.parts)
+        made.answers.push_back(answer(part.scene, (*text++)["sections"]));
+    return made;
+}
+
+}  // namespace
+
+std::vector<NamedContent> report_texts(const json& result, const std::string& file) {
+    Draft report = draft({&result, "", &file});
+    std::vector<NamedContent> files;
+    for (const auto& plot : report.plots)
+        std::ranges::move(sources(plot), std::back_inserter(files));
+    report.page.pictures.resize(report.plots.size());
+    for (const bool archive : {true, false})
+        std::ranges::move(texts(report, result, file, archive).files, std::back_inserter(files));
+    return files;
+}
+
+std::vector<Answer> write_report(const json& result, const std::string& file,
+                                 const fs::path& folder, const ReportOptions& options) {
+    Staging staging(folder);
+    Draft report = draft({&result, "", &file});
+    if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
+    report.page.pictures =
+        draw(report.plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
+    const Texts made = texts(std::move(report), result, file, options.archive);
+    for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
+    staging.publish();
+    return made.answers;
+}
+
+}  // namespace elastocheck::reports

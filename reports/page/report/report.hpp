@@ -1,0 +1,51 @@
+// Report folder, made from one result document alone.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "reports/files/folder.hpp"
+
+namespace elastocheck::reports {
+
+// Parses a result document of the current schema. Throws ResultError, naming `file`.
+nlohmann::ordered_json parse_result(std::string_view text, const std::string& file);
+
+// All text files of a report, including scripts and data of its figures, without drawing or
+// writing. Also for documents made elsewhere. Throws ResultError.
+std::vector<NamedContent> report_texts(const nlohmann::ordered_json& result,
+                                       const std::string& file);
+
+struct ReportOptions {
+    bool pdf = false;  // figures as PDF too
+    // only what belongs in version control: README.md, numbers.csv, figures/*.svg
+    bool archive = false;
+    std::function<void(std::string_view)> progress = {};
+};
+
+// Answer of the report for a scene in one sentence, with its source.
+struct Answer {
+    std::string name, source;
+    std::string sentence;  // the first paragraph of its verdict
+    // "pass", "fail", "not judged" where the document has a tolerance; else "judged" or "not
+    // judged"
+    std::string mark;
+    bool conclusive = false;           // it could be judged
+    std::vector<std::string> reasons;  // reasons if not
+};
+
+// Replaces `folder` by report.html, report.md, result.json, curves.csv and figures/, in one step,
+// and returns the answer of each scene. `result` is from parse_result, `file` its name for
+// messages. Throws ResultError, PlotError, FileError; an older report is then untouched.
+std::vector<Answer> write_report(const nlohmann::ordered_json& result, const std::string& file,
+                                 const std::filesystem::path& folder,
+                                 const ReportOptions& options = {});
+
+// scene,branch,output,unit,quantity,value,tolerance: numbers for regression tests between runs,
+// with the tolerance of each for other compilers.
+std::string numbers_csv(const nlohmann::ordered_json& result, const std::string& file);
+
+}  // namespace elastocheck::reports

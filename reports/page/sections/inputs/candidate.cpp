@@ -1,0 +1,160 @@
+#include "reports/page/sections/inputs/candidate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compare/outputs/readings.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/text/numbers.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+std::string cell(const std::optional<Field>& deviation) {
+    return deviation ? signed_number((*deviation)["signed_max"].number()) : "–";
+}
+
+// Deviations of every output that the candidate gives on a branch, beside those of the recursion.
+Table beside_the_recursion(const Field& scene, const std::string& who, const Field& candidate,
+                           const Field& branch) {
+    const std::string name = branch["name"].text(), unit = branch["unit"].text();
+    const auto abscissa = branch.find("abscissa");
+    const std::string load = compare::parameter_reading(unit),
+                      travel = compare::abscissa_reading(abscissa ? abscissa->text() : "");
+    Table table{.caption = fmt::format("Deviation from the full solution, branch {} ({} points)",
+                                       name, branch["points"].whole()),
+                .columns = {{"output", true},
+                            {fmt::format("{}, {}", who, load)},
+                            {fmt::format("{}, {}", who, travel)},
+                            {"share of the range"},
+                            {"published recursion, " + load},
+                            {"published recursion, " + travel}}};
+    std::optional<Field> recursion;
+    for (const auto& of : scene["branches"].items())
+        if (of["name"].text() == name) recursion = of["deviation"];
+    for (const auto& channel : candidate["channels"].items()) {
+        const std::string output = channel["name"].text();
+        const auto of = [&](const Field& deviation, const char* reading) -> std::optional<Field> {
+            const auto found = deviation.find(reading);
+            if (!found) return std::nullopt;
+            const auto channels = found->find("channels");
+            return channels ? channels->find(output) : std::nullopt;
+        };
+        const auto mine = of(branch, "at_equal_parameter"),
+                   across = of(branch, "at_equal_abscissa");
+        if (!mine && !across) continue;
+        const Field& some = mine ? *mine : *across;
+        if (!channel["judged"].truth() && some["max"].number() < 1e-6) continue;
+        table.rows.push_back(
+            {fmt::format("{} [{}]", output, channel["unit"].text()), cell(mine), cell(across),
+             percent(some["max"].number() / some["range"].number()),
+             cell(recursion ? of(*recursion, "at_equal_parameter") : std::nullopt),
+             cell(recursion ? of(*recursion, "at_equal_abscissa") : std::nullopt)});
+    }
+    return table;
+}
+
+double largest_of(const Field& list) {
+    double worst = 0;
+    for (const double v : list.numbers())
+        if (!(v <= worst)) worst = std::isnan(worst) ? worst : v;
+    return worst;
+}
+
+// Residuals of its states in the equations of the legs.
+Table leftovers(const std::string& who, const Field& states) {
+    Table table{.caption = fmt::format(
+                    "What the states of {} leave in the references' own equations, largest", who),
+                .columns = {{"branch", true},
+                            {"equations of", true},
+                            {"states"},
+                            {"force [N]"},
+                            {"moment [N·m]"},
+                            {"constraints [mm]"}}};
+    for (const auto& of : states.items()) {
+        const auto row = [&](const std::string& leg, const Field& left) {
+            table.rows.push_back(
+                {of["branch"].text(), leg, whole_number(static_cast<long>(of["a"].items().size())),
+                 number(largest_of(left["force_N"]), 2), number(largest_of(left["moment_Nm"]), 2),
+                 number(largest_of(left["constraint_mm"]), 2)});
+        };
+        row("equilibrium", of["equilibrium"]);
+        row(of["second"].text(), of["by_second"]);
+    }
+    return table;
+}
+
+}  // namespace
+
+std::optional<Section> candidate_section(const Field& scene) {
+    const auto candidates = scene.find("candidates");
+    if (!candidates || candidates->items().empty()) return std::nullopt;
+    Section section{.id = "candidate", .title = "The candidate"};
+    section.mark = Mark::pass;
+    nlohmann::ordered_json told = nlohmann::ordered_json::array();
+    for (const auto& candidate : candidates->items()) {
+        const std::string verdict = candidate["verdict"].text();
+        if (verdict == "fail")
+            section.mark = Mark::fail;
+        else if (verdict != "pass" && section.mark == Mark::pass)
+            section.mark = Mark::open;
+        nlohmann::ordered_json reasons = nlohmann::ordered_json::array(),
+                               notes = nlohmann::ordered_json::array();
+        for (const auto& reason : candidate["reasons"].texts()) reasons.push_back(reason);
+        for (const auto& note : candidate["notes"].texts()) notes.push_back(note);
+        told.push_back(
+            {{"sentence", candidate["sentence"].text()}, {"reasons", reasons}, {"notes", notes}});
+        const std::string who = candidate["name"].text();
+        for (const auto& branch : candidate["branches"].items())
+            if (auto table = beside_the_recursion(scene, who, candidate, branch);
+                !table.rows.empty())
+                section.tables.push_back(std::move(table));
+        if (!candidate["states"].items().empty())
+            section.tables.push_back(leftovers(who, candidate["states"]));
+    }
+    section.words = {{"candidates", told}};
+    return section;
+}
+
+std::vector<Series> candidate_series(const Field& scene, const Sweep& sweep,
+                                     const std::string& channel, bool change, bool travel) {
+    std::vector<Series> list;
+    const auto candidates = scene.find("candidates");
+    if (!candidates) return list;
+    for (const auto& candidate : candidates->items()) {
+        Series series{candidate["name"].text(), Series::Style::rings, green, 4};
+        for (const auto& branch : candidate["branches"].items()) {
+            const auto of = std::ranges::find_if(sweep.branches, [&](const Field& b) {
+                return b["name"].text() == branch["name"].text();
+            });
+            if (of == sweep.branches.end()) continue;
+            const Field curve = branch["curve"];
+            const auto y = curve["outputs"].find(channel);
+            const auto abscissa = branch.find("abscissa");
+            const bool over_abscissa = curve["over"].text() == "abscissa";
+            std::optional<Field> x;
+            if (travel == over_abscissa)
+                x = curve["at"];
+            else if (travel && abscissa)
+                x = curve["outputs"].find(abscissa->text());
+            if (!x || !y) continue;
+            double first = 0;
+            if (change) {
+                const LegCurve reference = curve_of(*of, "equilibrium");
+                if (const auto values = reference.channel(channel); !values.empty())
+                    first = values[reference.start()];
+            }
+            const auto xs = x->numbers(), ys = y->numbers();
+            if (xs.size() != ys.size()) y->fail("not as many numbers as points");
+            for (const auto k : thinned(xs.size(), 21))
+                if (std::isfinite(xs[k]) && std::isfinite(ys[k]))
+                    series.rows.push_back({xs[k], ys[k] - first});
+        }
+        if (!series.rows.empty()) list.push_back(std::move(series));
+    }
+    return list;
+}
+
+}  // namespace elastocheck::reports

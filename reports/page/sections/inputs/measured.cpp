@@ -1,0 +1,140 @@
+#include "reports/page/sections/inputs/measured.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/text/numbers.hpp"
+
+namespace elastocheck::reports {
+
+namespace {
+
+bool is_of(const Sweep& sweep, const std::string& branch) {
+    return std::ranges::any_of(sweep.branches,
+                               [&](const Field& b) { return b["name"].text() == branch; });
+}
+
+}  // namespace
+
+bool measured_over_parameter(const Field& scene, const Sweep& sweep) {
+    const auto measured = scene.find("measured");
+    if (!measured) return false;
+    const auto abscissa = measured->find("abscissa");
+    if (!abscissa) return true;
+    const auto x = (*measured)["columns"][abscissa->text()].numbers();
+    const auto of = (*measured)["branch"].texts();
+    bool points = false, travel = false;
+    for (std::size_t k = 0; k < of.size() && k < x.size(); ++k)
+        if (is_of(sweep, of[k])) points = true, travel = travel || std::isfinite(x[k]);
+    return points && !travel;
+}
+
+namespace {
+
+std::optional<Series> points_of(const Field& scene, const std::vector<Field>& branches,
+                                bool over_travel, const std::string& channel, bool change) {
+    const auto measured = scene.find("measured");
+    if (!measured) return std::nullopt;
+    const Field columns = (*measured)["columns"];
+    const auto abscissa = measured->find("abscissa");
+    const auto across =
+        over_travel && abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
+    const auto column = channel.empty() ? measured->find("parameter") : columns.find(channel);
+    if (!across || !column) return std::nullopt;
+    const auto x = across->numbers(), y = column->numbers();
+    const auto of = (*measured)["branch"].texts();
+    if (x.size() != y.size() || of.size() != x.size())
+        column->fail("not as many numbers as points");
+    Series series{"measured", Series::Style::rings, purple, 5};
+    bool any = false;
+    for (const auto& branch : branches) {
+        const std::string name = branch["name"].text();
+        const LegCurve curve = curve_of(branch, "equilibrium");
+        double first = 0;
+        if (change)
+            if (const auto values = curve.channel(channel); !values.empty())
+                first = values[curve.start()];
+        for (std::size_t k = 0; k < x.size(); ++k)
+            if (of[k] == name && std::isfinite(x[k]))
+                series.rows.push_back({x[k], y[k] - first}), any = any || std::isfinite(y[k]);
+    }
+    if (!any) return std::nullopt;
+    return series;
+}
+
+bool over_travel(const Field& scene, const Sweep& sweep) {
+    return !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
+}
+
+}  // namespace
+
+std::optional<Series> measured_series(const Field& scene, const Sweep& sweep,
+                                      const std::string& channel, bool change) {
+    return points_of(scene, sweep.branches, over_travel(scene, sweep), channel, change);
+}
+
+std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
+                                   const std::string& channel, bool change) {
+    const auto measured = scene.find("measured");
+    if (!measured || !(*measured)["branch_given"].truth())
+        return measured_series(scene, sweep, channel, change);
+    return points_of(scene, {branch}, over_travel(scene, sweep), channel, change);
+}
+
+double value_between(const Series& measured, double x) {
+    auto rows = measured.rows;
+    std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]); });
+    std::ranges::stable_sort(rows, {},
+                             [](const auto& row) { return row[0]; });  // NaN cannot be sorted
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+        const auto &a = rows[k - 1], &b = rows[k];
+        if (a[0] <= x && x <= b[0] && a[0] < b[0] && std::isfinite(a[1]) && std::isfinite(b[1]))
+            return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
+    }
+    return NAN;
+}
+
+std::optional<Section> measured_section(const Field& scene) {
+    const auto measured = scene.find("measured");
+    if (!measured) return std::nullopt;
+    Section section{.id = "measured", .title = "Against the measurement"};
+    bool over_load = false;
+    if (scene.find("branches"))
+        for (const auto& sweep : sweeps_of(scene))
+            over_load =
+                over_load || (measured_over_parameter(scene, sweep) && !sweep.abscissa.empty());
+    section.words = {{"over_load", over_load},
+                     {"file", (*measured)["file"].text()},
+                     {"hash", (*measured)["hash"].text()},
+                     {"points", (*measured)["points"].whole()}};
+    for (const auto& reading : (*measured)["readings"].items()) {
+        Table table{
+            .caption = fmt::format("Deviation from the measurement, {}", reading["reading"].text()),
+            .columns = {{"output", true},
+                        {"points"},
+                        {"published recursion, max"},
+                        {"rms"},
+                        {"full solution, max"},
+                        {"rms"},
+                        {"its check by energy, max"},
+                        {"rms"}}};
+        for (const auto& row : reading["channels"].items()) {
+            std::vector<std::string> cells{
+                fmt::format("{} [{}]", row["channel"].text(), row["unit"].text()),
+                whole_number(row["compared"].whole())};
+            for (const char* leg : {"recursive", "equilibrium", "energy"}) {
+                cells.push_back(signed_number(row[leg]["signed_max"].number()));
+                cells.push_back(number(row[leg]["rms"].number(), 2));
+            }
+            table.rows.push_back(cells);
+        }
+        section.tables.push_back(std::move(table));
+    }
+    return section;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,134 @@
+// Section: work-precision diagrams of the methods.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/tables/select.hpp"
+#include "reports/tables/studies/work_precision_tables.hpp"
+#include "reports/text/numbers.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+constexpr Colour colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
+
+Figure figure(const Field& trade, const compare::Table& points, const char* id, const char* price,
+              char front, const char* axis, const char* title) {
+    Figure figure{.id = id,
+                  .title = title,
+                  .x = axis,
+                  .y = "worst position error [mm]",
+                  .log_x = true,
+                  .log_y = true,
+                  .height = 1.2};
+    Series pareto{"", Series::Style::wide, faint};
+    std::vector<std::vector<double>> on_front;
+    double low = 1, high = 1e-16;
+    for (std::size_t r = 0; r < points.rows.size(); ++r) {
+        const double error = number(points, r, "error"), work = number(points, r, price);
+        if (!words(points, r, "not ranked").empty() || !(error > 0) || !(work > 0) ||
+            !std::isfinite(error))
+            continue;
+        const std::string& method = words(points, r, "method");
+        Series* series = nullptr;
+        for (auto& s : figure.series)
+            if (s.title == method) series = &s;
+        if (series == nullptr) {
+            const auto n = figure.series.size();
+            figure.series.push_back({method, Series::Style::line_points,
+                                     colours[n % std::size(colours)], static_cast<int>(n)});
+            series = &figure.series.back();
+        }
+        series->rows.push_back({work, error});
+        low = std::min(low, error), high = std::max(high, error);
+        if (words(points, r, "front").find(front) != std::string::npos)
+            on_front.push_back({work, error});
+    }
+    std::ranges::sort(on_front);
+    pareto.rows = on_front;
+    if (!pareto.rows.empty()) figure.series.insert(figure.series.begin(), pareto);
+    if (const auto tolerance = trade["tolerance"].find("mm"); tolerance && high >= low) {
+        high = std::max(high, tolerance->number());
+        low = std::min(low, tolerance->number());
+        figure.y_low = std::pow(10, std::floor(std::log10(low)));
+        figure.bands.push_back(
+            {figure.y_low, tolerance->number(), "within " + setting(tolerance->number(), "mm")});
+        figure.y_high = std::pow(10, std::ceil(std::log10(high * 1.2)));
+    }
+    if (const auto chosen = trade.find("recommendation")) {
+        const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
+        if (at >= points.rows.size()) (*chosen)["position"].fail("no such point");
+        const double x = number(points, at, price), y = number(points, at, "error");
+        if (x > 0 && y > 0)
+            figure.series.push_back({"recommended", Series::Style::rings, ink, 5, {{x, y}}});
+    }
+    std::vector<std::string> names;
+    for (const auto& s : figure.series)
+        if (!s.title.empty()) names.push_back(s.title);
+    figure.description = fmt::format(
+        "Logarithmic plot of worst position error against {} for {}. The wide pale line joins "
+        "those that no "
+        "other beats in both.",
+        axis, enumerated(names));
+    return figure;
+}
+
+}  // namespace
+
+std::optional<Section> price_section(const Field& scene) {
+    const auto trade = scene.find("trade");
+    if (!trade) return std::nullopt;
+    Section section{.id = "price", .title = "What accuracy costs"};
+    section.words["points"] = (*trade)["output_points"].whole();
+    section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
+    section.words["reasons"] = (*trade)["inconclusive"].texts();
+    section.words["judged_not"] = !section.words["reasons"].empty();
+    const auto points = read_table((*trade)["points"], compare::trade_table({}));
+    bool times = false;
+    for (std::size_t r = 0; r < points.rows.size(); ++r)
+        times = times || std::isfinite(number(points, r, "time ratio"));
+    FigureGroup group;
+    group.figures.push_back(figure(*trade, points, "price-solves", "solves", 's',
+                                   "linear solves, all branches", "Error against linear solves"));
+    if (times) {
+        section.words["times"] = {{"rounds", (*trade)["rounds"].whole()},
+                                  {"noise", percent((*trade)["time_noise"].number())}};
+        group.figures.push_back(figure(*trade, points, "price-time", "time ratio", 't',
+                                       "time, as a ratio to the full solution",
+                                       "Error against time"));
+    }
+    std::erase_if(group.figures, [](const Figure& f) { return f.series.empty(); });
+    group.caption =
+        "Worst position error over all branches, output points and outputs, at equal parameter.";
+    group.table = page_table(
+        "The ladder: what each method gives for its work. On the front no other is as good for s: "
+        "fewer "
+        "solves, f: fewer factorisations and evaluations, t: less time",
+        points, trade_columns);
+    group.table.folded = true;
+    if (group.figures.empty())
+        section.tables.push_back(group.table);
+    else
+        section.figures.push_back(std::move(group));
+    if (const auto chosen = trade->find("recommendation")) {
+        const auto both = [](const Field& f) {
+            std::string text = quantity(f["mm"].number(), "mm");
+            if (const auto deg = f.find("deg")) text += ", " + quantity(deg->number(), "deg");
+            return text;
+        };
+        section.words["chosen"] = {
+            {"text", configuration(*chosen)},
+            {"low", both((*chosen)["low"])},
+            {"high", both((*chosen)["high"])},
+            {"band_from", (*chosen)["band_from"].text()},
+            {"confirmed", both((*chosen)["confirmed_error"])},
+            {"numbers", whole_number((*chosen)["confirmed_numbers"].whole())}};
+    }
+    return section;
+}
+
+}  // namespace elastocheck::reports

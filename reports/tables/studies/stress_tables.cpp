@@ -1,0 +1,237 @@
+#include "reports/tables/studies/stress_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "compare/stress/lost_digits.hpp"
+#include "reports/tables/render.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+using compare::Survival;
+using compare::Verdict;
+
+constexpr std::array verdicts{Verdict::right,     Verdict::no_claim, Verdict::reported_failure,
+                              Verdict::elsewhere, Verdict::unjudged, Verdict::wrong};
+constexpr std::size_t width = 118;  // of a terminal
+
+compare::Column words(std::string name, std::string description = {}) {
+    return {std::move(name), {}, std::move(description), true};
+}
+
+// NaN for an infinite or missing value.
+double told(double value) { return std::isfinite(value) ? value : std::nan(""); }
+
+std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep,
+                  const std::string& variant = {}) {
+    std::string all;
+    for (const auto& solver : survival.solvers)
+        all += sign(survival, scene, sweep, solver, variant);
+    return all;
+}
+
+// Rows of the map: scenes by sweep, and the variants of extreme scenes.
+struct Rows {
+    std::vector<std::string> scenes, sweeps;
+    std::vector<std::pair<std::string, std::string>> extremes;  // scene, variant
+};
+Rows rows_of(const Survival& survival) {
+    Rows rows;
+    for (const auto& sweep : survival.sweeps)
+        if (sweep != compare::extreme) rows.sweeps.push_back(sweep);
+    for (const auto& cell : survival.cells) {
+        if (cell.sweep == compare::extreme) {
+            const std::pair row{cell.scene, cell.variant};
+            if (std::ranges::find(rows.extremes, row) == rows.extremes.end())
+                rows.extremes.push_back(row);
+        } else if (std::ranges::find(rows.scenes, cell.scene) == rows.scenes.end()) {
+            rows.scenes.push_back(cell.scene);
+        }
+    }
+    return rows;
+}
+
+std::string where(const compare::StressCell& cell) {
+    return fmt::format("{}, {}, {}: {}", cell.scene, cell.variant, cell.way, cell.solver);
+}
+
+std::string worst_of(const compare::LostDigits& lost) {
+    return lost.worst == nullptr
+               ? "none"
+               : fmt::format("{:.1f}: {}", digits_lost(*lost.worst), where(*lost.worst));
+}
+std::string worst_right_of(const compare::LostDigits& lost) {
+    return lost.worst_right == nullptr
+               ? "none"
+               : fmt::format("{:.1f}: {}", lost.worst_right->lost, where(*lost.worst_right));
+}
+
+// One row per scene, one column per arithmetic, one number per solver group; empty without solvers.
+std::string lost_text(const compare::LostDigits& lost) {
+    if (lost.rows.empty()) return {};
+    constexpr std::size_t number = 5;
+    std::string text;
+    const auto out = std::back_inserter(text);
+    std::size_t head = 0, column = number * lost.groups.size();
+    for (const auto& row : lost.rows) head = std::max(head, row.scene.size());
+    for (const auto& variant : lost.variants) column = std::max(column, variant.size());
+    fmt::format_to(out, "{:<{}}", "", head);
+    for (const auto& variant : lost.variants) fmt::format_to(out, "  {:>{}}", variant, column);
+    text += '\n';
+    for (const auto& row : lost.rows) {
+        fmt::format_to(out, "{:<{}}", row.scene, head);
+        for (const auto& variant : row.lost) {
+            std::string numbers;
+            for (const auto& group : variant) numbers += fmt::format("{:>{}}", group, number);
+            fmt::format_to(out, "  {:>{}}", numbers, column);
+        }
+        text += '\n';
+    }
+    text += "Digits of sixteen lost to other arithmetic, the most of all ways, by";
+    for (const auto& group : lost.groups)
+        fmt::format_to(out, " {}", group == lost.groups.front() ? group : "· " + group);
+    fmt::format_to(out, "\nThe most, {}; of digits that were right, {}\n", worst_of(lost),
+                   worst_right_of(lost));
+    for (const auto* cell : lost.gave_up)
+        fmt::format_to(out, "gives up: {}: {}: {}\n", where(*cell), name(cell->outcome),
+                       cell->detail);
+    return text + '\n';
+}
+
+json lost_json(const compare::LostDigits& lost) {
+    json rows = json::array(), gave_up = json::array();
+    for (const auto& row : lost.rows) rows.push_back({{"scene", row.scene}, {"lost", row.lost}});
+    for (const auto* cell : lost.gave_up)
+        gave_up.push_back({{"where", where(*cell)}, {"why", cell->detail}});
+    return {{"groups", lost.groups},   {"variants", lost.variants},           {"rows", rows},
+            {"worst", worst_of(lost)}, {"worst_right", worst_right_of(lost)}, {"gave_up", gave_up}};
+}
+
+}  // namespace
+
+compare::Table cell_table(const Survival& survival) {
+    compare::Table table{
+        "cells",
+        {words("scene"),
+         words("sweep"),
+         words("variant"),
+         words("way", "of a branch, from where it begins"),
+         words("solver"),
+         words("outcome"),
+         words("verdict"),
+         words("known by", "what the true state is"),
+         {"digits", "", "-log10 of the error over the range"},
+         {"lost", "", "of the digits that are right of the scene as it is, those that differ here"},
+         {"apart", "mm", "how far the answer is from that of the scene as it is"},
+         {"error", "mm", "of any place, at most"},
+         {"claim", "mm",
+          "what the solver says that it is off by, at most; empty where it says nothing"},
+         {"range", "mm",
+          "how far the place that goes farthest goes; the scene's size where nothing moves"},
+         words("reason"),
+         words("detail", "what the solver says")},
+        {}};
+    for (const auto& c : survival.cells)
+        table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome),
+                              name(c.verdict), name(c.knowledge), c.digits, c.lost, 1e3 * c.apart,
+                              1e3 * c.error, told(1e3 * c.claim), 1e3 * c.range, c.why, c.detail});
+    return table;
+}
+
+std::string stress_text(const Survival& survival) {
+    std::string text;
+    const auto out = std::back_inserter(text);
+    const Rows rows = rows_of(survival);
+    std::size_t head = 0;
+    for (const auto& scene : rows.scenes) head = std::max(head, scene.size());
+    std::size_t column = survival.solvers.size();
+    for (const auto& sweep : rows.sweeps) column = std::max(column, sweep.size());
+    const std::size_t at_once = std::max<std::size_t>(1, (width - head) / (column + 2));
+    for (std::size_t first = 0; first < rows.sweeps.size(); first += at_once) {
+        const std::size_t last = std::min(first + at_once, rows.sweeps.size());
+        fmt::format_to(out, "{:<{}}", "", head);
+        for (std::size_t s = first; s < last; ++s)
+            fmt::format_to(out, "  {:<{}}", rows.sweeps[s], column);
+        text += '\n';
+        for (const auto& scene : rows.scenes) {
+            fmt::format_to(out, "{:<{}}", scene, head);
+            for (std::size_t s = first; s < last; ++s)
+                fmt::format_to(out, "  {:<{}}", signs(survival, scene, rows.sweeps[s]), column);
+            text += '\n';
+        }
+        text += '\n';
+    }
+    std::size_t row_head = 0;
+    for (const auto& [scene, variant] : rows.extremes)
+        row_head = std::max(row_head, scene.size() + variant.size() + 2);
+    for (const auto& [scene, variant] : rows.extremes)
+        fmt::format_to(out, "{:<{}}  {}\n", scene + ", " + variant, row_head,
+                       signs(survival, scene, std::string(compare::extreme), variant));
+    if (!rows.extremes.empty()) text += '\n';
+    text += "One sign each of";
+    for (const auto& solver : survival.solvers) fmt::format_to(out, " {}", solver);
+    text +=
+        ", the worst of all variants of a sweep:\n"
+        "  0 ... 9  digits of the range of motion that are right (9: nine or more)    !  an honest "
+        "outcome, "
+        "each time\n"
+        "  ~  at another equilibrium, proved as well    ?  converged, and nothing is known    X  "
+        "WRONG    .  "
+        "not asked\n";
+    text += '\n' + lost_text(lost_digits(survival));
+    for (const auto verdict : verdicts)
+        fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
+                       verdict == verdicts.back() ? "" : ", ");
+    fmt::format_to(out, ": {} cells\n", survival.cells.size());
+    for (const auto& s : survival.skipped)
+        fmt::format_to(out, "not asked: {}, {}: {}\n", s.scene, s.variant, s.why);
+    for (const auto& cell : survival.cells)
+        if (cell.verdict == Verdict::wrong)
+            fmt::format_to(out, "WRONG: {}: {}\n", where(cell), cell.why);
+    return text;
+}
+
+json stress_json(const Survival& survival) {
+    json map = json::array(), extremes = json::array(), counts = json::object(),
+         skipped = json::array();
+    const Rows rows = rows_of(survival);
+    for (const auto& scene : rows.scenes) {
+        json row = json::array();
+        for (const auto& sweep : rows.sweeps) row.push_back(signs(survival, scene, sweep));
+        map.push_back({{"scene", scene}, {"signs", row}});
+    }
+    for (const auto& [scene, variant] : rows.extremes)
+        extremes.push_back(
+            {{"scene", scene},
+             {"variant", variant},
+             {"signs", signs(survival, scene, std::string(compare::extreme), variant)}});
+    for (const auto verdict : verdicts) counts[name(verdict)] = survival.count(verdict);
+    for (const auto& s : survival.skipped)
+        skipped.push_back(
+            {{"scene", s.scene}, {"sweep", s.sweep}, {"variant", s.variant}, {"why", s.why}});
+    json wrong = json::array();
+    for (const auto& c : survival.cells)
+        if (c.verdict == Verdict::wrong)
+            wrong.push_back({{"scene", c.scene},
+                             {"variant", c.variant},
+                             {"way", c.way},
+                             {"solver", c.solver},
+                             {"why", c.why}});
+    return {{"solvers", survival.solvers},
+            {"sweeps", rows.sweeps},
+            {"map", map},
+            {"extremes", extremes},
+            {"arithmetic", lost_json(lost_digits(survival))},
+            {"counts", counts},
+            {"wrong", wrong},
+            {"skipped", skipped},
+            {"cells", table_json(cell_table(survival))}};
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,114 @@
+#include "reports/text/labels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace elastocheck::reports {
+namespace {
+
+constexpr double gap = 2;  // [px] between boxes
+
+// Whether the segment a b intersects the box (Liang & Barsky 1984): the part of 0 ... 1 within each
+// pair of sides in turn.
+bool crosses(const Spot& a, const Spot& b, const Box& box) {
+    if (std::max(a.x, b.x) < box.left || std::min(a.x, b.x) > box.right ||
+        std::max(a.y, b.y) < box.bottom || std::min(a.y, b.y) > box.top)
+        return false;  // the usual case
+    double from = 0, to = 1;
+    const auto clip = [&](double start, double step, double low, double high) {
+        if (step == 0) return start >= low && start <= high;
+        double enter = (low - start) / step, leave = (high - start) / step;
+        if (enter > leave) std::swap(enter, leave);
+        from = std::max(from, enter), to = std::min(to, leave);
+        return from <= to;
+    };
+    return clip(a.x, b.x - a.x, box.left, box.right) && clip(a.y, b.y - a.y, box.bottom, box.top);
+}
+
+Box wider(const Box& box, double by) {
+    return {box.left - by, box.bottom - by, box.right + by, box.top + by};
+}
+
+}  // namespace
+
+bool overlap(const Box& a, const Box& b) {
+    return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
+}
+
+double text_width(std::string_view text, double size) {
+    double letters = 0;  // in em
+    for (const char c : text) {
+        // continuation byte of a character
+        if ((static_cast<unsigned char>(c) & 0xC0) == 0x80) continue;
+        letters += std::string_view("ijlI.,:;'|!()[] ").find(c) != std::string_view::npos ? 0.4
+                   : std::string_view("mwMW%@").find(c) != std::string_view::npos         ? 1.0
+                   : c >= 'A' && c <= 'Z'                                                 ? 0.72
+                                                                                          : 0.63;
+    }
+    return letters * size;
+}
+
+std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, const Paper& paper) {
+    // Points in crowded places first.
+    std::vector<std::size_t> order(labels.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    const auto company = [&](std::size_t k) {
+        return std::ranges::count_if(labels, [&](const Label& other) {
+            return std::hypot(other.at.x - labels[k].at.x, other.at.y - labels[k].at.y) < 60;
+        });
+    };
+    std::ranges::stable_sort(order, std::ranges::greater{}, company);
+
+    std::vector<Box> taken = paper.taken;
+    std::vector<std::array<Spot, 2>> leaders;
+    std::vector<std::optional<Box>> placed(labels.size());
+    for (const auto k : order) {
+        const Label& label = labels[k];
+        double best = std::numeric_limits<double>::infinity();
+        std::optional<Box> found;
+        std::array<Spot, 2> leader{};
+        for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
+            for (int direction = 0; direction < 16; ++direction) {
+                const double angle = 2 * std::numbers::pi * direction / 16;
+                // The side or corner of the box that faces the point touches the circle of this
+                // radius.
+                const double x = label.at.x + reach * std::cos(angle),
+                             y = label.at.y + reach * std::sin(angle);
+                const double across = 0.5 * (std::cos(angle) - 1), up = 0.5 * (std::sin(angle) - 1);
+                const Box box{x + across * label.width, y + up * label.height,
+                              x + (across + 1) * label.width, y + (up + 1) * label.height};
+                if (box.left < 0 || box.bottom < 0 || box.right > paper.width ||
+                    box.top > paper.height)
+                    continue;
+                const Box roomy = wider(box, gap);
+                if (std::ranges::any_of(taken,
+                                        [&](const Box& other) { return overlap(roomy, other); }))
+                    continue;
+                const Spot near{std::clamp(label.at.x, box.left, box.right),
+                                std::clamp(label.at.y, box.bottom, box.top)};
+                // Leaders must not cross words, nor words cover leaders.
+                if (reach > 15 && std::ranges::any_of(taken, [&](const Box& other) {
+                        return crosses(label.at, near, other) &&
+                               !crosses(label.at, label.at, wider(other, gap));
+                    }))
+                    continue;
+                if (std::ranges::any_of(leaders,
+                                        [&](const auto& l) { return crosses(l[0], l[1], roomy); }))
+                    continue;
+                double cost = reach;
+                for (const auto& line : paper.lines)
+                    if (crosses(line[0], line[1], roomy)) cost += 22;
+                if (cost < best) best = cost, found = box, leader = {label.at, near};
+            }
+        placed[k] = found;
+        if (!found) continue;
+        taken.push_back(*found);
+        if (std::hypot(leader[1].x - leader[0].x, leader[1].y - leader[0].y) > 15)
+            leaders.push_back(leader);
+    }
+    return placed;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,115 @@
+#include "reports/text/symbols.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace elastocheck::reports {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// Local frame of a line: its length, and points by coordinates along and across it.
+struct Frame {
+    Spot from;
+    double length, ux, uy;
+
+    Frame(Spot a, Spot b) : from(a), length(std::hypot(b.x - a.x, b.y - a.y)), ux(1), uy(0) {
+        if (length > 0) ux = (b.x - a.x) / length, uy = (b.y - a.y) / length;
+    }
+    Spot at(double along, double across) const {
+        return {from.x + along * ux - across * uy, from.y + along * uy + across * ux};
+    }
+};
+
+}  // namespace
+
+Stroke ring(Spot at, double radius) {
+    Stroke stroke;
+    constexpr int corners = 24;
+    for (int k = 0; k <= corners; ++k) {
+        const double angle = 2 * pi * k / corners;
+        stroke.push_back({at.x + radius * std::cos(angle), at.y + radius * std::sin(angle)});
+    }
+    return stroke;
+}
+
+Strokes coil(Spot a, Spot b) {
+    const Frame line(a, b);
+    constexpr double radius = 8;
+    if (line.length < 3 * radius) return {ring({(a.x + b.x) / 2, (a.y + b.y) / 2}, radius)};
+    const double lead = 0.1 * line.length, wound = line.length - 2 * lead;
+    const int turns = std::clamp(static_cast<int>(wound / 9), 3, 8);
+    Stroke stroke{a, line.at(lead, 0)};
+    const int steps = 12 * turns;
+    for (int k = 0; k <= steps; ++k) {
+        const double angle = 2 * pi * turns * k / steps;
+        stroke.push_back(
+            line.at(lead + wound * k / steps + 2.2 * (1 - std::cos(angle)) * (k < steps ? 1 : 0),
+                    radius * std::sin(angle)));
+    }
+    stroke.push_back(line.at(line.length - lead, 0));
+    stroke.push_back(b);
+    return {stroke};
+}
+
+Strokes damper(Spot a, Spot b) {
+    const Frame line(a, b);
+    constexpr double half = 4.5;
+    if (line.length < 4 * half) return {ring({(a.x + b.x) / 2, (a.y + b.y) / 2}, half)};
+    const double foot = 0.08 * line.length, mouth = 0.6 * line.length, piston = 0.45 * line.length;
+    return {
+        {a, line.at(foot, 0)},
+        {line.at(mouth, half), line.at(foot, half), line.at(foot, -half), line.at(mouth, -half)},
+        {line.at(piston, half - 1), line.at(piston, 1 - half)},
+        {line.at(piston, 0), b}};
+}
+
+Strokes barrel(Spot at, Spot along, double half_length) {
+    constexpr double half = 4;
+    const double seen = std::hypot(along.x, along.y);  // of a unit length
+    if (seen * half_length < half) return {ring(at, half + 1), ring(at, 1)};
+    const Frame line(at, {at.x + along.x, at.y + along.y});
+    const double l = seen * half_length;
+    return {{line.at(-l, -half), line.at(l, -half), line.at(l, half), line.at(-l, half),
+             line.at(-l, -half)},
+            {line.at(-l - 4, 0), line.at(l + 4, 0)}};
+}
+
+Strokes cross(Spot at, double radius) {
+    return {ring(at, radius),
+            {{at.x - radius, at.y}, {at.x + radius, at.y}},
+            {{at.x, at.y - radius}, {at.x, at.y + radius}}};
+}
+
+Strokes diamond(Spot at, double r) {
+    return {
+        {{at.x - r, at.y}, {at.x, at.y + r}, {at.x + r, at.y}, {at.x, at.y - r}, {at.x - r, at.y}}};
+}
+
+Strokes square(Spot at, double h) {
+    return {{{at.x - h, at.y - h},
+             {at.x + h, at.y - h},
+             {at.x + h, at.y + h},
+             {at.x - h, at.y + h},
+             {at.x - h, at.y - h}}};
+}
+
+Strokes hatching(Spot at) {
+    constexpr double half = 8, below = 9;
+    const double y = at.y - below;
+    Strokes strokes{{at, {at.x, y}}, {{at.x - half, y}, {at.x + half, y}}};
+    for (double x = at.x - half + 4; x <= at.x + half; x += 4)
+        strokes.push_back({{x, y}, {x - 4, y - 4}});
+    return strokes;
+}
+
+Strokes arrow(Spot from, Spot to, bool both_ways) {
+    const Frame line(from, to);
+    const double l = line.length;
+    Strokes strokes{{from, to}, {line.at(l - 6, 3), to, line.at(l - 6, -3)}};
+    if (both_ways) strokes.push_back({line.at(6, 3), from, line.at(6, -3)});
+    return strokes;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,338 @@
+// Interrupted runs: kill, full disk, read-only folder, concurrent runs. The output is the complete
+// old or the complete new one.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <vector>
+
+#include "reports/files/files.hpp"
+#include "reports/files/folder.hpp"
+#include "tests/support/command.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::says;
+using support::text_of;
+
+const std::string scene = (std::filesystem::path(ELASTOCHECK_SCENES) / "pinned_bar.yaml").string();
+const std::string command = "env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " ";
+
+std::set<std::string> names_in(const fs::path& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder))
+        names.insert(entry.path().filename().string());
+    return names;
+}
+
+// Runs `work` with its number in each of `count` processes; returns the number of failures.
+template <class Work>
+int failures(int count, Work work) {
+    std::vector<pid_t> children;
+    for (int k = 0; k < count; ++k) {
+        children.push_back(::fork());
+        if (children.back() != 0) continue;
+        try {
+            work(k);
+            ::_exit(0);
+        } catch (const std::exception& error) {
+            std::fprintf(stderr, "writer %d: %s\n", k, error.what());
+            ::_exit(1);
+        }
+    }
+    int failed = 0, status = 0;
+    for (const pid_t child : children) {
+        ::waitpid(child, &status, 0);
+        failed += status != 0;
+    }
+    return failed;
+}
+
+std::string of_file(int folder, const char* name) {
+    const int in = ::openat(folder, name, O_RDONLY | O_CLOEXEC);
+    if (in < 0) return "";
+    char buffer[64];
+    const ssize_t count = ::read(in, buffer, sizeof buffer);
+    ::close(in);
+    return {buffer, static_cast<std::size_t>(std::max<ssize_t>(count, 0))};
+}
+
+TEST(Writers, OfOneFolderAtOnceLeaveItWholeAndNothingBesideIt) {
+    const Folder folder;
+    const fs::path out = folder.path / "out";
+    constexpr int writers = 4, rounds = 40;
+    int mixed = 0, seen = 0;
+    const int failed = failures(writers + 1, [&](int writer) {
+        if (writer == writers) {  // the reader
+            // It may start long before the first writer.
+            for (int k = 0, early = 0; k < 4000 && early < 200'000;) {
+                const int open = ::open(out.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+                if (open < 0) {
+                    ++early;
+                    ::usleep(50);
+                    continue;
+                }
+                ++k;
+                const std::string first = of_file(open, "first"), second = of_file(open, "second");
+                ::close(open);
+                // Files of a replaced folder are being removed one by one.
+                if (first.empty() || second.empty()) continue;
+                ++seen;
+                mixed += first != second;
+            }
+            if (mixed > 0 || seen == 0) throw std::runtime_error("files of two runs");
+            return;
+        }
+        for (int k = 0; k < rounds; ++k) {
+            const std::string own = std::to_string(writer) + "." + std::to_string(k);
+            write_folder(out, {{"first", own}, {"deep/third", own}, {"second", own}});
+        }
+    });
+    EXPECT_EQ(failed, 0);
+    EXPECT_EQ(text_of(out / "first"), text_of(out / "second"));
+    EXPECT_EQ(text_of(out / "first"), text_of(out / "deep/third"));
+    EXPECT_EQ(names_in(out), (std::set<std::string>{"first", "deep", "second", manifest}));
+    EXPECT_EQ(names_in(folder.path), std::set<std::string>{"out"});
+}
+
+TEST(Writers, OfOneFileAtOnceLeaveOneOfTheirs) {
+    const Folder folder;
+    const fs::path file = folder.path / "curves.csv";
+    const auto content = [](int writer) {
+        return std::string(curves_file.beginning) +
+               std::string(200'000, static_cast<char>('a' + writer));
+    };
+    EXPECT_EQ(failures(4,
+                       [&](int writer) {
+                           for (int k = 0; k < 40; ++k)
+                               write_whole(file, content(writer), curves_file);
+                       }),
+              0);
+    const std::string left = text_of(file);
+    EXPECT_EQ(left, content(left.back() - 'a'));
+    EXPECT_EQ(names_in(folder.path), std::set<std::string>{"curves.csv"});
+}
+
+TEST(Writers, RemoveWhatOneOfThemThatWasKilledLeftOfAFileAndNoLivingOnes) {
+    const Folder folder;
+    folder.write(".curves.csv.elastocheck-1-0.tmp", "half");
+    const std::set<std::string> theirs{".curves.csv.notes", ".curves.csv.1-0.tmp",
+                                       ".curves.csv.mine.tmp", ".curves.csv.elastocheck-1.tmp",
+                                       ".curves.csv.elastocheck-a-b.tmp"};
+    for (const auto& name : theirs) folder.write(name, "mine");
+    const std::string living = folder.write(".curves.csv.elastocheck-2-0.tmp", "half");
+    const int open = ::open(living.c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_EQ(::flock(open, LOCK_EX), 0);
+    write_whole(folder.path / "curves.csv", curves_file.beginning, curves_file);
+    auto expected = theirs;
+    expected.insert({"curves.csv", ".curves.csv.elastocheck-2-0.tmp"});
+    EXPECT_EQ(names_in(folder.path), expected);
+    ::close(open);
+}
+
+TEST(Writers, NeverReplaceAFolderWithAnEmptyFolderOfSomebodyElses) {
+    const Folder folder;
+    const fs::path out = folder.path / "out";
+    write_folder(out, {{"first", "1"}, {"deep/er/second", "1"}});
+    write_folder(out, {{"first", "2"}, {"deep/er/second", "2"}});
+    for (const char* mine : {"mine", "deep/mine", "dee", "deep/er/mine"}) {
+        fs::create_directories(out / mine);
+        try {
+            write_folder(out, {{"first", "3"}});
+            ADD_FAILURE() << mine << " was lost";
+        } catch (const FileError& error) {
+            EXPECT_TRUE(contains(error.what(), std::string(mine) + ": is no part of a report"))
+                << error.what();
+        }
+        EXPECT_TRUE(fs::is_directory(out / mine));
+        fs::remove(out / mine);
+    }
+    write_folder(out, {{"first", "3"}});
+    EXPECT_EQ(names_in(out), (std::set<std::string>{"first", manifest}));
+}
+
+// ---- Ended by a signal, or by a reader that closes the pipe.
+
+TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
+    const Folder made;
+    ASSERT_EQ(
+        says(command + "compare " + scene + " --steps 10 -o " + (made.path / "c").string()).code,
+        0);
+    for (const std::string& what : std::vector<std::string>{
+             "solve " + (fs::path(ELASTOCHECK_SCENES) / "front_axle.yaml").string() +
+                 " --steps 200000 -o out.csv",
+             "report --from " + (made.path / "c/result.json").string() + " -o out"}) {
+        const Folder folder;
+        // The temporary name is there while it works.
+        const Said said =
+            says("cd " + folder.path.string() + " && { env --default-signal " + command + what +
+                 " >/dev/null 2>&1 & } && for k in $(seq 3000); do ls -A | grep -q elastocheck- "
+                 "&& break; sleep 0.01; done; ls -A; kill -TERM $!; wait $!");
+        EXPECT_TRUE(contains(said.out, ".elastocheck-")) << what << said.out;
+        EXPECT_EQ(said.code, 128 + SIGTERM) << what << said.out << said.err;
+        EXPECT_TRUE(fs::is_empty(folder.path)) << what;
+    }
+}
+
+TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
+    const Folder folder;
+    const Said said = says("cd " + folder.path.string() + " && env --default-signal " + command +
+                           "solve " + scene + " --steps 20000 --states states.jsonl | head -1");
+    EXPECT_TRUE(said.out.starts_with("branch,")) << said.out << said.err;
+    EXPECT_TRUE(fs::is_empty(folder.path));
+}
+
+// ---- Killed. Of folders: Harm.ComparesFilesAreOfOneRun, ReportCommand.KilledAtAnyMoment...
+
+TEST(Killed, AtAnyMomentTheGateLeavesTheOldBaselineOrTheNewOne) {
+    const Folder folder;
+    const std::string plain = text_of(scene);
+    const std::string versions[] = {plain,
+                                    std::regex_replace(plain, std::regex("to: [0-9.]+"), "to: 10")};
+    ASSERT_NE(versions[0], versions[1]);
+    const std::string accept =
+        "cd " + folder.path.string() + " && exec " + command + "gate s.yaml --accept --reason r";
+    const fs::path baseline = folder.path / "baselines/s.json";
+    std::string expected[2];
+    double whole = 0;
+    for (const int which : {0, 1}) {
+        folder.write("s.yaml", versions[which]);
+        const auto start = std::chrono::steady_clock::now();
+        ASSERT_EQ(says(accept).code, 0);
+        whole = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        expected[which] = text_of(baseline);
+        EXPECT_TRUE(contains(expected[which], R"("file":"../s.yaml")"))
+            << "also in a folder that was not there";
+    }
+    ASSERT_NE(expected[0], expected[1]);
+    int killed = 0;
+    for (int round = 0; round < 20; ++round) {
+        folder.write("s.yaml", versions[round % 2]);
+        const std::string delay = std::to_string(whole * (0.5 + 0.03 * round));
+        killed += says("sh -c '" + accept + " >/dev/null' & sleep " + delay + "; kill -" +
+                       (round % 4 < 2 ? "KILL" : "TERM") + " $! 2>/dev/null; wait $!")
+                      .code != 0;
+        const std::string now = text_of(baseline);
+        EXPECT_TRUE(now == expected[0] || now == expected[1])
+            << "half a baseline in round " << round;
+    }
+    EXPECT_GT(killed, 0);
+    folder.write("s.yaml", versions[0]);
+    ASSERT_EQ(says(accept).code, 0);
+    EXPECT_EQ(text_of(baseline), expected[0]);
+    EXPECT_EQ(names_in(baseline.parent_path()), std::set<std::string>{"s.json"})
+        << "what the killed runs left behind is removed by the next one";
+}
+
+// ---- Full disk, read-only folder.
+
+// A command, and its first output file.
+struct Writing {
+    std::string command, target;
+};
+const std::vector<Writing> writings{
+    {"compare s.yaml -o out", "out/result.json"},
+    {"converge s.yaml --steps 10,20,40,80,160 -o out", "out/result.json"},
+    {"report --from result.json -o out", "out/result.json"},
+    {"solve s.yaml -o out.csv", "out.csv"},
+    {"gate s.yaml --accept --reason r", "baselines/s.json"},
+    {"gate s.yaml --junit out.xml", "out.xml"}};
+
+// A folder with a scene, a result to draw, and the output of an earlier run.
+struct Place : Folder {
+    Place() {
+        write("s.yaml", text_of(scene));
+        EXPECT_EQ(says("cd " + path.string() + " && " + command +
+                       "compare s.yaml -o c && mv c/result.json . && rm -r c")
+                      .code,
+                  0);
+        for (const auto& w : writings) EXPECT_EQ(in(w.command).code & ~3, 0) << w.command;
+        // The scene changes, so that the next output differs.
+        write("s.yaml", std::regex_replace(text_of(scene), std::regex("to: [0-9.]+"), "to: 10"));
+    }
+    // `before` is a shell command run first.
+    Said in(const std::string& what, const std::string& before = "true") const {
+        return says("cd " + path.string() + " && " + before + " && " + command + what);
+    }
+};
+
+TEST(FullDisk, LeavesWhatWasThereAndSaysSo) {
+    const Place place;
+    const auto entries = names_in(place.path), baselines = names_in(place.path / "baselines");
+    for (const auto& [what, target] : writings) {
+        const std::string before = text_of(place.path / target);
+        ASSERT_FALSE(before.empty()) << target;
+        // A limit of one block acts like a full disk: every writer fails.
+        const Said said = place.in(what, "ulimit -f 1");
+        EXPECT_EQ(said.code, 2) << what << said.err;
+        EXPECT_TRUE(contains(said.err, "cannot be written: File too large") ||
+                    contains(said.err, "gnuplot"))
+            << what << ": " << said.err;
+        EXPECT_EQ(text_of(place.path / target), before) << what;
+        EXPECT_EQ(names_in(place.path), entries) << what << " leaves something behind";
+        EXPECT_EQ(names_in(place.path / "baselines"), baselines)
+            << what << " leaves something behind";
+    }
+}
+
+// The same on a full file system, where the user may mount one.
+TEST(FullDisk, OfAFileSystemToo) {
+    const Folder folder;
+    const std::string mount = "mount -t tmpfs -o size=64k none " + folder.path.string();
+    if (says("unshare -rm sh -c '" + mount + "'").code != 0)
+        GTEST_SKIP() << "this user may not mount a file system of his own";
+    for (const std::string& what : std::vector<std::string>{
+             "compare " + scene + " -o out", "solve " + scene + " --steps 2000 -o out.csv"}) {
+        const Said said = says("unshare -rm sh -c '" + mount + " && cd " + folder.path.string() +
+                               " && " + command + what + "; echo code $?; ls -A'");
+        EXPECT_TRUE(said.out.ends_with("code 2\n")) << what << ": " << said.out << said.err;
+        EXPECT_TRUE(contains(said.err, "cannot be written: No space left on device")) << said.err;
+    }
+}
+
+TEST(ClosedFolder, IsSaidAndNothingIsLeftInIt) {
+    for (const std::string& what :
+         std::vector<std::string>{"compare " + scene + " -o /proc/elastocheck",
+                                  "solve " + scene + " -o /proc/elastocheck.csv",
+                                  "gate " + scene + " --junit /proc/elastocheck.xml"}) {
+        const Said said = says(command + what);
+        EXPECT_EQ(said.code, 2) << what << said.out;
+        EXPECT_TRUE(contains(said.err, "/proc/elastocheck")) << said.err;
+    }
+    const Place place;
+    // Root gives up the capability to bypass file permissions.
+    const std::string as_others =
+        ::geteuid() == 0 ? "setpriv --bounding-set -dac_override,-dac_read_search " : "";
+    if (!as_others.empty() && says(as_others + "true").code != 0)
+        GTEST_SKIP() << "this user is root, and may not give up the right to write everywhere";
+    for (const auto& [what, target] : writings) {
+        const std::string before = text_of(place.path / target);
+        const auto entries = names_in(place.path);
+        fs::permissions(place.path, fs::perms(0555));
+        fs::permissions(place.path / "baselines", fs::perms(0555));
+        const Said said = says("cd " + place.path.string() + " && " + as_others + command + what);
+        fs::permissions(place.path, fs::perms(0755));
+        fs::permissions(place.path / "baselines", fs::perms(0755));
+        EXPECT_EQ(said.code, 2) << what << said.err;
+        EXPECT_TRUE(contains(said.err, "cannot be written: Permission denied"))
+            << what << ": " << said.err;
+        EXPECT_EQ(text_of(place.path / target), before) << what;
+        EXPECT_EQ(names_in(place.path), entries) << what;
+    }
+}
+
+}  // namespace
+}  // namespace elastocheck::reports

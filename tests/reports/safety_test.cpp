@@ -1,0 +1,295 @@
+// Safety of commands for any input: no overwriting of foreign files, no injected output, no useless
+// work, no hidden failure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/support/command.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace support = elastocheck::support;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
+
+const std::string scenes = ELASTOCHECK_SCENES;
+const std::string scene = scenes + "/pinned_bar.yaml";
+
+Said in(const Folder& folder, const std::string& arguments) {
+    return support::says("cd " + folder.path.string() + " && env -u GITHUB_STEP_SUMMARY CI= " +
+                         ELASTOCHECK_COMMAND + " " + arguments);
+}
+
+TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
+    const Folder folder;
+    folder.write("a.yaml", text_of(scene));
+    folder.write("b.json", text_of(scenes + "/baselines/pinned_bar.json"));
+    folder.write("kept", "mine");
+    fs::create_symlink("kept", folder.path / "link");
+    fs::create_symlink("nowhere", folder.path / "dangling");
+    for (const std::string target :
+         {"a.yaml", "b.json", "kept", "link", "dangling", "/dev/null", "."}) {
+        const std::string before =
+            target[0] == '/' || target == "." ? "" : text_of(folder.path / target);
+        for (const std::string& arguments :
+             {"solve a.yaml --steps 2 -o " + target,
+              "solve a.yaml --steps 2 --method series --rates " + target,
+              "gate a.yaml --junit " + target, "gate a.yaml --summary " + target}) {
+            const Said said = in(folder, arguments);
+            EXPECT_EQ(said.code, 2) << arguments << said.out;
+            EXPECT_TRUE(contains(said.err, target + ": is ")) << arguments << "\n" << said.err;
+            EXPECT_TRUE(said.out.empty()) << "refused before the work: " << arguments;
+        }
+        for (const char* command : {"compare", "report", "trade", "converge"}) {
+            const Said said = in(folder, std::string(command) + " a.yaml -o " + target);
+            EXPECT_EQ(said.code, 2) << command << " " << target;
+            EXPECT_TRUE(said.out.empty())
+                << "refused before the work: " << command << " " << target;
+        }
+        if (!before.empty()) {
+            EXPECT_EQ(text_of(folder.path / target), before) << target;
+        }
+    }
+    EXPECT_FALSE(fs::exists(folder.path / "nowhere"));
+    // Files of this program are replaced.
+    for (int again = 0; again < 2; ++again) {
+        EXPECT_EQ(in(folder, "solve a.yaml --steps 2 -o curves.csv").code, 0);
+        EXPECT_EQ(in(folder, "gate a.yaml --junit j.xml --summary s.md").code, 3);
+    }
+}
+
+TEST(Harm, TheSummaryOfAWorkflowStepIsAddedTo) {
+    const Folder folder;
+    const std::string summary = folder.write("summary", "# another step\n"),
+                      baselines = scenes + "/baselines";
+    const Said said =
+        support::says("env CI= GITHUB_STEP_SUMMARY=" + summary + " " + ELASTOCHECK_COMMAND +
+                      " gate " + scene + " --summary " + summary);
+    EXPECT_EQ(said.code, 0) << said.err << said.out;
+    EXPECT_TRUE(text_of(summary).starts_with("# another step\n# elastocheck gate: passed"))
+        << text_of(summary);
+}
+
+TEST(Harm, ANameIsOneLineOfTextOrRefusedBeforeTheWork) {
+    const Folder folder;
+    const std::string plain = text_of(scene);
+    const auto named = [&](const std::string& name) {
+        std::string text = plain;
+        const auto at = text.find("name: ");
+        return text.replace(at, text.find('\n', at) - at, "name: \"" + name + "\"");
+    };
+    for (const char* escape :
+         {"a\\Nb", "a\\_b", "a\\nb", "a\\eb", "a\\x9bb", "a\\u202eb", "a\\Lb"}) {
+        folder.write("s.yaml", named(escape));
+        for (const char* command :
+             {"compare s.yaml -o out", "solve s.yaml", "gate s.yaml", "report s.yaml -o out"}) {
+            const Said said = in(folder, command);
+            EXPECT_EQ(said.code, 2) << escape << " " << command << said.err;
+            EXPECT_TRUE(contains(said.err + said.out, "s.yaml:")) << said.err;
+        }
+        EXPECT_FALSE(fs::exists(folder.path / "out"));
+    }
+    folder.write("s.yaml", named("Gr\\xf6\\u00dfe, 轮"));
+    EXPECT_EQ(in(folder, "compare s.yaml --steps 2 -o out").code, 0);
+    EXPECT_EQ(nlohmann::json::parse(text_of(folder.path / "out/result.json"))["scenes"][0]["name"],
+              "Größe, 轮");
+}
+
+TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
+    const Folder folder;
+    for (const std::string name :
+         {"a\n::error::x.yaml", "a\x1b[2J.yaml", "a\u009b2J.yaml", "a\u202e.yaml", "a\xff.yaml"}) {
+        folder.write(name, text_of(scene));
+        for (const std::string command : {"solve", "compare", "inspect", "gate", "report -o out"}) {
+            const Said said = support::says("cd " + folder.path.string() +
+                                            " && GITHUB_ACTIONS=true CI= " + ELASTOCHECK_COMMAND +
+                                            " " + command + " '" + name + "'");
+            EXPECT_EQ(said.code, 2) << command << said.err;
+            for (const char* raw : {"\n::error", "\x1b", "\u009b", "\u202e", "\xff"})
+                EXPECT_FALSE(contains("\n" + said.out + said.err, raw)) << command;
+            EXPECT_TRUE(contains(said.err, "names are one line of UTF-8 text")) << said.err;
+        }
+        EXPECT_FALSE(fs::exists(folder.path / "out"));
+        fs::remove(folder.path / name);
+    }
+    // A baseline in a folder is a name too, and so is the scene that it names.
+    fs::create_directory(folder.path / "baselines");
+    std::ofstream(folder.path / "baselines" / "x\n::error::y.json") << "{}";
+    const Said said = in(folder, "gate");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_FALSE(contains("\n" + said.out + said.err, "\n::error")) << said.err;
+}
+
+TEST(Harm, AWayThroughAFolderWhoseNameIsNoTextStandsInNoBaseline) {
+    const Folder folder;
+    for (const std::string name : {"a\xff", "a\nb", "a\u202e"}) {
+        fs::create_directory(folder.path / name);
+        std::ofstream(folder.path / name / "s.yaml") << text_of(scene);
+        const Said said = support::says("cd '" + (folder.path / name).string() + "' && env -u CI " +
+                                        ELASTOCHECK_COMMAND +
+                                        " gate s.yaml --baseline ../baselines --accept --reason x");
+        EXPECT_EQ(said.code, 2) << said.out << said.err;
+        EXPECT_TRUE(contains(said.err, "/s.yaml: ") &&
+                    contains(said.err, "names are one line of UTF-8 text"))
+            << said.err;
+        EXPECT_FALSE(fs::exists(folder.path / "baselines"));
+    }
+}
+
+TEST(Harm, ANewlineInABaselineInjectsNoAnnotation) {
+    const Folder folder;
+    std::string baseline = text_of(scenes + "/baselines/pinned_bar.json");
+    for (const char* field :
+         {"\"file\":\"", "\"name\":\"", "\"channel\":\"", "\"branch\":\"", "\"input_hash\":\""}) {
+        std::string text = baseline;
+        const auto at = text.find(field);
+        ASSERT_NE(at, text.npos) << field;
+        text.insert(at + std::string(field).size(), "x\\n::error file=a::b");
+        folder.write("pinned_bar.json", text);
+        const Said said =
+            support::says(std::string("env CI= GITHUB_ACTIONS=true ") + ELASTOCHECK_COMMAND +
+                          " gate " + scene + " --baseline " + folder.path.string());
+        EXPECT_EQ(said.code, 3) << said.out;
+        EXPECT_FALSE(contains("\n" + said.out + said.err, "\n::error file=a")) << said.out;
+    }
+}
+
+TEST(Harm, StepCountsThatNoMemoryHoldsAreRefusedBeforeTheWork) {
+    const Folder folder;
+    for (const char* arguments :
+         {"solve --steps 10000000 ", "solve --steps 200000000 ", "compare --steps 1000001 ",
+          "converge --steps 10,20,40,80,200000000 ",
+          "converge --steps 10,20,40,80,99999999999999 "}) {
+        const Said said = in(folder, arguments + scene);
+        EXPECT_EQ(said.code, 2) << arguments << said.err;
+        EXPECT_TRUE(contains(said.err, "--steps")) << said.err;
+    }
+    const Said said = in(folder, "compare --steps 1000000 " + scenes + "/double_wishbone.yaml");
+    EXPECT_EQ(said.code, 2) << said.err;
+    EXPECT_TRUE(contains(said.err, "points on 7 branches, by 3 of the legs, would take about"))
+        << said.err;
+    EXPECT_TRUE(contains(said.err, "steps a branch")) << said.err;
+    // The scene itself requests too many steps.
+    const std::string text = std::regex_replace(text_of(scenes + "/double_wishbone.yaml"),
+                                                std::regex("steps: [0-9]+"), "steps: 1000000");
+    for (const char* command : {"compare s.yaml", "report s.yaml -o out", "gate s.yaml"}) {
+        folder.write("s.yaml", text);
+        folder.write("baselines_s.json", "");
+        const Said asked = in(folder, command);
+        EXPECT_EQ(asked.code, std::string(command).starts_with("gate") ? 3 : 2)
+            << command << asked.out << asked.err;
+    }
+}
+
+TEST(Harm, WhatCannotBeNamedOrOpenedIsBadInput) {
+    const Folder folder;
+    fs::create_symlink("loop", folder.path / "loop");
+    const std::string document = folder.write("r.json", "{}");
+    for (const std::string& arguments : std::vector<std::string>{
+             "compare " + scene + " -o ''", "solve " + scene + " -o ''",
+             "report " + scene + " -o ''", "gate " + scene + " --junit ''", "gate --baseline ''",
+             std::string("solve ''"), std::string("inspect loop"), "compare " + scene + " -o loop",
+             "compare " + scene + " -o loop/x", "solve " + scene + " -o loop/x.csv",
+             "report " + scene + " -o loop", std::string("report --from loop -o out"),
+             std::string("gate --baseline loop"), "gate " + scene + " --junit loop/j.xml",
+             "report " + scene + " --measured loop -o out",
+             "report " + scene + " --alarms loop -o out",
+             std::string("report --from /dev/zero -o out")}) {
+        const Said said = in(folder, arguments);
+        EXPECT_EQ(said.code, 2) << arguments << "\n" << said.out << said.err;
+        EXPECT_FALSE(contains(said.err, "internal error")) << said.err;
+    }
+}
+
+TEST(Harm, AFullDiskBehindStandardOutputIsNoSuccess) {
+    const Folder folder;
+    for (const std::string& arguments : std::vector<std::string>{
+             "inspect " + scene, "solve --steps 2 " + scene, "compare --steps 2 " + scene,
+             "gate " + scene, "--help", "--version"}) {
+        const Said said = in(folder, arguments + " > /dev/full");
+        EXPECT_EQ(said.code, 2) << arguments << said.err;
+        EXPECT_TRUE(
+            contains(said.err, "standard output: cannot be written: No space left on device"))
+            << said.err;
+    }
+}
+
+TEST(Harm, AMeasurementWithNothingToCompareIsNoPass) {
+    const Folder folder;
+    folder.write("far.csv", "load_N,tip_x_mm\n1e9,0\n");
+    const Said said = in(folder, "report " + scene + " --measured far.csv -o out");
+    EXPECT_EQ(said.code, 3) << said.err;
+    EXPECT_TRUE(
+        contains(said.err, "no point of far.csv lies where the legs could be compared with it"))
+        << said.err;
+}
+
+TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
+    const Folder folder;
+    fs::create_directory(folder.path / "baselines");
+    folder.write("good.yaml", text_of(scene));
+    ASSERT_EQ(in(folder, "gate good.yaml --accept --reason first").code, 0);
+    fs::create_directory(folder.path / "baselines/folder.json");
+    fs::create_symlink("loop.json", folder.path / "baselines/loop.json");
+    std::ofstream(folder.path / "baselines/broken.json") << "{";
+    folder.write("loop.yaml", text_of(scene));
+    for (const char* arguments : {"gate --junit j.xml", "gate loop.yaml good.yaml --junit j.xml"}) {
+        fs::remove(folder.path / "j.xml");
+        const Said said = in(folder, arguments);
+        EXPECT_EQ(said.code, 3) << arguments << said.err;
+        EXPECT_TRUE(contains(said.out, "good.yaml: passed")) << said.out;
+        EXPECT_TRUE(contains(said.out, "loop.json: cannot be read")) << said.out;
+        EXPECT_TRUE(contains(text_of(folder.path / "j.xml"), "good.yaml"));
+    }
+}
+
+// result.json and its tables are replaced as one folder: never from two runs.
+TEST(Harm, ComparesFilesAreOfOneRun) {
+    const Folder folder;
+    ASSERT_EQ(in(folder, "compare " + scene + " --steps 2 -o out").code, 0);
+    const auto rows = [&] {
+        return std::ranges::count(text_of(folder.path / "out/curves.csv"), '\n');
+    };
+    const auto points = [&] {
+        const auto result = nlohmann::json::parse(text_of(folder.path / "out/result.json"));
+        const auto& branch = result["scenes"][0]["branches"][0];
+        return branch["legs"][0]["curve"]["a"].size();
+    };
+    const auto of_few = rows();
+    ASSERT_EQ(in(folder, "compare " + scene + " --steps 4 -o out").code, 0);
+    const auto of_many = rows();
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(in(folder, "compare " + scene + " --steps 4 -o out").code, 0);
+    const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
+    ASSERT_NE(of_few, of_many);
+    int changed = 0, killed = 0;
+    for (int round = 0; round < 40; ++round) {
+        const bool few = round % 2 == 0;
+        const std::string delay = std::to_string(whole.count() * (0.3 + 0.05 * (round % 20)));
+        const Said said =
+            support::says("cd " + folder.path.string() + "; " + ELASTOCHECK_COMMAND + " compare " +
+                          scene + " --steps " + (few ? "2" : "4") + " -o out >/dev/null & sleep " +
+                          delay + "; kill -9 $! 2>/dev/null; wait $!");
+        killed += said.code != 0;
+        EXPECT_EQ(rows(), points() == 3 ? of_few : of_many) << "files of two runs, round " << round;
+        changed += rows() == (few ? of_few : of_many);
+    }
+    EXPECT_GT(killed, 0);
+    EXPECT_EQ(in(folder, "compare " + scene + " --steps 2 -o out").code, 0)
+        << "nothing left blocks the next run";
+    int entries = 0;
+    for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path)) ++entries;
+    EXPECT_EQ(entries, 1);
+    std::printf("killed %d of 40, changed in %d\n", killed, changed);
+}
+
+}  // namespace
