@@ -1,4 +1,5 @@
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 #include <fmt/format.h>
 

@@ -191,7 +191,7 @@ double processor_time() {
 ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
 
 bool is_reference(const Solver& solver) {
-    return solver.solver.leg == Leg::equilibrium || solver.solver.leg == Leg::energy;
+    return solver.settings.leg == Leg::equilibrium || solver.settings.leg == Leg::energy;
 }
 
 // Accuracy claimed for a state: of every body, or of every place.
@@ -214,7 +214,7 @@ Claim claim_of(const Solver& solver, const ErrorBound& error_bound, double size)
     if (std::isfinite(error_bound.length) && std::isfinite(error_bound.angle)) return {error_bound};
     const ErrorBound rounding = exact(size);
     if (is_reference(solver)) return {rounding, false};
-    if (solver.solver.error_bound) return {};  // a point without an error bound claims nothing
+    if (solver.settings.error_bound) return {};  // a point without an error bound claims nothing
     return std::visit(overloaded{[&](const recursive::Adaptive& told) -> Claim {
                                      return {{std::max(told.length_tolerance, rounding.length),
                                               std::max(told.angle_tolerance, rounding.angle)}};
@@ -225,7 +225,7 @@ Claim claim_of(const Solver& solver, const ErrorBound& error_bound, double size)
                                              false};
                                  },
                                  [](const auto&) -> Claim { return {}; }},
-                      solver.solver.recursion.method.kind);
+                      solver.settings.recursion.method.kind);
 }
 
 std::size_t index_of(const std::vector<Solver>& solvers, std::string_view name) {
@@ -333,9 +333,9 @@ Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const K
 // smaller.
 double length_promised(const Solver& solver, const WayRun& run, const ErrorBound& claim) {
     constexpr double coarse = 1e-4;
-    const auto& method = solver.solver.recursion.method;
+    const auto& method = solver.settings.recursion.method;
     if (!(claim.length < coarse * run.size)) return nan;
-    if (solver.solver.leg != Leg::recursive) return claim.length;
+    if (solver.settings.leg != Leg::recursive) return claim.length;
     if (recursive::has_steps(method)) return nan;
     const auto* adaptive = std::get_if<recursive::Adaptive>(&method.kind);
     return adaptive ? std::max(claim.length, adaptive->length_tolerance) : claim.length;
@@ -359,11 +359,11 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
         if (!variant.asked.empty() && !is_reference(solver) &&
             std::ranges::find(variant.asked, solver.name) == variant.asked.end())
             continue;
-        SolverSettings solver = solver.solver;
-        solver.every = every;
+        SolverSettings settings = solver.settings;
+        settings.every = every;
         try {
             const WithArithmetic in_force(variant.arithmetic);
-            const EquilibriumPath path = walk(way, solver, [&](const Equilibrium& state) {
+            const EquilibriumPath path = walk(way, settings, [&](const Equilibrium& state) {
                 found.stands.push_back(stand(way.model, run.places, state));
                 found.error_bounds.push_back(state.bound);
                 found.reactions.push_back(reactions_of(run.joints, state));

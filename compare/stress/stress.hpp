@@ -94,7 +94,7 @@ const std::vector<Sweep>& sweeps();
 // ---- Solvers: every method of the recursion, and the references.
 struct Solver {
     std::string name;  // "published", "equilibrium"
-    SolverSettings solver;
+    SolverSettings settings;
 };
 std::vector<Solver> solvers();
 

@@ -109,8 +109,9 @@ Outcome adapt(SteppingState<Real>& s, const Adaptive& method, double to, Recordi
     // step refused only for its interpolation error gives no reason.
     constexpr Real short_step = Real(1e-7),  // of the branch
         shortest_step = std::max(Real(1e-12), std::numeric_limits<Real>::epsilon());
-    std::optional<Outcome> ended;  // at ended_at; none once the path has gone on by a short step
-    Real ended_at = 0;
+    bool refused = false;  // a short step at refused_at, past which the path has not gone on
+    Real refused_at = 0;
+    Outcome ended = Outcome::branch_lost;  // why
     Real h = end / 8;
     int changes = 0;  // of pieces since the last accepted step
     // Factorisation and derivative at the node on the present pieces.
@@ -183,7 +184,7 @@ Outcome adapt(SteppingState<Real>& s, const Adaptive& method, double to, Recordi
                 log_here = log_next;
                 s.a = node.p;
                 changes = 0;
-                if (std::abs(node.p - ended_at) > std::abs(end) * short_step) ended.reset();
+                if (std::abs(node.p - refused_at) > std::abs(end) * short_step) refused = false;
                 if (met.curve && reached <= last) {
                     take_pieces(s, going, node, h * Real(1e-3), q);
                     if (const Outcome outcome = begin_anew(); outcome != Outcome::converged)
@@ -199,13 +200,14 @@ Outcome adapt(SteppingState<Real>& s, const Adaptive& method, double to, Recordi
             judged ? Real(0.85) * pow(std::max(error, Real(1e-8)), Real(-0.25)) : Real(0.3);
         h = step * std::clamp(change, Real(0.1), Real(4));
         if (!(std::abs(h) > std::abs(end) * short_step) && reached <= last) {
-            if (!ended || *ended == Outcome::branch_lost) {
-                if (!ended) ended_at = node.p;
-                ended =
-                    judged ? Outcome::branch_lost
-                           : why_it_ends(trial, node, curvature, step, static_cast<Real>(s.length));
+            if (!refused) {
+                refused_at = node.p;
+                ended = Outcome::branch_lost;
             }
-            if (!(std::abs(h) > std::abs(end) * shortest_step)) return *ended;
+            refused = true;
+            if (!judged && ended == Outcome::branch_lost)
+                ended = why_it_ends(trial, node, curvature, step, static_cast<Real>(s.length));
+            if (!(std::abs(h) > std::abs(end) * shortest_step)) return ended;
         }
     }
     return Outcome::converged;

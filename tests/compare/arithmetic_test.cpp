@@ -179,11 +179,11 @@ TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
             const Model model = compile(made);
             for (const auto& solver : solvers()) {
                 Answer& answer = all.emplace_back();
-                SolverSettings solver = solver.solver;
-                solver.every = 4, solver.error_bound = false;
+                SolverSettings settings = solver.settings;
+                settings.every = 4, settings.error_bound = false;
                 for (const auto& way : sides_of(model, model.branches.front(), 4)) {
                     const auto path = walk(
-                        way, solver, [&](const Equilibrium& state) { answer.poses = state.poses; });
+                        way, settings, [&](const Equilibrium& state) { answer.poses = state.poses; });
                     if (answer.outcome == Outcome::converged) answer.outcome = path.outcome;
                 }
             }
