@@ -23,19 +23,19 @@ struct Request {
     bool as_json = false;
 };
 
-compare::SolverSettings gait_of(const std::string& solver) {
+compare::SolverSettings settings_of(const std::string& solver) {
     for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series})
         if (solver == name(leg)) return {.leg = leg};
-    compare::SolverSettings solver;
-    solver.recursion.method = *recursive::find_method(solver);
-    return solver;
+    compare::SolverSettings settings;
+    settings.recursion.method = *recursive::find_method(solver);
+    return settings;
 }
 
 int certify(const Request& request, const std::string& command) {
     compare::CertifyOptions options;
     options.tolerance = compare::claim(request.tolerance);  // throws before the work
     if (!request.folder.empty()) Staging::check(request.folder);
-    for (const auto& solver : request.solvers) options.solvers.push_back(gait_of(solver));
+    for (const auto& solver : request.solvers) options.solvers.push_back(settings_of(solver));
     options.points = request.points;
     options.progress = progress;
     const Delivery delivery{
