@@ -221,7 +221,7 @@ TEST(Version, IsThatOfTheArchiveWhereThereIsNoCheckoutAndNeverOfOneAround) {
     ASSERT_EQ(
         support::says(
             "cd " + around.path.string() +
-            " && mkdir -p archive copy/reports/document && git init -q && " + git +
+            " && mkdir -p archive copy/reports/files && git init -q && " + git +
             "archive HEAD .gitattributes reports/files/build_info.cmake | tar x -C archive && cp " +
             root +
             "/reports/files/build_info.cmake copy/reports/files/ && git add copy && git -c "
