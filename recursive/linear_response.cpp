@@ -1,4 +1,5 @@
 #include "recursive/linear_response.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 #include <fmt/format.h>
 
