@@ -6,6 +6,7 @@
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/branch.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/linear_response.hpp"
 #include "reference/energy/linear_response.hpp"
 #include "reference/equilibrium/linear_response.hpp"

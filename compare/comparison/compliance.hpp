@@ -21,6 +21,7 @@
 
 #include "compare/comparison/legs.hpp"
 #include "models/response.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 namespace elastocheck::compare {
 

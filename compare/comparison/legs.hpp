@@ -14,6 +14,7 @@
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 namespace elastocheck::compare {
 

@@ -5,6 +5,7 @@
 
 #include "compare/studies/findings.hpp"
 #include "models/overloaded.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/tables/elements.hpp"
 #include "reports/tables/render.hpp"

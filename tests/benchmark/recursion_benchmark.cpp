@@ -30,6 +30,7 @@
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/path.hpp"
 #include "tests/support/scenes.hpp"
 

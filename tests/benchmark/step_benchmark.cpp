@@ -12,6 +12,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "tests/benchmark/families.hpp"
 

@@ -12,6 +12,7 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "tests/recursive/random_scenes.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "tests/recursive/elements.hpp"

@@ -6,6 +6,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/singularity/stability_limit.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -8,6 +8,7 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/singularity/branch_events.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -10,6 +10,7 @@
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "tests/recursive/random_scenes.hpp"
 
 namespace elastocheck::recursive {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "elastocheck/compile.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/slopes.hpp"
 

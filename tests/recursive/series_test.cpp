@@ -7,6 +7,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/recursive.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/path.hpp"

@@ -1,5 +1,6 @@
 // Sparse LU against a dense factorisation, and its sparsity.
 #include "recursive/linear_algebra/sparse_lu.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 #include <gtest/gtest.h>
 
