@@ -7,8 +7,11 @@
 #include <map>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/readings.hpp"
+#include "compare/studies/findings.hpp"
 #include "elastocheck/equilibrium.hpp"
 
 namespace elastocheck::compare {

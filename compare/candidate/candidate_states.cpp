@@ -8,6 +8,7 @@
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/comparison/legs.hpp"
 #include "elastocheck/equilibrium.hpp"
 
 namespace elastocheck::compare {

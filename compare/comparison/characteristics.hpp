@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compare/comparison/compliance.hpp"
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 
 namespace elastocheck::compare {
 

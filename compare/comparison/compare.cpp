@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/extrapolation.hpp"
+#include "compare/deviation/proof.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reference/certificate/certificate.hpp"
 
@@ -62,8 +64,8 @@ Tally proved(const BranchSide& way, const LegRun& run) {
     for (const auto* state : {&start, &middle, &front, &back}) {
         if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
         done.push_back((*state)->load);
-        tally.add((*state)->load, run.curve.unit,
-                  reference::certificate::certify(way.model, way.branch, **state));
+        add(tally, (*state)->load, run.curve.unit,
+            reference::certificate::certify(way.model, way.branch, **state));
     }
     return tally;
 }

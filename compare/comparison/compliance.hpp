@@ -32,6 +32,12 @@ using Motions = std::vector<Increment>;
 // patch.
 inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
+// Cached analyses of the recursion for the response models of a branch side; they do not depend on
+// the state.
+struct Analyses {
+    std::optional<recursive::Analysis> free, jacked, tied;  // computed on first use
+};
+
 struct Answers {
     // per wheel, jacked: its centre raised by 1 m, the other wheel centres held
     std::vector<Motions> travel;

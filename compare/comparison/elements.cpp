@@ -8,8 +8,8 @@
 #include <limits>
 #include <set>
 
-#include "compare/comparison/compare.hpp"
 #include "compare/outputs/deformation.hpp"
+#include "elastocheck/compare.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {

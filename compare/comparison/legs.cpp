@@ -13,6 +13,7 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/deviation/agreement.hpp"
 #include "compare/deviation/tolerance.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/energy.hpp"
@@ -201,6 +202,12 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
             in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *answers);
     }
     return row;
+}
+
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+           const SolverSettings& solver, const Equilibrium& state) {
+    Analyses analyses;
+    return row_of(model, channels, way, solver, state, analyses);
 }
 
 EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver,

@@ -1,4 +1,4 @@
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compare/comparison/legs.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"

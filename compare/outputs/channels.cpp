@@ -1,4 +1,4 @@
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 
 #include <fmt/format.h>
 

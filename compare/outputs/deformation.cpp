@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/outputs/channels.hpp"
 #include "compare/outputs/positions.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {

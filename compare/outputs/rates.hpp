@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "elastocheck/model.hpp"
 #include "recursive/series/path.hpp"
 

@@ -32,8 +32,7 @@ CertifiedWay certify_way(const BranchSide& way, SolverSettings solver,
     result.outcome = path.outcome;
     result.detail = path.detail;
     for (const Equilibrium& state : path.points)
-        result.tally.add(
-            state.load, result.unit,
+        add(result.tally, state.load, result.unit,
             certificate::certify(way.model, way.branch, state, in_si(options.tolerance)));
     if (solver.leg == Leg::equilibrium && path.points.size() > 1)
         result.curve = certificate::certify_branch(way.model, way.branch, path.points,

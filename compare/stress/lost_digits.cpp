@@ -21,8 +21,8 @@ std::size_t place_of(std::vector<std::string>& list, const std::string& word) {
     return place;
 }
 
-// Worst result over all cells of one group.
-struct Worst {
+// GroupWorst result over all cells of one group.
+struct GroupWorst {
     bool wrong = false, reported_failure = false, unknown = false;
     std::optional<double> digits;
 
@@ -59,7 +59,7 @@ LostDigits lost_digits(const Survival& survival) {
         std::vector<const StressCell*> drawn;
         for (const auto& cell : survival.cells)
             if (cell.scene == scene && cell.sweep == as_it_is) drawn.push_back(&cell);
-        std::vector worst(result.variants.size(), std::vector<Worst>(result.groups.size()));
+        std::vector worst(result.variants.size(), std::vector<GroupWorst>(result.groups.size()));
         for (const auto& cell : survival.cells) {
             if (cell.scene != scene || cell.sweep != other_arithmetic) continue;
             worst[place_of(result.variants, cell.variant)]

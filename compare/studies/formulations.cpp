@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/curve.hpp"

@@ -26,9 +26,9 @@ struct Request {
 compare::SolverSettings gait_of(const std::string& solver) {
     for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series})
         if (solver == name(leg)) return {.leg = leg};
-    compare::SolverSettings solver;
-    solver.recursion.method = *recursive::find_method(solver);
-    return solver;
+    compare::SolverSettings settings;
+    settings.recursion.method = *recursive::find_method(solver);
+    return settings;
 }
 
 int certify(const Request& request, const std::string& command) {

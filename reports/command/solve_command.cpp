@@ -11,7 +11,7 @@
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "compare/outputs/rates.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"

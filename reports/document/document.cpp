@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/deviation/agreement.hpp"
 #include "compare/studies/findings.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/study.hpp"
 #include "elastocheck/scene.hpp"

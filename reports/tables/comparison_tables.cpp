@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/deviation/agreement.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/comparison/compare.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -11,7 +11,7 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "tests/support/scenes.hpp"

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "recursive/linear_response.hpp"

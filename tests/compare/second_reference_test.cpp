@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/comparison/legs.hpp"
 #include "compare/studies/study.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/compile/parts.hpp"
 #include "tests/engines/simbody/engine.hpp"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
