@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "compare/outputs/positions.hpp"
+#include "compare/outputs/rates.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -45,13 +46,9 @@ struct Wheels {
     Vector3d at(const Point& point) const { return position(state.poses, point); }
     double side(std::size_t w) const { return model.wheels[w].side; }
 
-    double toe(std::size_t w, const Motions& by) const {
-        const Vector3d e = spin(w), de = turned(by, model.wheels[w].body).cross(e);
-        return side(w) * (e.y() * de.x() - e.x() * de.y()) / (e.x() * e.x() + e.y() * e.y());
-    }
+    double toe(std::size_t w, const Motions& by) const { return rate_of(model, Toe{w}, state, by); }
     double camber(std::size_t w, const Motions& by) const {
-        const Vector3d e = spin(w), de = turned(by, model.wheels[w].body).cross(e);
-        return -de.z() / std::sqrt(1 - e.z() * e.z());
+        return rate_of(model, Camber{w}, state, by);
     }
     Vector3d spin(std::size_t w) const {
         return pose(state.poses, model.wheels[w].body).p * model.wheels[w].spin_axis_local;
@@ -224,10 +221,7 @@ double steer_gradient(const Wheels& wheels, std::size_t w) {
 }
 
 double shortening(const Wheels& wheels, const Point& i, const Point& j) {
-    const Motions by = raised(wheels, 0);
-    return -(wheels.at(j) - wheels.at(i))
-                .normalized()
-                .dot(moved(wheels.state, by, j) - moved(wheels.state, by, i));
+    return rate_of(wheels.model, Compression{i, j}, wheels.state, raised(wheels, 0));
 }
 
 // ---- Catalogue: owner, name, unit, definition with its sign, meaning of undefined, formula.

@@ -76,6 +76,7 @@ json channels_json(const std::vector<compare::Channel>& channels) {
                         {"unit", symbol(channel.unit)},
                         {"main", channel.main},
                         {"kinematic", channel.kinematic()},
+                        {"kind", name(channel.kind())},
                         {"definition", channel.definition}});
     return list;
 }
