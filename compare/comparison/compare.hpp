@@ -20,7 +20,7 @@ LegRun run(const Model& model, const Branch& branch, Leg leg,
 
 // Whether the energy leg judges the states of the equilibrium leg although the scene is too large
 // for states of its own.
-bool energy_bears_witness(const BranchComparison& branch);
+bool energy_judges_states(const BranchComparison& branch);
 
 // Reasons why the references do not agree on a branch whose runs and readings are complete; `asked`
 // is the branch of the model. all_legs: a failed recursion is an objection too, since it prevents a

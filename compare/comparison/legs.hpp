@@ -15,10 +15,10 @@ namespace elastocheck::compare {
 
 // Requested values of the parameter, in the order of the points: from a = 0 for one side, from
 // `from` to `to` for two.
-std::vector<double> asked_for(const std::vector<BranchSide>& ways, int every);
+std::vector<double> requested_parameters(const std::vector<BranchSide>& ways, int every);
 
 // Whether the outcome means that the energy leg does not apply here, in contrast to a failure.
-bool is_not_asked(Outcome outcome);
+bool is_not_applicable(Outcome outcome);
 
 // Requested numbers of a point, in place of all its poses and wrenches.
 struct Row {
@@ -43,9 +43,9 @@ EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& 
                      const std::function<void(Row)>& hand_over);
 
 // The same path as a curve. `also` is called with every point when it is found.
-Walked walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
-            const std::vector<BranchSide>& ways, const SolverSettings& solver,
-            const Visit& also = {});
+PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
+               const std::vector<BranchSide>& ways, const SolverSettings& solver,
+               const Visit& also = {});
 
 // Start of a branch side by this leg: one point, the settled state at a = 0; no point where it does
 // not settle.

@@ -358,7 +358,7 @@ Trimmed trim(const Scene& scene) {
     }
 
     Answer second = settle(problem, p, Leg::energy);
-    if (is_not_asked(second.outcome)) {
+    if (is_not_applicable(second.outcome)) {
         record.confirmed_by = Leg::series;
         second = settle(problem, p, Leg::series);
     }

@@ -1,8 +1,5 @@
 #include "compare/outputs/rates.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "recursive/series/path.hpp"
 
 namespace elastocheck::compare {
@@ -31,37 +28,6 @@ std::vector<double> channel_rates(const Model& model, std::span<const Channel> c
         result.push_back(rate_of(model, channel.reads, state, motion) * in_unit(channel.unit) /
                          in_unit(unit_of(branch.unit)));
     return result;
-}
-
-std::optional<Place> place_at(const Model& model, const Channel& channel, const Branch& branch,
-                              const Path& path, double value) {
-    using namespace recursive::series;
-    if (path.expansions.empty() || !channel.kinematic()) return std::nullopt;
-    const auto value_at = [&](Place place) {
-        return compare::evaluate(model, {&channel, 1}, evaluate(model, branch, path, place))
-            .front();
-    };
-    const Expansion& last = path.expansions.back();
-    const Place end{path.expansions.size() - 1, last.reach};
-    double from = evaluate(model, branch, path, {0, 0}).load,
-           to = evaluate(model, branch, path, end).load;
-    const double first = value_at({0, 0}), final = value_at(end);
-    if (!(std::min(first, final) <= value && value <= std::max(first, final))) return std::nullopt;
-    double a = from + (to - from) * (final == first ? 0 : (value - first) / (final - first));
-    for (int k = 0; k < 100; ++k) {
-        const Place here = *find(path, a);
-        const double miss = value_at(here) - value;
-        ((miss < 0) == (final > first) ? from : to) = a;
-        const double slope = in_unit(channel.unit) * rate_of(model, channel.reads,
-                                                             evaluate(model, branch, path, here),
-                                                             motion_along(path, here));
-        double next = a - miss / slope;
-        // bisect where Newton leaves
-        if (!((next - from) * (next - to) <= 0)) next = from + (to - from) / 2;
-        if (next == a || std::abs(next - a) <= 1e-15 * std::abs(branch.to)) break;
-        a = next;
-    }
-    return find(path, a);
 }
 
 }  // namespace elastocheck::compare

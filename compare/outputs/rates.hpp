@@ -1,8 +1,7 @@
 // Derivatives of outputs, by dual numbers: along any first-order motion of the bodies, and along a
-// branch that is a polynomial; and the inverse: the parameter for a given output value.
+// branch that is a polynomial.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,12 +26,5 @@ double rate_of(const Model& model, const Reads& reads, const Equilibrium& state,
 std::vector<double> channel_rates(const Model& model, std::span<const Channel> channels,
                                   const Branch& branch, const recursive::series::Path& path,
                                   recursive::series::Place place);
-
-// Place at which a kinematic channel has this value, by Newton's method on the polynomial between
-// the ends of the path; empty where the path does not reach the value. Pre: the channel is
-// monotonic along the path.
-std::optional<recursive::series::Place> place_at(const Model& model, const Channel& channel,
-                                                 const Branch& branch,
-                                                 const recursive::series::Path& path, double value);
 
 }  // namespace elastocheck::compare

@@ -90,7 +90,7 @@ bool CertifyStudy::excluded() const {
 }
 bool CertifyStudy::conclusive() const {
     return proved() > 0 && std::ranges::all_of(ways, [](const CertifiedWay& way) {
-               if (is_not_asked(way.outcome)) return true;
+               if (is_not_applicable(way.outcome)) return true;
                const bool ended = way.outcome == Outcome::converged ||
                                   (way.limit && way.limit->answer == Answer::proved);
                return ended && way.tally.points > 0 && way.tally.proved == way.tally.points;

@@ -33,7 +33,7 @@ struct GroupWorst {
         else
             (cell.outcome == Outcome::converged ? unknown : reported_failure) = true;
     }
-    Loss told() const {
+    Loss text() const {
         if (wrong) return "X";
         if (digits) return fmt::format("{:.1f}", *digits);
         return unknown ? "?" : reported_failure ? "!" : ".";
@@ -78,8 +78,8 @@ LostDigits lost_digits(const Survival& survival) {
         LostDigits::Row& row = result.rows.emplace_back();
         row.scene = scene;
         for (const auto& variant : worst) {
-            auto& told = row.lost.emplace_back();
-            for (const auto& group : variant) told.push_back(group.told());
+            auto& text = row.lost.emplace_back();
+            for (const auto& group : variant) text.push_back(group.text());
         }
     }
     return result;

@@ -128,7 +128,7 @@ struct CandidateJudgement {
     int others = 0;           // number of judged columns that are neither positions nor angles
     bool has_forces = false;  // a joint's force or moment is determined on some branch
     std::vector<Explanation> explanations;
-    std::vector<std::string> said;  // the explanations as text
+    std::vector<std::string> hints;  // the explanations as text
     std::vector<Leftover> leftovers;
     std::vector<std::string> notes;
     int compared = 0;  // numbers

@@ -27,7 +27,7 @@ struct Curve {
 };
 
 // Path of a leg as a curve.
-struct Walked {
+struct PathCurve {
     Outcome outcome = Outcome::converged;
     std::string detail = {};
     Counts counts = {};
@@ -163,7 +163,7 @@ struct Compliance {
 };
 
 // Run of one leg along one branch: outputs of its points, not the states.
-struct LegRun : Walked {
+struct LegRun : PathCurve {
     Leg leg = Leg::recursive;
     std::string method = {};  // of the recursion, else empty
     // largest residual over the points, by the equations of each leg; forces are NaN for the energy
@@ -174,7 +174,7 @@ struct LegRun : Walked {
     // Messages from the error bounds and the remaining stiffness of its points (extrapolation.hpp):
     // broken tolerance of a method that has one, and for the equilibrium leg the expected next
     // singular point.
-    std::vector<std::string> told = {};
+    std::vector<std::string> messages = {};
     Tally proved = {};  // proofs of the landmarks; empty unless requested
     std::vector<Compliance> compliance =
         {};  // at front, start and back, as far as they differ; for scenes with wheels
