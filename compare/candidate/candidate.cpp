@@ -7,8 +7,11 @@
 #include <map>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compare.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/readings.hpp"
+#include "compare/studies/findings.hpp"
 #include "elastocheck/equilibrium.hpp"
 
 namespace elastocheck::compare {
@@ -39,7 +42,7 @@ class Reference {
     Reference(const Model& model, const Branch& branch, int steps, std::vector<Channel> channels)
         : model_(model),
           ways_(sides_of(model, branch, steps)),
-          sorted_(asked_for(ways_, 1)),
+          sorted_(requested_parameters(ways_, 1)),
           channels_(std::move(channels)) {
         std::ranges::sort(sorted_);
     }
@@ -77,7 +80,7 @@ class Reference {
             if (asked.empty()) continue;
             const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
             std::ranges::sort(asked, nearer);
-            std::vector<double> all = asked_for({way}, 1);
+            std::vector<double> all = requested_parameters({way}, 1);
             std::erase_if(all, [&](double a) { return std::abs(a) > std::abs(asked.back()); });
             std::ranges::copy(asked, std::back_inserter(all));
             std::ranges::sort(all, nearer);
@@ -131,10 +134,10 @@ CandidateReading compared(const Asked& asked, const std::vector<PointColumn>& co
         std::vector<double> mine, truth, at, all_mine, all_truth;
         for (std::size_t k = 0; k < points.size(); ++k) {
             const double value = columns[c].values[points[k]];
-            const bool said = branch.determined[columns[c].channel] && !std::isnan(value);
-            all_mine.push_back(said ? value : nan);
-            all_truth.push_back(said ? (*rows[k])[c] : nan);
-            if (!said) continue;
+            const bool given = branch.determined[columns[c].channel] && !std::isnan(value);
+            all_mine.push_back(given ? value : nan);
+            all_truth.push_back(given ? (*rows[k])[c] : nan);
+            if (!given) continue;
             mine.push_back(value), truth.push_back((*rows[k])[c]), at.push_back(reading.at[k]);
         }
         Deviation deviation = deviation_of(truth, mine, at);
@@ -182,14 +185,14 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
                                    const std::vector<Channel>& channels, Reference& reference,
                                    const BranchComparison& branch) {
     CandidateReading reading;
-    const auto* said = abscissa_of(candidate, columns, branch.abscissa);
+    const auto* placed = abscissa_of(candidate, columns, branch.abscissa);
     if (branch.abscissa < 0) {
         reading.not_compared = "the scene has no position to read by";
         return reading;
     }
     const auto c = static_cast<std::size_t>(branch.abscissa);
     const Curve& truth = truth_of(branch);
-    if (said == nullptr) {
+    if (placed == nullptr) {
         reading.not_compared = fmt::format("it says no {}", channels[c].name);
         return reading;
     }
@@ -209,7 +212,7 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
     Asked asked{points, {}, {}};
     std::vector<double> slope;  // Δa/Δt [SI per unit]
     for (const std::size_t k : points) {
-        const double at = (*said)[k];
+        const double at = (*placed)[k];
         asked.x.push_back(at);
         double load = nan, rate = nan;
         if (at >= std::min(t.front(), t.back()) - rounding &&
@@ -546,7 +549,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         if (const double missed = state_error(left);
             left.why_not.empty() && !(missed <= tolerance.mm)) {
             within = false;
-            result.said.push_back(
+            result.hints.push_back(
                 fmt::format("its states miss the constraints of branch '{}' by {:.2g} mm",
                             left.branch, missed));
         }
@@ -588,11 +591,12 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
     Points standing = candidate.points;
     standing.columns = result.columns;
     for (const auto& one : result.explanations) {
-        const bool told = std::ranges::any_of(result.explanations, [&](const Explanation& other) {
-            return &other < &one && one.mutual && other.mutual &&
-                   one.other == result.columns[other.column].channel;
-        });
-        if (!told) result.said.push_back(describe(one, comparison, standing));
+        const bool included =
+            std::ranges::any_of(result.explanations, [&](const Explanation& other) {
+                return &other < &one && one.mutual && other.mutual &&
+                       one.other == result.columns[other.column].channel;
+            });
+        if (!included) result.hints.push_back(describe(one, comparison, standing));
     }
     if (result.reasons.empty()) result.verdict = within ? Grade::pass : Grade::fail;
     return result;

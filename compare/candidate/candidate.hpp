@@ -1,68 +1,25 @@
-// Candidate: results of an external solver, judged against the references as the recursion is.
-//
-// Nothing is interpolated. The equilibrium leg solves the candidate's own points: at equal load at
-// the candidate's loads, at equal travel at the load where the travel of the leg equals that of the
-// candidate. With t(a) the travel of the leg and t* that of a point, a starts from the compared
-// branch and is improved by the secant method:  a ← a + (t* - t(a)) Δa/Δt.
+// Diagnosis and convergence study of a candidate.
 #pragma once
 
 #include <functional>
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/candidate/judgement.hpp"
 #include "compare/comparison/points.hpp"
-#include "compare/studies/findings.hpp"
+#include "compare/studies/study.hpp"
+#include "elastocheck/candidate.hpp"
 
 namespace elastocheck::compare {
 
-// Residuals of the candidate's states in the equations of the legs on one branch, one entry per
-// point with a state.
-struct Leftover {
-    std::string branch;
-    Unit unit = Unit::newton;  // of the parameter
-    std::vector<double> a;     // [unit]
-    Leg second = Leg::energy;  // the second judging leg, beside the equilibrium leg
-    // per point; forces are NaN for the energy leg if a force has no energy
-    std::vector<Residuals> truth, by_second;
-    std::string why_not = {};  // reason why the states are not judged
-};
+// Channels and branches of a comparison that is not run, for a candidate that is studied alone.
+Comparison outline(const Model& model);
 
-struct Candidate {
-    std::string name;  // "mysolver"
-    Points points;
-    // columns follow from its states: main outputs and forces are judged
-    bool every_output = false;
-    bool complete = false;            // whole branches were requested: a missing part is a failure
-    std::vector<Leftover> leftovers;  // of its states
-    std::vector<std::string> notes;   // remarks on how the points were read
-};
+// ---- Diagnosis of a wrong column (candidate_faults.cpp).
 
-// ---- Diagnosis of a wrong column: the transformation that makes it right (candidate_faults.cpp).
-struct Explanation {
-    enum class Kind {
-        sign,    // v = -r
-        offset,  // v = r + c
-        factor,  // v = f r, or relative to the start of the branch: v = r_0 + f (r - r_0)
-        sign_and_offset,
-        factor_and_offset,
-        other_output,   // v = the reference's other output
-        other_turned,   // v = - the reference's other output
-        from_there_on,  // right up to a point of a branch, wrong beyond
-        still,          // constant where the reference moves
-    } kind = Kind::offset;
-    std::size_t column = 0;         // position in Points::columns
-    double factor = 1, offset = 0;  // offset in the channel's unit
-    std::string unit_word = {};     // unit confusion that gives this factor: "radians for degrees"
-    std::size_t other = 0;          // channel of the other output
-    std::string branch = {};        // from_there_on
-    double at = 0;                  // last right point on that branch, in its unit
-    double left = 0;                // largest deviation that remains, in the channel's unit
-    bool mutual = false;            // other_output: the two columns are exchanged
-};
 // "toe agrees to 1e-6 deg with its sign turned"
 std::string describe(const Explanation& explanation, const Comparison& comparison,
                      const Points& points);
@@ -81,87 +38,6 @@ struct Beside {
     std::vector<std::size_t> other_channels;
 };
 std::optional<Explanation> explain(const Beside& beside);
-
-// ---- The judgement.
-
-struct CandidateReading {
-    std::string not_compared;  // reason why there is no comparison, else empty
-    int outside = 0;           // points that the reference does not reach
-    // candidate minus reference, per Points::columns; `compared` is 0 for a column without numbers
-    std::vector<Deviation> columns;
-    std::vector<double> at;                             // per compared point: parameter or travel
-    std::vector<std::vector<double>> candidate, truth;  // [column][point]; NaN without a value
-};
-
-struct CandidateBranch {
-    std::string branch;
-    Unit unit = Unit::newton;
-    int points = 0;
-    // range of the branch that the points of the candidate span [unit]; NaN without a parameter
-    double from = 0, to = 0;
-    int abscissa = -1;  // channel
-    CandidateReading equal_parameter, equal_abscissa;
-    const CandidateReading& reading(ReadingKind kind) const {
-        return kind == ReadingKind::equal_parameter ? equal_parameter : equal_abscissa;
-    }
-};
-
-struct CandidateWorst : Worst {
-    ReadingKind kind = ReadingKind::equal_parameter;
-    double at = 0;
-};
-
-struct CandidateJudgement {
-    std::string name;
-    Grade verdict = Grade::not_judged;
-    Tolerance tolerance = default_tolerance;
-    bool asked = false;                     // the tolerance was given, not the default
-    std::vector<std::string> reasons;       // why not judged
-    std::vector<std::string> not_given;     // missing branches, parts of branches or of columns
-    std::vector<PointColumn> columns;       // as absolute values, not changes
-    std::vector<bool> judged;               // per column: it counts for the verdict
-    std::vector<CandidateBranch> branches;  // those that it has points on
-    // Worst judged deviation, one entry each as far as they exist: mm, deg, N and N·m where these
-    // have a limit of their own, and one for all outputs whose limit is a share of their extent.
-    std::vector<CandidateWorst> worst;
-    int others = 0;           // number of judged columns that are neither positions nor angles
-    bool has_forces = false;  // a joint's force or moment is determined on some branch
-    std::vector<Explanation> explanations;
-    std::vector<std::string> said;  // the explanations as text
-    std::vector<Leftover> leftovers;
-    std::vector<std::string> notes;
-    int compared = 0;  // numbers
-    int outside = 0;   // points beyond the range of the reference
-};
-
-// Throws std::invalid_argument for points that cannot be placed (points.hpp).
-CandidateJudgement judge_candidate(const Model& model, const Comparison& comparison,
-                                   const Candidate& candidate,
-                                   const Tolerance& tolerance = default_tolerance,
-                                   bool asked = true);
-
-// Channels and branches of a comparison that is not run, for a candidate that is studied alone.
-Comparison outline(const Model& model);
-
-// ---- States (candidate_states.cpp).
-
-struct CandidateState {
-    std::string branch;
-    double load = 0;          // as in Equilibrium
-    std::vector<Pose> poses;  // one per Model::bodies; NaN for a body without a given pose
-};
-
-// Points with every output computed from the poses, and the residuals of the states in the legs'
-// equations.
-Candidate candidate_of(const Model& model, const Comparison& comparison, std::string name,
-                       const std::vector<CandidateState>& states);
-
-// External solver as a function, like a leg: (model of one branch side, that branch side, requested
-// parameter values from a = 0 on) -> path.
-using CandidateSolver =
-    std::function<EquilibriumPath(const Model&, const Branch&, std::span<const double>)>;
-Candidate candidate_of(const Model& model, const Comparison& comparison, std::string name,
-                       const CandidateSolver& solver);
 
 // ---- Convergence study (candidate_study.cpp): order, own limit, step error and formulation gap,
 // as for a method of the recursion (study.hpp).

@@ -18,6 +18,7 @@
 #include <numbers>
 
 #include "compare/candidate/candidate.hpp"
+#include "compare/deviation/tolerance.hpp"
 
 namespace elastocheck::compare {
 namespace {

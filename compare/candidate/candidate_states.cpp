@@ -8,6 +8,7 @@
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/comparison/legs.hpp"
 #include "elastocheck/equilibrium.hpp"
 
 namespace elastocheck::compare {
@@ -114,8 +115,8 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
         const Branch& branch = model.branches[b];
         bool first = true;
         for (const auto& way : sides_of(model, branch, comparison.branches[b].steps)) {
-            const EquilibriumPath path =
-                solver(way.model, way.branch, asked_for({way}, comparison.branches[b].every));
+            const EquilibriumPath path = solver(
+                way.model, way.branch, requested_parameters({way}, comparison.branches[b].every));
             for (const auto& point : path.points) {
                 if (!first && point.load == 0) continue;
                 CandidateState& state =

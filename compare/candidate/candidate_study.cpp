@@ -5,6 +5,8 @@
 #include <functional>
 
 #include "compare/candidate/candidate.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/points.hpp"
 
 namespace elastocheck::compare {
 namespace {

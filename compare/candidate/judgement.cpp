@@ -1,4 +1,5 @@
 #include "compare/candidate/judgement.hpp"
+#include "compare/deviation/tolerance.hpp"
 
 #include <algorithm>
 #include <cmath>

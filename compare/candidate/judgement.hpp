@@ -5,13 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/deviation/tolerance.hpp"
 #include "compare/studies/findings.hpp"
 
 namespace elastocheck::compare {
-
-enum class Grade { pass, fail, not_judged };
-const char* name(Grade verdict);  // "pass", "fail", "not judged"
 
 struct Assessment {
     Grade verdict = Grade::not_judged;

@@ -1,4 +1,5 @@
 #include "compare/candidate/measured.hpp"
+#include "compare/deviation/deviation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "compare/outputs/positions.hpp"
+#include "compare/outputs/rates.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -34,7 +35,7 @@ double ratio(double value, double by, double limit) {
 struct Wheels {
     const Model& model;
     const Equilibrium& state;
-    const Answers& answers;
+    const WheelResponse& response;
     const Wheel& operator[](std::size_t w) const { return model.wheels[w]; }
     Point centre(std::size_t w) const {
         return {model.wheels[w].body, model.wheels[w].centre_local};
@@ -45,13 +46,9 @@ struct Wheels {
     Vector3d at(const Point& point) const { return position(state.poses, point); }
     double side(std::size_t w) const { return model.wheels[w].side; }
 
-    double toe(std::size_t w, const Motions& by) const {
-        const Vector3d e = spin(w), de = turned(by, model.wheels[w].body).cross(e);
-        return side(w) * (e.y() * de.x() - e.x() * de.y()) / (e.x() * e.x() + e.y() * e.y());
-    }
+    double toe(std::size_t w, const Motions& by) const { return rate_of(model, Toe{w}, state, by); }
     double camber(std::size_t w, const Motions& by) const {
-        const Vector3d e = spin(w), de = turned(by, model.wheels[w].body).cross(e);
-        return -de.z() / std::sqrt(1 - e.z() * e.z());
+        return rate_of(model, Camber{w}, state, by);
     }
     Vector3d spin(std::size_t w) const {
         return pose(state.poses, model.wheels[w].body).p * model.wheels[w].spin_axis_local;
@@ -72,15 +69,15 @@ Motions sum(std::span<const Motions> causes, std::span<const double> weights) {
 // Heave: all wheels raised by 1 m; with tied wheels, their common motion scaled so that this wheel
 // rises by 1 m. Roll: the wheels of an axle in opposition, the left up; not for tied wheels.
 Motions raised(const Wheels& wheels, std::size_t w) {
-    const auto& first = wheels.answers.travel.front();
+    const auto& first = wheels.response.travel.front();
     const double whole =
-        wheels.answers.tied ? 1 / moved(wheels.state, first, wheels.centre(w)).z() : 1;
-    return sum(wheels.answers.travel, std::vector<double>(wheels.answers.travel.size(), whole));
+        wheels.response.tied ? 1 / moved(wheels.state, first, wheels.centre(w)).z() : 1;
+    return sum(wheels.response.travel, std::vector<double>(wheels.response.travel.size(), whole));
 }
 Motions rolled(const Wheels& wheels) {
     std::vector<double> weights;
     for (const auto& wheel : wheels.model.wheels) weights.push_back(wheel.side);
-    return sum(wheels.answers.travel, weights);
+    return sum(wheels.response.travel, weights);
 }
 
 // One left and one right wheel.
@@ -101,10 +98,10 @@ double roll_centre(const Wheels& wheels) {
     const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
     if (!is_axle(wheels.model)) {
         const Point patch = wheels.patch(0);
-        const Vector3d d = moved(wheels.state, wheels.answers.travel[0], patch);
+        const Vector3d d = moved(wheels.state, wheels.response.travel[0], patch);
         return ratio(wheels.at(patch).y() * d.y(), d.z(), nowhere);
     }
-    if (wheels.answers.tied) return undefined;
+    if (wheels.response.tied) return undefined;
     const Motions roll = rolled(wheels);
     Eigen::Matrix2d A;
     Vector2d c[2], b;
@@ -134,9 +131,9 @@ struct Axis {
     Vector3d n, through;
 };
 std::optional<Axis> steering_axis(const Wheels& wheels, std::size_t w) {
-    if (wheels.answers.steering.empty()) return std::nullopt;
-    const Vector3d omega = turned(wheels.answers.steering, wheels[w].body),
-                   v = moved(wheels.state, wheels.answers.steering, wheels.centre(w));
+    if (wheels.response.steering.empty()) return std::nullopt;
+    const Vector3d omega = turned(wheels.response.steering, wheels[w].body),
+                   v = moved(wheels.state, wheels.response.steering, wheels.centre(w));
     if (!(v.norm() <= nowhere * omega.norm()) || !(std::abs(omega.z()) > 1e-6 * omega.norm()))
         return std::nullopt;
     return Axis{omega.normalized() * (omega.z() > 0 ? 1 : -1),
@@ -172,11 +169,11 @@ Motions rolled_towards(const Wheels& wheels, std::size_t w) {
 // 1 N up on the patch of every wheel; or on an axle in opposition, this wheel's up; model `free`.
 enum class Pattern { alike, opposite };
 double wheel_rate(const Wheels& wheels, std::size_t w, Pattern pattern) {
-    if (wheels.answers.free.empty()) return wheels.answers.nothing_resists ? undefined : nan;
+    if (wheels.response.free.empty()) return wheels.response.nothing_resists ? undefined : nan;
     std::vector<Motions> up;
     std::vector<double> weights;
-    for (std::size_t k = 0; k < wheels.answers.free.size(); ++k) {
-        up.push_back(wheels.answers.free[k][at_patch + 2]);
+    for (std::size_t k = 0; k < wheels.response.free.size(); ++k) {
+        up.push_back(wheels.response.free[k][at_patch + 2]);
         weights.push_back(pattern == Pattern::alike || k == w ? 1 : -1);
     }
     return ratio(1, moved(wheels.state, sum(up, weights), wheels.centre(w)).z(), rigid);
@@ -191,7 +188,7 @@ double ride_rate(const Wheels& wheels, std::size_t w) {
 double inward(const Wheels& wheels, std::size_t w) { return -wheels.side(w); }
 
 const Motions& held(const Wheels& wheels, std::size_t w, int cause) {
-    return wheels.answers.held[w][static_cast<std::size_t>(cause)];
+    return wheels.response.held[w][static_cast<std::size_t>(cause)];
 }
 
 // The displacement of the loaded point along the load is a compliance.
@@ -220,14 +217,11 @@ double anti(const Wheels& wheels, const Point& at, double share, double sign) {
 }
 
 double steer_gradient(const Wheels& wheels, std::size_t w) {
-    return wheels.answers.steering.empty() ? undefined : wheels.toe(w, wheels.answers.steering);
+    return wheels.response.steering.empty() ? undefined : wheels.toe(w, wheels.response.steering);
 }
 
 double shortening(const Wheels& wheels, const Point& i, const Point& j) {
-    const Motions by = raised(wheels, 0);
-    return -(wheels.at(j) - wheels.at(i))
-                .normalized()
-                .dot(moved(wheels.state, by, j) - moved(wheels.state, by, i));
+    return rate_of(wheels.model, Compression{i, j}, wheels.state, raised(wheels, 0));
 }
 
 // ---- Catalogue: owner, name, unit, definition with its sign, meaning of undefined, formula.
@@ -485,7 +479,7 @@ const std::array table{
           "towards toe-in",
           does_not_roll,
           [](const Wheels& x, std::size_t w) {
-              return x.answers.tied ? undefined : x.toe(w, rolled_towards(x, w));
+              return x.response.tied ? undefined : x.toe(w, rolled_towards(x, w));
           }},
     Entry{Of::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where "
@@ -493,7 +487,7 @@ const std::array table{
           "leans out",
           does_not_roll,
           [](const Wheels& x, std::size_t w) {
-              return x.answers.tied ? undefined : x.camber(w, rolled_towards(x, w));
+              return x.response.tied ? undefined : x.camber(w, rolled_towards(x, w));
           }},
     Entry{Of::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, the "
@@ -584,21 +578,21 @@ std::vector<Channel> characteristics(const Model& model) {
 }
 
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
-                const Answers& answers) {
+                const WheelResponse& response) {
     const Entry& entry = table[what.entry];
-    return answers.why_not.empty() ? entry.formula({model, state, answers}, what.of) : nan;
+    return response.why_not.empty() ? entry.formula({model, state, response}, what.of) : nan;
 }
 
 Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
-                           const Answers& answers) {
-    const auto n = static_cast<Eigen::Index>(answers.free.size());
-    const Wheels wheels{model, state, answers};
+                           const WheelResponse& response) {
+    const auto n = static_cast<Eigen::Index>(response.free.size());
+    const Wheels wheels{model, state, response};
     const int force = point == WheelPoint::centre ? at_centre : at_patch;
     Eigen::MatrixXd C(6 * n, 6 * n);
     for (Eigen::Index j = 0; j < n; ++j)
         for (int k = 0; k < 6; ++k) {
-            const auto& by = answers.free[static_cast<std::size_t>(j)]
-                                         [static_cast<std::size_t>(k < 3 ? force + k : k)];
+            const auto& by = response.free[static_cast<std::size_t>(j)]
+                                          [static_cast<std::size_t>(k < 3 ? force + k : k)];
             for (Eigen::Index i = 0; i < n; ++i) {
                 const auto w = static_cast<std::size_t>(i);
                 const Point at = point == WheelPoint::centre ? wheels.centre(w) : wheels.patch(w);
@@ -624,7 +618,7 @@ double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index c
            (column % 6 < 3 ? 1e3 : 100);
 }
 
-std::string answer_name(const Model& model, const std::string& point, Eigen::Index row) {
+std::string compliance_row_name(const Model& model, const std::string& point, Eigen::Index row) {
     const std::string& wheel = model.wheels[static_cast<std::size_t>(row / 6)].name;
     return fmt::format("{}, {}{} {}", point, wheel.empty() ? "" : wheel + " ",
                        row % 6 < 3 ? "displacement" : "rotation", "xyz"[row % 3]);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compare/comparison/compliance.hpp"
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 
 namespace elastocheck::compare {
 
@@ -20,7 +20,7 @@ std::vector<Channel> characteristics(const Model& model);
 // Value of one characteristic in SI; `undefined` where it has none (Channel::undefined gives the
 // meaning), NaN where the leg failed to compute the response.
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
-                const Answers& answers);
+                const WheelResponse& response);
 
 // ---- Compliance.
 
@@ -29,7 +29,7 @@ double value_of(const Model& model, const Characteristic& what, const Equilibriu
 // by wheel; jacks and tyres removed. Empty where a wheel moves without resistance.
 enum class WheelPoint { centre, patch };
 Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
-                           const Answers& answers);
+                           const WheelResponse& response);
 
 // Reciprocity error |C - Cᵀ| / |C|, both the largest entry, lengths divided by the tyre radius (1 m
 // where patch and centre coincide). Zero where all forces have a potential and the state is in
@@ -39,6 +39,6 @@ double reciprocity(const Model& model, const Eigen::MatrixXd& C);
 // An entry in display units: mm or deg per kN or per 100 N·m. And the name of a row: "contact
 // patch, left displacement x".
 double in_table_units(const Eigen::MatrixXd& C, Eigen::Index row, Eigen::Index column);
-std::string answer_name(const Model& model, const std::string& point, Eigen::Index row);
+std::string compliance_row_name(const Model& model, const std::string& point, Eigen::Index row);
 
 }  // namespace elastocheck::compare

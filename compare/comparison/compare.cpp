@@ -8,7 +8,9 @@
 #include <stdexcept>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/extrapolation.hpp"
+#include "compare/deviation/proof.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reference/certificate/certificate.hpp"
 
@@ -43,12 +45,13 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& way,
         if (!*state) continue;
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
-        const Answers answers = answer(way, solver, steering_joint(model), **state, analyses);
+        const WheelResponse response =
+            wheel_response(way, solver, steering_joint(model), **state, analyses);
         Compliance& at = list.emplace_back();
         at.a = a;
-        at.why_not = answers.why_not_free;
-        at.centre = compliance(way.model, WheelPoint::centre, **state, answers);
-        at.patch = compliance(way.model, WheelPoint::patch, **state, answers);
+        at.why_not = response.why_not_free;
+        at.centre = compliance(way.model, WheelPoint::centre, **state, response);
+        at.patch = compliance(way.model, WheelPoint::patch, **state, response);
         at.reciprocity = reciprocity(way.model, at.centre);
     }
     return list;
@@ -62,8 +65,8 @@ Tally proved(const BranchSide& way, const LegRun& run) {
     for (const auto* state : {&start, &middle, &front, &back}) {
         if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
         done.push_back((*state)->load);
-        tally.add((*state)->load, run.curve.unit,
-                  reference::certificate::certify(way.model, way.branch, **state));
+        add(tally, (*state)->load, run.curve.unit,
+            reference::certificate::certify(way.model, way.branch, **state));
     }
     return tally;
 }
@@ -72,7 +75,7 @@ Tally proved(const BranchSide& way, const LegRun& run) {
 // reference and has none here.
 std::optional<ErrorBound> promise_of(const Model& standing, const SolverSettings& solver) {
     if (solver.leg != Leg::recursive) return std::nullopt;
-    return promised(solver.recursion.method, recursive::diagnose(standing).length);
+    return tolerance_of_method(solver.recursion.method, recursive::diagnose(standing).length);
 }
 
 // Requests error bounds from methods with a tolerance, and from the equilibrium leg for its
@@ -89,12 +92,12 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     if (solver.leg == Leg::recursive) run.method = solver.recursion.method.name;
     const BranchSide& way = ways.front();
     run.scale = scale_of(way.model, branch, {});
-    const auto asked = asked_for(ways, solver.every);
+    const auto asked = requested_parameters(ways, solver.every);
     const double middle = asked[asked.size() / 2];
     const bool both_ways = ways.size() > 1;
     auto& marks = run.landmarks;
     BranchErrorBounds error_bound{promise_of(way.model, solver)};
-    static_cast<Walked&>(run) =
+    static_cast<PathCurve&>(run) =
         walk(model, channels, branch, ways, solver, [&](const Equilibrium& state) {
             for (const Leg by : legs) {
                 auto& worst = run.judged[static_cast<std::size_t>(by)];
@@ -111,7 +114,7 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
             if (state.load == middle) marks.middle = state;
             if (solver.error_bound) add(error_bound, state);
         });
-    run.told = told(error_bound, branch.unit);
+    run.messages = messages(error_bound, branch.unit);
     if (!marks.front) marks.front = marks.start;
     if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
@@ -244,12 +247,12 @@ std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& 
 }  // namespace
 
 void Objections::add(std::string what, double share) {
-    constexpr std::size_t told = 3;
+    constexpr std::size_t most_listed = 3;
     ++count;
     const auto place =
         std::ranges::find_if(worst, [&](const Objection& o) { return o.share < share; });
     worst.insert(place, {std::move(what), share});
-    if (worst.size() > told) worst.pop_back();
+    if (worst.size() > most_listed) worst.pop_back();
 }
 
 std::vector<std::string> Objections::texts() const {
@@ -260,7 +263,7 @@ std::vector<std::string> Objections::texts() const {
     return list;
 }
 
-bool energy_bears_witness(const BranchComparison& branch) {
+bool energy_judges_states(const BranchComparison& branch) {
     return branch.second != Leg::energy &&
            run_of(branch, Leg::energy).outcome == Outcome::too_large;
 }
@@ -317,7 +320,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     const Leg judge = branch.second == Leg::energy ? Leg::energy : Leg::recursive;
     std::vector<std::pair<const LegRun*, Leg>> judgements{{&equilibrium, judge},
                                                           {&second, Leg::equilibrium}};
-    if (energy_bears_witness(branch)) judgements.emplace_back(&equilibrium, Leg::energy);
+    if (energy_judges_states(branch)) judgements.emplace_back(&equilibrium, Leg::energy);
     for (const auto& [run, other] : judgements) {
         const Residuals& r = run->judged[static_cast<std::size_t>(other)];
         const Bounds& b = branch.bounds;
@@ -386,7 +389,7 @@ Comparison compare(const Model& model, const Options& options) {
                         ways[k].front().model,
                         {.leg = leg, .recursion = options.recursion, .every = options.every})));
         }
-        if (const LegRun& energy = run_of(b, Leg::energy); is_not_asked(energy.outcome)) {
+        if (const LegRun& energy = run_of(b, Leg::energy); is_not_applicable(energy.outcome)) {
             b.second = Leg::series;
             b.not_asked = energy.detail;
             if (options.progress) options.progress(fmt::format("{}: series", branch.name));

@@ -49,14 +49,14 @@ double tyre_force(const Bushing& tyre, std::size_t element, const Branch& branch
     return -(stress + K(2, 2) * deformation(tyre, state).z());
 }
 
-struct Stand {
+struct ResponseCase {
     Model model;
     Branch branch;
     Equilibrium state;
 };
 
-Stand freed(const BranchSide& way, const Equilibrium& state) {
-    Stand free{way.model, way.branch, state};
+ResponseCase freed(const BranchSide& way, const Equilibrium& state) {
+    ResponseCase free{way.model, way.branch, state};
     const auto push = [&](const Point& at, double force) {
         free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
     };
@@ -82,21 +82,22 @@ Stand freed(const BranchSide& way, const Equilibrium& state) {
 }
 
 // Adds jacks under the first wheels, each at the height of its wheel's centre.
-Stand jacked_up(Stand stand, std::size_t wheels) {
-    for (const Wheel& wheel : std::span(stand.model.wheels).first(wheels)) {
+ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
+    for (const Wheel& wheel : std::span(freed_case.model.wheels).first(wheels)) {
         const Point centre{wheel.body, wheel.centre_local};
-        const Vector3d here = position(stand.state.poses, centre);
-        const int joint = static_cast<int>(stand.model.joints.size());
-        stand.model.joints.push_back({.name = wheel.name + " jack",
-                                      .i = wheel.body,
-                                      .j = ground,
-                                      .at = centre,
-                                      .driven = static_cast<int>(stand.model.constraints.size())});
-        stand.model.constraints.push_back(
+        const Vector3d here = position(freed_case.state.poses, centre);
+        const int joint = static_cast<int>(freed_case.model.joints.size());
+        freed_case.model.joints.push_back(
+            {.name = wheel.name + " jack",
+             .i = wheel.body,
+             .j = ground,
+             .at = centre,
+             .driven = static_cast<int>(freed_case.model.constraints.size())});
+        freed_case.model.constraints.push_back(
             {joint, PointInPlane{centre, {ground, here}, {ground, Vector3d::UnitZ()}, 0}});
-        stand.state.reactions.emplace_back();
+        freed_case.state.reactions.emplace_back();
     }
-    return stand;
+    return freed_case;
 }
 
 std::vector<Disturbance> causes_at(const Model& model) {
@@ -121,7 +122,7 @@ std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& al
     return list;
 }
 
-std::string told(const Response& response) {
+std::string failure_text(const Response& response) {
     return std::string(name(response.outcome)) +
            (response.detail.empty() ? "" : ": " + response.detail);
 }
@@ -156,27 +157,27 @@ Response linear_response(const SolverSettings& solver, const Model& model, const
     return {};
 }
 
-Answers answer(const BranchSide& way, const SolverSettings& solver, int steering,
-               const Equilibrium& state, Analyses& analyses) {
-    Answers answers;
+WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver, int steering,
+                             const Equilibrium& state, Analyses& analyses) {
+    WheelResponse response;
     const std::size_t wheels = way.model.wheels.size();
-    const Stand stand = freed(way, state);
+    const ResponseCase freed_case = freed(way, state);
     const auto wrenches = causes_at(way.model);
-    if (const Response free = linear_response(solver, stand.model, stand.branch, stand.state,
-                                              wrenches, analyses.free);
+    if (const Response free = linear_response(solver, freed_case.model, freed_case.branch,
+                                              freed_case.state, wrenches, analyses.free);
         free.outcome == Outcome::converged)
-        answers.free = by_wheel(free.increments, wheels);
+        response.free = by_wheel(free.increments, wheels);
     else {
-        answers.why_not_free = told(free);
-        answers.nothing_resists =
+        response.why_not_free = failure_text(free);
+        response.nothing_resists =
             free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
     }
 
-    const std::size_t first = stand.model.joints.size();
+    const std::size_t first = freed_case.model.joints.size();
     const bool steers =
-        steering >= 0 && stand.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
+        steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
     const auto on_jacks = [&](std::size_t count, std::optional<recursive::Analysis>& analysis) {
-        const Stand up = jacked_up(stand, count);
+        const ResponseCase up = jacked_up(freed_case, count);
         std::vector<Disturbance> changes = wrenches;
         for (std::size_t w = 0; w < count; ++w)
             changes.push_back(Motion{static_cast<int>(first + w)});
@@ -187,22 +188,22 @@ Answers answer(const BranchSide& way, const SolverSettings& solver, int steering
     if (jacked.outcome == Outcome::inconsistent_constraints && wheels > 1)
         if (Response one = on_jacks(1, analyses.tied); one.outcome == Outcome::converged) {
             jacked = std::move(one);
-            answers.tied = true;
+            response.tied = true;
         }
     if (jacked.outcome != Outcome::converged) {
-        answers.why_not = told(jacked);
-        return answers;
+        response.why_not = failure_text(jacked);
+        return response;
     }
     if (steers) {
-        answers.steering = std::move(jacked.increments.back());
+        response.steering = std::move(jacked.increments.back());
         jacked.increments.pop_back();
     }
-    answers.held = by_wheel(jacked.increments, wheels);
-    answers.travel.assign(
-        jacked.increments.end() - static_cast<std::ptrdiff_t>(answers.tied ? 1 : wheels),
+    response.held = by_wheel(jacked.increments, wheels);
+    response.travel.assign(
+        jacked.increments.end() - static_cast<std::ptrdiff_t>(response.tied ? 1 : wheels),
         jacked.increments.end());
-    answers.travel.resize(wheels, Motions(way.model.bodies.size()));
-    return answers;
+    response.travel.resize(wheels, Motions(way.model.bodies.size()));
+    return response;
 }
 
 Vector3d turned(const Motions& motions, BodyId body) {

@@ -32,7 +32,13 @@ using Motions = std::vector<Increment>;
 // patch.
 inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
-struct Answers {
+// Cached analyses of the recursion for the response models of a branch side; they do not depend on
+// the state.
+struct Analyses {
+    std::optional<recursive::Analysis> free, jacked, tied;  // computed on first use
+};
+
+struct WheelResponse {
     // per wheel, jacked: its centre raised by 1 m, the other wheel centres held
     std::vector<Motions> travel;
     // jacked: steering joint driven by 1 m or 1 rad; empty without a steering joint
@@ -55,12 +61,12 @@ int steering_joint(const Model& model);
 // that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to
 // the branch side and are reused over its states: the two models differ between states only in
 // loads and jack heights, which an analysis does not use.
-Answers answer(const BranchSide& way, const SolverSettings& solver, int steering,
-               const Equilibrium& state, Analyses& analyses);
-inline Answers answer(const BranchSide& way, const SolverSettings& solver, int steering,
-                      const Equilibrium& state) {
+WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver, int steering,
+                             const Equilibrium& state, Analyses& analyses);
+inline WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver,
+                                    int steering, const Equilibrium& state) {
     Analyses analyses;
-    return answer(way, solver, steering, state, analyses);
+    return wheel_response(way, solver, steering, state, analyses);
 }
 
 // Response by one leg. `analysis` is that of the recursion, computed here if empty.

@@ -8,8 +8,8 @@
 #include <limits>
 #include <set>
 
-#include "compare/comparison/compare.hpp"
 #include "compare/outputs/deformation.hpp"
+#include "elastocheck/compare.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -99,37 +99,37 @@ Unit unit_of_component(int component) {
     return turns ? Unit::newton_metre : Unit::newton;
 }
 
-struct Told {
+struct Naming {
     std::string name, definition;
 };
 
-Told told(const Elastic& elastic, int component) {
+Naming naming(const Elastic& elastic, int component) {
     const bool is_force = component >= 6, turns = component % 6 >= 3;
     const std::string who = "'" + elastic.name + "'";
     if (std::holds_alternative<AxialSpring>(elastic.kind))
         return is_force
-                   ? Told{"force", fmt::format("force of {}, positive in compression", who)}
-                   : Told{"deflection",
-                          fmt::format("how much shorter {} is than free, positive in compression",
-                                      who)};
+                   ? Naming{"force", fmt::format("force of {}, positive in compression", who)}
+                   : Naming{"deflection",
+                            fmt::format("how much shorter {} is than free, positive in compression",
+                                        who)};
     if (elastic.written_as == WrittenAs::tyre)
         return is_force
-                   ? Told{"force",
-                          fmt::format("vertical force of tyre {} on the wheel, positive up", who)}
-                   : Told{"deflection",
-                          fmt::format("how much flatter tyre {} is than without load, positive "
-                                      "where it is pressed",
-                                      who)};
+                   ? Naming{"force",
+                            fmt::format("vertical force of tyre {} on the wheel, positive up", who)}
+                   : Naming{"deflection",
+                            fmt::format("how much flatter tyre {} is than without load, positive "
+                                        "where it is pressed",
+                                        who)};
     if (elastic.written_as == WrittenAs::torsion_spring)
         return is_force
-                   ? Told{"moment",
-                          fmt::format("moment of {} about its axis, positive where it turns the "
-                                      "second body back against the axis",
-                                      who)}
-                   : Told{"angle",
-                          fmt::format("angle of {}, of the second body against the first about "
-                                      "its axis, right-handed",
-                                      who)};
+                   ? Naming{"moment",
+                            fmt::format("moment of {} about its axis, positive where it turns the "
+                                        "second body back against the axis",
+                                        who)}
+                   : Naming{"angle",
+                            fmt::format("angle of {}, of the second body against the first about "
+                                        "its axis, right-handed",
+                                        who)};
     const char* axis = axes[static_cast<std::size_t>(component % 3)];
     if (is_force)
         return {
@@ -167,7 +167,7 @@ std::vector<Channel> element_channels(const Model& model) {
     for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k) {
         const Elastic& elastic = elastic_of(model, k);
         for (const int component : components(elastic)) {
-            const auto [name, definition] = told(elastic, component);
+            const auto [name, definition] = naming(elastic, component);
             list.push_back({.name = free_name(elastic.name, name, taken) + "." + name,
                             .unit = unit_of_component(component),
                             .main = false,

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
 

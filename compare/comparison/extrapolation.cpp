@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -47,35 +47,22 @@ std::optional<double> announced(std::span<const Equilibrium> points) {
 
 }  // namespace
 
-std::optional<double> announced_from(std::span<const Equilibrium> points) {
-    std::optional<double> since;
-    for (; announced(points); points = points.first(points.size() - 1)) since = points.back().load;
-    return since;
-}
-
-std::optional<ErrorBound> promised(const recursive::Method& method, double length) {
+std::optional<ErrorBound> tolerance_of_method(const recursive::Method& method, double length) {
     constexpr double rounding = 1e-9;
     return std::visit(
-        overloaded{[](const recursive::Adaptive& told) -> std::optional<ErrorBound> {
-                       return ErrorBound{told.length_tolerance, told.angle_tolerance};
+        overloaded{[](const recursive::Adaptive& steps) -> std::optional<ErrorBound> {
+                       return ErrorBound{steps.length_tolerance, steps.angle_tolerance};
                    },
-                   [&](const recursive::Series& told) -> std::optional<ErrorBound> {
-                       return ErrorBound{std::max(told.tolerance, rounding * length),
-                                         std::max(told.tolerance / length, rounding)};
+                   [&](const recursive::Series& series) -> std::optional<ErrorBound> {
+                       return ErrorBound{std::max(series.tolerance, rounding * length),
+                                         std::max(series.tolerance / length, rounding)};
                    },
                    [](const auto&) -> std::optional<ErrorBound> { return std::nullopt; }},
         method.kind);
 }
 
-std::string unkept(std::span<const Equilibrium> points, const ErrorBound& promise,
-                   ParameterUnit unit) {
-    Accounts error_bounds;
-    for (const auto& point : points) add(error_bounds, point, promise);
-    return unkept(error_bounds, promise, unit);
-}
-
-void add(Accounts& error_bounds, const Equilibrium& point,
-         const std::optional<ErrorBound>& promise) {
+void add(ErrorBoundSummary& error_bounds, const Equilibrium& point,
+         const std::optional<ErrorBound>& tolerance) {
     if (error_bounds.last.size() == 3) error_bounds.last.erase(error_bounds.last.begin());
     Equilibrium& kept = error_bounds.last.emplace_back();
     kept.load = point.load;
@@ -87,9 +74,9 @@ void add(Accounts& error_bounds, const Equilibrium& point,
         error_bounds.announced_from = point.load;
 
     ++error_bounds.points;
-    if (!promise) return;
+    if (!tolerance) return;
     const double over =
-        std::max(point.bound.length / promise->length, point.bound.angle / promise->angle);
+        std::max(point.bound.length / tolerance->length, point.bound.angle / tolerance->angle);
     if (over <= 1) return;
     if (!std::isfinite(over)) {
         ++error_bounds.unbounded;
@@ -101,7 +88,8 @@ void add(Accounts& error_bounds, const Equilibrium& point,
         error_bounds.worst_load = point.load;
 }
 
-std::string unkept(const Accounts& error_bounds, const ErrorBound& promise, ParameterUnit unit) {
+std::string exceeded_bounds(const ErrorBoundSummary& error_bounds, const ErrorBound& tolerance,
+                            ParameterUnit unit) {
     const auto angle = [](double radian) { return in_unit(Unit::deg) * radian; };
     std::string text;
     if (error_bounds.beyond > 0)
@@ -110,9 +98,10 @@ std::string unkept(const Accounts& error_bounds, const ErrorBound& promise, Para
             "account: "
             "within {:.2g} mm "
             "and {:.2g} deg at {:.5g} {}",
-            1e3 * promise.length, angle(promise.angle), error_bounds.beyond, error_bounds.points,
-            1e3 * error_bounds.worst_bound.length, angle(error_bounds.worst_bound.angle),
-            in_unit(unit_of(unit)) * error_bounds.worst_load, symbol(unit_of(unit)));
+            1e3 * tolerance.length, angle(tolerance.angle), error_bounds.beyond,
+            error_bounds.points, 1e3 * error_bounds.worst_bound.length,
+            angle(error_bounds.worst_bound.angle), in_unit(unit_of(unit)) * error_bounds.worst_load,
+            symbol(unit_of(unit)));
     if (error_bounds.unbounded > 0)
         text +=
             fmt::format("{}of {} of {} points no account can be given: nothing is promised of them",
@@ -120,7 +109,7 @@ std::string unkept(const Accounts& error_bounds, const ErrorBound& promise, Para
     return text;
 }
 
-std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit) {
+std::string stiffness_message(std::span<const Equilibrium> points, ParameterUnit unit) {
     const auto gone = announced(points);
     if (!gone) return {};
     const Unit shown = unit_of(unit);
@@ -130,20 +119,20 @@ std::string outlook(std::span<const Equilibrium> points, ParameterUnit unit) {
 
 void add(BranchErrorBounds& error_bound, const Equilibrium& point) {
     if (error_bound.ways.empty() || point.load == 0) error_bound.ways.emplace_back();
-    add(error_bound.ways.back(), point, error_bound.promise);
+    add(error_bound.ways.back(), point, error_bound.tolerance);
 }
 
-std::vector<std::string> told(const BranchErrorBounds& error_bound, ParameterUnit unit) {
+std::vector<std::string> messages(const BranchErrorBounds& error_bound, ParameterUnit unit) {
     const Unit shown = unit_of(unit);
     std::vector<std::string> lines;
     for (const auto& points : error_bound.ways) {
-        if (error_bound.promise)
-            if (auto text = unkept(points, *error_bound.promise, unit); !text.empty())
+        if (error_bound.tolerance)
+            if (auto text = exceeded_bounds(points, *error_bound.tolerance, unit); !text.empty())
                 lines.push_back(std::move(text));
         if (const auto from = points.announced_from)
             lines.push_back(fmt::format("{}, announced from {:.5g} {} on",
-                                        outlook(points.last, unit), in_unit(shown) * *from,
-                                        symbol(shown)));
+                                        stiffness_message(points.last, unit),
+                                        in_unit(shown) * *from, symbol(shown)));
     }
     return lines;
 }

@@ -13,6 +13,7 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/deviation/agreement.hpp"
 #include "compare/deviation/tolerance.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/energy.hpp"
@@ -101,7 +102,7 @@ EquilibriumPath join(const std::vector<BranchSide>& ways, const SolverSettings& 
     });
     if (start) hand_over(read(*start));
     // A leg that does not apply to one side does not apply to either.
-    if (is_not_asked(joined.outcome) && second.outcome == joined.outcome) return second;
+    if (is_not_applicable(joined.outcome) && second.outcome == joined.outcome) return second;
     if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
     if (second.outcome != Outcome::converged) {
         joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
@@ -139,7 +140,7 @@ std::vector<BranchSide> sides_of(const Model& model, Branch branch, int points) 
     return result;
 }
 
-std::vector<double> asked_for(const std::vector<BranchSide>& ways, int every) {
+std::vector<double> requested_parameters(const std::vector<BranchSide>& ways, int every) {
     std::vector<double> a;
     for (std::size_t w = 0; w < ways.size(); ++w) {
         auto way = grid(ways[w].branch, every);
@@ -167,7 +168,7 @@ EquilibriumPath walk(const BranchSide& way, const SolverSettings& solver, const 
     return path;
 }
 
-bool is_not_asked(Outcome outcome) {
+bool is_not_applicable(Outcome outcome) {
     return outcome == Outcome::not_conservative || outcome == Outcome::too_large;
 }
 
@@ -183,7 +184,7 @@ EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& 
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
     Row row{state.load, state.constraint_error, evaluate(model, way.branch, channels, state)};
-    std::optional<Answers> answers;
+    std::optional<WheelResponse> response;
     std::optional<bool> corner;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
@@ -196,11 +197,18 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
                 continue;
             }
         }
-        if (!answers) answers = answer(way, solver, steering_joint(model), state, analyses);
+        if (!response)
+            response = wheel_response(way, solver, steering_joint(model), state, analyses);
         row.values[c] =
-            in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *answers);
+            in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *response);
     }
     return row;
+}
+
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+           const SolverSettings& solver, const Equilibrium& state) {
+    Analyses analyses;
+    return row_of(model, channels, way, solver, state, analyses);
 }
 
 EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver,
@@ -209,10 +217,11 @@ EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& 
     return join<Row>(ways, solver, read, hand_over);
 }
 
-Walked walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
-            const std::vector<BranchSide>& ways, const SolverSettings& solver, const Visit& also) {
+PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
+               const std::vector<BranchSide>& ways, const SolverSettings& solver,
+               const Visit& also) {
     using clock = std::chrono::steady_clock;
-    Walked walked;
+    PathCurve walked;
     walked.curve.unit = unit_of(branch.unit);
     clock::duration reading{};
     Analyses analyses;
@@ -305,13 +314,13 @@ References references(const Model& model, const std::vector<Channel>& channels,
     References result;
     const Model& standing = ways.front().model;
     result.scale = scale_of(standing, branch, {});
-    Walked equilibrium = walk(
-               model, channels, branch, ways, {.leg = Leg::equilibrium},
-               [&](const Equilibrium&state) {
-                   result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
-               }),
-           second = walk(model, channels, branch, ways, {.leg = Leg::energy});
-    if (is_not_asked(second.outcome)) {
+    PathCurve equilibrium = walk(
+                  model, channels, branch, ways, {.leg = Leg::equilibrium},
+                  [&](const Equilibrium&state) {
+                      result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
+                  }),
+              second = walk(model, channels, branch, ways, {.leg = Leg::energy});
+    if (is_not_applicable(second.outcome)) {
         result.second_leg = Leg::series;
         result.not_asked = second.detail;
         second = walk(model, channels, branch, ways, {.leg = Leg::series});

@@ -1,4 +1,6 @@
 #include "compare/comparison/points.hpp"
+#include "compare/deviation/deviation.hpp"
+#include "compare/outputs/curve.hpp"
 
 #include <fmt/format.h>
 

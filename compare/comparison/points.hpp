@@ -6,28 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/compare.hpp"
+#include "elastocheck/candidate.hpp"
 
 namespace elastocheck::compare {
-
-struct PointColumn {
-    std::size_t channel = 0;  // position in Comparison::channels
-    bool change = false;      // relative to the design position
-    // per point, in the channel's unit; NaN for a missing value, infinite for a value that is not a
-    // number
-    std::vector<double> values;
-};
-
-// All vectors have one entry per point, or none.
-struct Points {
-    // name of the branch; empty: of branches on different sides of a = 0, the one that reaches the
-    // point
-    std::vector<std::string> branch;
-    std::vector<double> a;                // parameter, in the branch's unit
-    std::optional<std::size_t> abscissa;  // a channel that places the points ...
-    std::vector<double> at;               // ... by its values
-    std::vector<PointColumn> columns;
-};
 
 // Converts changes to absolute positions and angles.
 std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,

@@ -1,4 +1,4 @@
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compare/comparison/legs.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
@@ -357,7 +358,7 @@ Trimmed trim(const Scene& scene) {
     }
 
     Answer second = settle(problem, p, Leg::energy);
-    if (is_not_asked(second.outcome)) {
+    if (is_not_applicable(second.outcome)) {
         record.confirmed_by = Leg::series;
         second = settle(problem, p, Leg::series);
     }

@@ -9,6 +9,7 @@
 
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
+#include "elastocheck/compare.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {

@@ -13,7 +13,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Accumulates the deviation of one channel. A difference that is not finite makes max and rms NaN
 // for good.
-struct Tally {
+struct Running {
     Deviation deviation;
     double squares = 0;
 
@@ -47,10 +47,10 @@ double range(const Curve& curve, std::size_t channel) {
     return curve.values.empty() ? nan : high - low;
 }
 
-Reading finish(std::vector<Tally>& tallies, const Curve& a) {
+Reading finish(std::vector<Running>& sums, const Curve& a) {
     Reading reading;
-    for (std::size_t c = 0; c < tallies.size(); ++c) {
-        reading.channels.push_back(tallies[c].result());
+    for (std::size_t c = 0; c < sums.size(); ++c) {
+        reading.channels.push_back(sums[c].result());
         reading.channels.back().range = range(a, c);
     }
     return reading;
@@ -87,14 +87,14 @@ Accuracy worse(const Accuracy& a, const Accuracy& b) {
 
 Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,
                        const std::vector<double>& at) {
-    Tally tally;
-    for (std::size_t k = 0; k < a.size(); ++k) tally.add(b[k] - a[k], at[k]);
-    return tally.result();
+    Running running;
+    for (std::size_t k = 0; k < a.size(); ++k) running.add(b[k] - a[k], at[k]);
+    return running.result();
 }
 
 Reading at_equal_parameter(const Curve& a, const Curve& b) {
     if (a.values.empty() || b.values.empty()) return nothing("a curve is empty");
-    std::vector<Tally> tallies(a.values.front().size());
+    std::vector<Running> sums(a.values.front().size());
     // Two-sided curves that ended early begin at different points; their common range lies around
     // their start.
     const std::size_t before = std::min(a.start, b.start);
@@ -102,10 +102,10 @@ Reading at_equal_parameter(const Curve& a, const Curve& b) {
     for (std::size_t k = 0; k < before + after; ++k) {
         const std::size_t i = a.start - before + k, j = b.start - before + k;
         if (!same(a.a[i], b.a[j], a)) return nothing("the curves are not at the same parameters");
-        for (std::size_t c = 0; c < tallies.size(); ++c)
-            tallies[c].add(b.values[j][c] - a.values[i][c], a.a[i]);
+        for (std::size_t c = 0; c < sums.size(); ++c)
+            sums[c].add(b.values[j][c] - a.values[i][c], a.a[i]);
     }
-    return finish(tallies, a);
+    return finish(sums, a);
 }
 
 double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at,
@@ -158,14 +158,13 @@ int read_over(const Curve& a, const Curve& b, std::size_t abscissa, Sink&& sink)
 Reading at_equal_abscissa(const Curve& a, const Curve& b, const Abscissa& by) {
     if (!by.why_not.empty()) return nothing(by.why_not);
     const auto channel = static_cast<std::size_t>(by.channel);
-    std::vector<Tally> tallies(a.values.front().size());
+    std::vector<Running> sums(a.values.front().size());
     const int outside = read_over(
         a, b, channel, [&](std::size_t k, std::size_t c, double difference, double uncertain) {
-            tallies[c].add(difference, a.values[k][channel]);
-            tallies[c].deviation.interpolation =
-                worse(tallies[c].deviation.interpolation, uncertain);
+            sums[c].add(difference, a.values[k][channel]);
+            sums[c].deviation.interpolation = worse(sums[c].deviation.interpolation, uncertain);
         });
-    Reading reading = finish(tallies, a);
+    Reading reading = finish(sums, a);
     reading.outside = outside;
     return reading;
 }

@@ -12,23 +12,6 @@
 
 namespace elastocheck::compare {
 
-struct Deviation {
-    double max = 0;         // largest |b - a|, in the channel's unit
-    double signed_max = 0;  // b - a where it is largest
-    double at = 0;          // parameter or abscissa of the maximum, in its unit
-    double end = 0;         // b - a at the last compared point, signed
-    double rms = 0;
-    double range = 0;          // of the channel over curve a
-    double interpolation = 0;  // equal abscissa: interpolation error of b, largest over the points
-    int compared = 0;          // numbers compared; 0 means no comparison
-};
-
-struct Reading {
-    std::vector<Deviation> channels;  // one per channel
-    std::string not_compared;         // reason why there is none, empty when there is
-    int outside = 0;                  // points of a that b does not reach (equal abscissa)
-};
-
 // Deviation of b from a, number by number; `at` gives the places. The caller sets `range` from the
 // whole of a.
 Deviation deviation_of(const std::vector<double>& a, const std::vector<double>& b,

@@ -1,29 +1,12 @@
 // Tolerances of outputs: the limits of their deviations.
 #pragma once
 
-#include <limits>
 #include <string_view>
 #include <vector>
 
-#include "compare/deviation/agreement.hpp"
-#include "compare/outputs/channels.hpp"
-#include "compare/outputs/curve.hpp"
+#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
-
-// Infinite: not judged.
-struct Tolerance {
-    double mm = std::numeric_limits<double>::infinity();   // of positions
-    double deg = std::numeric_limits<double>::infinity();  // of angles
-    double newton = std::numeric_limits<double>::infinity();
-    double newton_metre = std::numeric_limits<double>::infinity();
-    // Of every output that is neither a position nor an angle (joint forces and moments, drive
-    // forces, rates), as a share of its extent (extents_of): 0.01 is 1 %. Applies to forces and
-    // moments only where `newton` or `newton_metre` is infinite.
-    double share = std::numeric_limits<double>::infinity();
-};
-inline constexpr double default_share = 0.01;
-inline constexpr Tolerance default_tolerance{.mm = 0.01, .deg = 0.001, .share = default_share};
 
 // Parses "0.01mm,0.001deg,1%": a length, an angle and a share, or some of these, in any order; with
 // `forces_too` also a force (N) and a moment (Nm). A share that is not given is default_share;

@@ -232,7 +232,7 @@ void add_compliance(const Model& model, const Comparison& comparison, std::vecto
                 for (Eigen::Index r = 0; r < C->rows(); ++r) {
                     Series row{branch.branch,
                                quantity,
-                               answer_name(model, point, r),
+                               compliance_row_name(model, point, r),
                                r % 6 < 3 ? "mm" : "deg",
                                {}};
                     for (Eigen::Index c = 0; c < C->cols(); ++c)

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/compare.hpp"
+#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
 

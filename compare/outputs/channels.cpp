@@ -1,4 +1,4 @@
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,9 @@
 #include <numbers>
 #include <set>
 
+#include "compare/outputs/dual.hpp"
 #include "compare/outputs/positions.hpp"
+#include "compare/outputs/rates.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -21,43 +23,76 @@ using Eigen::Vector3d;
 constexpr std::array axes{"x", "y", "z"};
 constexpr std::array towards{"forward", "to the left", "up"};
 
-const Pose& pose(const Equilibrium& state, BodyId body) { return compare::pose(state.poses, body); }
-
 Vector3d position(const Equilibrium& state, const Point& point) {
     return compare::position(state.poses, point);
-}
-
-Vector3d direction(const Equilibrium& state, const Direction& u) {
-    return pose(state, u.body).p * u.u_local;
-}
-
-Vector3d spin_axis(const Model& model, const Equilibrium& state, std::size_t wheel) {
-    const Wheel& w = model.wheels[wheel];
-    return pose(state, w.body).p * w.spin_axis_local;
-}
-
-const Wrench& wrench(const Equilibrium& state, int joint) {
-    return state.reactions[static_cast<std::size_t>(joint)];
 }
 
 const ModelJoint& joint_of(const Model& model, int joint) {
     return model.joints[static_cast<std::size_t>(joint)];
 }
 
-// ---- Values in SI, one function per type that a channel reads.
+template <class S>
+using Vector = Eigen::Matrix<S, 3, 1>;
 
-double read(const Model&, const Equilibrium& state, const Coordinate& c) {
-    return c.sign * (position(state, c.at)[c.axis] - c.counted_from);
+// A state, for S = Dual with a motion of its bodies: d(r + A s) = dr + dπ × A s.
+template <class S>
+struct Configuration {
+    const Model& model;
+    const Equilibrium& state;
+    std::span<const Increment> motion = {};  // one per body, for S = Dual
+
+    const Wheel& wheel(std::size_t w) const { return model.wheels[w]; }
+
+    Vector<S> direction(const Direction& u) const {
+        const Vector3d fixed = pose(state.poses, u.body).p * u.u_local;
+        if constexpr (std::is_same_v<S, Dual>)
+            if (u.body != ground)
+                return with(fixed, motion[static_cast<std::size_t>(u.body)].dpi.cross(fixed));
+        return fixed.cast<S>();
+    }
+    Vector<S> position(const Point& point) const {
+        const Vector3d at = compare::position(state.poses, point);
+        if constexpr (std::is_same_v<S, Dual>)
+            if (point.body != ground) {
+                const auto& [dr, dpi] = motion[static_cast<std::size_t>(point.body)];
+                return with(at, dr + dpi.cross(pose(state.poses, point.body).p * point.s_local));
+            }
+        return at.cast<S>();
+    }
+    Vector<S> spin_axis(std::size_t w) const {
+        return direction({wheel(w).body, wheel(w).spin_axis_local});
+    }
+    Vector<S> patch(std::size_t w) const {
+        return position({wheel(w).body, wheel(w).contact_local});
+    }
+    const Wrench& wrench(int joint) const {
+        return state.reactions[static_cast<std::size_t>(joint)];
+    }
+
+  private:
+    static Vector<S> with(const Vector3d& value, const Vector3d& derivative) {
+        return {S(value.x(), derivative.x()), S(value.y(), derivative.y()),
+                S(value.z(), derivative.z())};
+    }
+};
+
+// ---- Formulas: values in SI, one function per type that a channel reads. Those that read a
+// wrench have no derivative.
+
+template <class S>
+S read(const Configuration<S>& at, const Coordinate& c) {
+    return S(c.sign) * (at.position(c.at)[c.axis] - S(c.counted_from));
 }
-double read(const Model&, const Equilibrium&, const Characteristic&) {
-    return std::numeric_limits<double>::quiet_NaN();
+template <class S>
+S read(const Configuration<S>& at, const Toe& c) {
+    using std::atan2;
+    const Vector<S> e = at.spin_axis(c.wheel);
+    return atan2(e.x(), S(at.wheel(c.wheel).side) * e.y());
 }
-double read(const Model& model, const Equilibrium& state, const Toe& c) {
-    const Vector3d e = spin_axis(model, state, c.wheel);
-    return std::atan2(e.x(), model.wheels[c.wheel].side * e.y());
-}
-double read(const Model& model, const Equilibrium& state, const Camber& c) {
-    return -std::asin(spin_axis(model, state, c.wheel).z());
+template <class S>
+S read(const Configuration<S>& at, const Camber& c) {
+    using std::asin;
+    return -asin(at.spin_axis(c.wheel).z());
 }
 
 // ---- Steering axis.
@@ -67,87 +102,113 @@ const double least_steering = 2 * std::numbers::pi / 180;
 
 // Vector from the contact patch to the intersection of the steering axis with the road; undefined
 // for a flat axis.
-Vector3d pivot(const Model& model, const Equilibrium& state, std::size_t wheel) {
-    const Wheel& w = model.wheels[wheel];
-    const Vector3d l = position(state, w.steering_axis->lower),
-                   u = position(state, w.steering_axis->upper) - l,
-                   c = position(state, {w.body, w.contact_local});
-    if (!(std::abs(u.z()) > std::sin(flattest) * u.norm())) return Vector3d::Constant(undefined);
+template <class S>
+Vector<S> pivot(const Configuration<S>& at, std::size_t wheel) {
+    const auto& [lower, upper] = *at.wheel(wheel).steering_axis;
+    const Vector<S> l = at.position(lower), u = at.position(upper) - l, c = at.patch(wheel);
+    if (!(abs(u.z()) > S(std::sin(flattest)) * u.norm())) return Vector<S>::Constant(S(undefined));
     return l + u * ((c.z() - l.z()) / u.z()) - c;
 }
 
-double read(const Model& model, const Equilibrium& state, const Steering& c) {
-    const Wheel& w = model.wheels[c.wheel];
-    const Vector3d u =
-        position(state, w.steering_axis->upper) - position(state, w.steering_axis->lower);
-    const Vector3d off = pivot(model, state, c.wheel), e = spin_axis(model, state, c.wheel);
-    if (std::isinf(off.x())) return undefined;
-    const Vector3d n = Vector3d(e.x(), e.y(), 0).normalized(),
-                   h = w.side * n.cross(Vector3d::UnitZ());
+template <class S>
+S read(const Configuration<S>& at, const Steering& c) {
+    using std::atan;
+    const auto& [lower, upper] = *at.wheel(c.wheel).steering_axis;
+    const Vector<S> u = at.position(upper) - at.position(lower), off = pivot(at, c.wheel),
+                    e = at.spin_axis(c.wheel);
+    if (std::isinf(value_of(off.x()))) return undefined;
+    const S side = at.wheel(c.wheel).side;
+    const Vector<S> n = Vector<S>(e.x(), e.y(), S(0)).normalized(),
+                    h = side * n.cross(Vector<S>(S(0), S(0), S(1)));
     switch (c.figure) {
-        case Steering::Figure::caster: return std::atan(-u.x() / u.z());
-        case Steering::Figure::kingpin_inclination: return std::atan(-w.side * u.y() / u.z());
+        case Steering::Figure::caster: return atan(-u.x() / u.z());
+        case Steering::Figure::kingpin_inclination: return atan(-side * u.y() / u.z());
         case Steering::Figure::scrub_radius: return -n.dot(off);
         case Steering::Figure::mechanical_trail: return h.dot(off);
     }
     return undefined;
 }
-double read(const Model& model, const Equilibrium& state, const Track& c) {
-    const auto y = [&](std::size_t w) {
-        return position(state, {model.wheels[w].body, model.wheels[w].contact_local}).y();
-    };
-    return y(c.left) - y(c.right);
+template <class S>
+S read(const Configuration<S>& at, const Track& c) {
+    return at.patch(c.left).y() - at.patch(c.right).y();
 }
-double read(const Model& model, const Equilibrium& state, const Ackermann& c) {
-    const double left = -read(model, state, Toe{c.left}), right = read(model, state, Toe{c.right});
-    if (!(left * right > 0 && std::min(std::abs(left), std::abs(right)) >= least_steering))
+template <class S>
+S read(const Configuration<S>& at, const Ackermann& c) {
+    using std::abs, std::tan;
+    const S left = -read(at, Toe{c.left}), right = read(at, Toe{c.right});
+    if (!(left * right > S(0) && std::min(abs(left), abs(right)) >= S(least_steering)))
         return undefined;
-    return (1 / std::tan(right) - 1 / std::tan(left)) * c.wheelbase_by_pivots;
+    return (S(1) / tan(right) - S(1) / tan(left)) * S(c.wheelbase_by_pivots);
 }
-double read(const Model&, const Equilibrium& state, const Compression& c) {
-    return c.drawn - (position(state, c.j) - position(state, c.i)).norm();
+template <class S>
+S read(const Configuration<S>& at, const Compression& c) {
+    return S(c.drawn) - (at.position(c.j) - at.position(c.i)).norm();
 }
-double read(const Model& model, const Equilibrium& state, const Effort& c) {
-    const int driven = joint_of(model, c.joint).driven;
+using State = Configuration<double>;
+double read(const State& at, const Effort& c) {
+    const int driven = joint_of(at.model, c.joint).driven;
     if (driven < 0) return 0;  // inactive on this branch
-    const Wrench& on_i = wrench(state, c.joint);
+    const Wrench& on_i = at.wrench(c.joint);
     return std::visit(
-        overloaded{
-            [&](const DistanceBetween& d) {
-                return on_i.force.dot((position(state, d.i) - position(state, d.j)).normalized());
-            },
-            [&](const PointInPlane& p) { return on_i.force.dot(direction(state, p.normal_j)); },
-            [&](const DirectionAtAngle& a) {
-                return on_i.moment.dot(direction(state, a.j).cross(direction(state, a.y_j)));
-            },
-            // No offset to drive: lowering never drives these.
-            [](const CoincidentPoints&) { return std::nan(""); },
-            [](const PerpendicularDirections&) { return std::nan(""); }},
-        model.constraints[static_cast<std::size_t>(driven)].kind);
+        overloaded{[&](const DistanceBetween& d) {
+                       return on_i.force.dot((at.position(d.i) - at.position(d.j)).normalized());
+                   },
+                   [&](const PointInPlane& p) { return on_i.force.dot(at.direction(p.normal_j)); },
+                   [&](const DirectionAtAngle& a) {
+                       return on_i.moment.dot(at.direction(a.j).cross(at.direction(a.y_j)));
+                   },
+                   // No offset to drive: lowering never drives these.
+                   [](const CoincidentPoints&) { return std::nan(""); },
+                   [](const PerpendicularDirections&) { return std::nan(""); }},
+        at.model.constraints[static_cast<std::size_t>(driven)].kind);
 }
-double read(const Model&, const Equilibrium&, const OfElement&) { return std::nan(""); }
-double read(const Model& model, const Equilibrium& state, const AxialForce& c) {
-    const auto& rod =
-        std::get<DistanceBetween>(model.constraints[static_cast<std::size_t>(c.constraint)].kind);
-    return wrench(state, c.joint)
-        .force.dot((position(state, rod.j) - position(state, rod.i)).normalized());
+double read(const State& at, const AxialForce& c) {
+    const auto& rod = std::get<DistanceBetween>(
+        at.model.constraints[static_cast<std::size_t>(c.constraint)].kind);
+    return at.wrench(c.joint).force.dot((at.position(rod.j) - at.position(rod.i)).normalized());
 }
-double read(const Model&, const Equilibrium& state, const Reaction& c) {
-    const Wrench& on_i = wrench(state, c.joint);
+double read(const State& at, const Reaction& c) {
+    const Wrench& on_i = at.wrench(c.joint);
     return c.component < 3 ? on_i.force[c.component] : on_i.moment[c.component - 3];
 }
-double read(const Model& model, const Equilibrium& state, const Total& c) {
-    const Vector3d about = position(state, joint_of(model, c.joints.front()).at);
+double read(const State& at, const Total& c) {
+    const Vector3d about = at.position(joint_of(at.model, c.joints.front()).at);
     double sum = 0;
     for (const int k : c.joints) {
-        const ModelJoint& joint = joint_of(model, k);
+        const ModelJoint& joint = joint_of(at.model, k);
         const double sign = joint.i == c.on ? 1 : -1;
-        const Wrench& w = wrench(state, k);
-        const Vector3d moment = w.moment + (position(state, joint.at) - about).cross(w.force);
+        const Wrench& w = at.wrench(k);
+        const Vector3d moment = w.moment + (at.position(joint.at) - about).cross(w.force);
         sum += sign * (c.component < 3 ? w.force[c.component] : moment[c.component - 3]);
     }
     return sum;
 }
+// Need more than the state.
+double read(const State&, const OfElement&) { return std::nan(""); }
+double read(const State&, const Characteristic&) { return std::nan(""); }
+
+// ---- Units, in the order of Unit.
+
+struct UnitEntry {
+    std::string_view symbol;
+    double per_si;
+};
+constexpr double deg = 180 / std::numbers::pi;
+constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::percent) + 1> units{
+    {{"mm", 1e3},
+     {"deg", deg},
+     {"N", 1},
+     {"N·m", 1},
+     {"-", 1},
+     {"deg/m", deg},
+     {"deg/100 mm", deg / 10},
+     {"mm/100 mm", 100},
+     {"deg/mm", deg / 1e3},
+     {"deg/deg", 1},
+     {"N/mm", 1e-3},
+     {"deg/kN", 1e3 * deg},
+     {"deg/(100 N·m)", 100 * deg},
+     {"%", 100}}};
 
 // ---- The list
 
@@ -239,7 +300,7 @@ void add_axle(std::vector<Channel>& list, const Model& model) {
     const Equilibrium drawn = design_state(model);
     const auto y = [&](std::size_t w) {
         const Wheel& wheel = model.wheels[w];
-        const double to_pivot = wheel.steering_axis ? pivot(model, drawn, w).y() : 0;
+        const double to_pivot = wheel.steering_axis ? pivot(State{model, drawn}, w).y() : 0;
         return position(drawn, {wheel.body, wheel.contact_local}).y() +
                (std::isinf(to_pivot) ? 0 : to_pivot);
     };
@@ -344,45 +405,13 @@ std::set<int> joints_moved(const Model& model) {
 
 }  // namespace
 
-const char* symbol(Unit unit) {
-    switch (unit) {
-        case Unit::mm: return "mm";
-        case Unit::deg: return "deg";
-        case Unit::newton: return "N";
-        case Unit::newton_metre: return "N·m";
-        case Unit::none: return "-";
-        case Unit::deg_per_m: return "deg/m";
-        case Unit::deg_per_100mm: return "deg/100 mm";
-        case Unit::mm_per_100mm: return "mm/100 mm";
-        case Unit::deg_per_mm: return "deg/mm";
-        case Unit::deg_per_deg: return "deg/deg";
-        case Unit::newton_per_mm: return "N/mm";
-        case Unit::deg_per_kN: return "deg/kN";
-        case Unit::deg_per_100Nm: return "deg/(100 N·m)";
-        case Unit::percent: return "%";
-    }
-    return "";
-}
+const char* symbol(Unit unit) { return units[static_cast<std::size_t>(unit)].symbol.data(); }
+double in_unit(Unit unit) { return units[static_cast<std::size_t>(unit)].per_si; }
 
-double in_unit(Unit unit) {
-    constexpr double deg = 180 / std::numbers::pi;
-    switch (unit) {
-        case Unit::mm: return 1e3;
-        case Unit::deg:
-        case Unit::deg_per_m: return deg;
-        case Unit::newton:
-        case Unit::newton_metre:
-        case Unit::deg_per_deg:
-        case Unit::none: return 1;
-        case Unit::deg_per_100mm: return deg / 10;
-        case Unit::mm_per_100mm: return 100;
-        case Unit::deg_per_mm: return deg / 1e3;
-        case Unit::newton_per_mm: return 1e-3;
-        case Unit::deg_per_kN: return 1e3 * deg;
-        case Unit::deg_per_100Nm: return 100 * deg;
-        case Unit::percent: return 100;
-    }
-    return 1;
+std::optional<Unit> find_unit(std::string_view symbol) {
+    const auto found = std::ranges::find(units, symbol, &UnitEntry::symbol);
+    if (found == units.end()) return std::nullopt;
+    return static_cast<Unit>(found - units.begin());
 }
 
 Unit unit_of(ParameterUnit unit) {
@@ -396,9 +425,13 @@ Unit unit_of(ParameterUnit unit) {
     return Unit::none;
 }
 
-bool Channel::kinematic() const {
-    return joints().empty() && !std::holds_alternative<OfElement>(reads) &&
-           !std::holds_alternative<Characteristic>(reads);
+const char* name(ChannelKind kind) {
+    constexpr std::array names{"motion", "drive", "reaction", "element", "characteristic"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+ChannelKind Channel::kind() const {
+    return std::visit([](const auto& c) { return c.kind; }, reads);
 }
 
 bool Channel::may_be_undefined() const {
@@ -407,20 +440,17 @@ bool Channel::may_be_undefined() const {
 }
 
 std::vector<int> Channel::joints() const {
-    return std::visit(overloaded{[](const Coordinate&) { return std::vector<int>{}; },
-                                 [](const Toe&) { return std::vector<int>{}; },
-                                 [](const Camber&) { return std::vector<int>{}; },
-                                 [](const Steering&) { return std::vector<int>{}; },
-                                 [](const Track&) { return std::vector<int>{}; },
-                                 [](const Ackermann&) { return std::vector<int>{}; },
-                                 [](const Compression&) { return std::vector<int>{}; },
-                                 [](const Effort& e) { return std::vector<int>{e.joint}; },
-                                 [](const Reaction& r) { return std::vector<int>{r.joint}; },
-                                 [](const Total& t) { return t.joints; },
-                                 [](const Characteristic&) { return std::vector<int>{}; },
-                                 [](const OfElement&) { return std::vector<int>{}; },
-                                 [](const AxialForce& f) { return std::vector<int>{f.joint}; }},
-                      reads);
+    return std::visit(
+        overloaded{[](const Effort& e) { return std::vector{e.joint}; },
+                   [](const Reaction& r) { return std::vector{r.joint}; },
+                   [](const AxialForce& f) { return std::vector{f.joint}; },
+                   [](const Total& t) { return t.joints; },
+                   [](const auto& c) {
+                       static_assert(std::decay_t<decltype(c)>::kind != ChannelKind::drive &&
+                                     std::decay_t<decltype(c)>::kind != ChannelKind::reaction);
+                       return std::vector<int>{};
+                   }},
+        reads);
 }
 
 std::vector<Channel> channels(const Model& model) {
@@ -498,10 +528,26 @@ std::vector<double> evaluate(const Model& model, std::span<const Channel> channe
     std::vector<double> values;
     values.reserve(channels.size());
     for (const auto& channel : channels)
-        values.push_back(
-            in_unit(channel.unit) *
-            std::visit([&](const auto& c) { return read(model, state, c); }, channel.reads));
+        values.push_back(in_unit(channel.unit) * std::visit(
+                                                     [&](const auto& c) {
+                                                         return read(State{model, state}, c);
+                                                     },
+                                                     channel.reads));
     return values;
+}
+
+double rate_of(const Model& model, const Reads& reads, const Equilibrium& state,
+               std::span<const Increment> motion) {
+    const Configuration<Dual> at{model, state, motion};
+    return std::visit(
+        [&](const auto& c) {
+            if constexpr (std::decay_t<decltype(c)>::kind == ChannelKind::motion) {
+                const Dual value = read(at, c);
+                return std::isinf(value.x) ? std::nan("") : value.dx;
+            } else
+                return std::nan("");
+        },
+        reads);
 }
 
 std::vector<double> evaluate(const Model& model, const Equilibrium& state) {

@@ -1,22 +1,13 @@
-// Output curves of one leg along one branch, and the channels that can serve as abscissa.
+// Making of output curves, and the channels that can serve as abscissa.
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
-
-struct Curve {
-    Unit unit = Unit::newton;                 // of the parameter
-    std::vector<double> a;                    // [unit], in the order of the points
-    std::size_t start = 0;                    // point at a = 0
-    std::vector<std::vector<double>> values;  // [point][channel]
-
-    std::vector<double> channel(std::size_t c) const;
-};
 
 // Appends one point; `load` in SI.
 void append(Curve& curve, double load, std::vector<double> values);

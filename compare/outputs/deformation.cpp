@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/outputs/channels.hpp"
 #include "compare/outputs/positions.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::compare {
@@ -78,7 +78,7 @@ bool is_corner(const ScalarLaw& law, double x) {
 
 constexpr std::array axes{"x", "y", "z"};
 
-std::string told(const std::string& what, double x, double end, Unit unit) {
+std::string beyond_end(const std::string& what, double x, double end, Unit unit) {
     return fmt::format("{} is deformed by {:.6g} {}, and its curve ends at {:.6g} {}", what,
                        in_unit(unit) * x, symbol(unit), in_unit(unit) * end, symbol(unit));
 }
@@ -169,7 +169,7 @@ std::string outside_table(const Model& model, const Branch& branch, const Equili
                     if (std::holds_alternative<LinearRate>(e.law)) return {};
                     const double x = deformation(e, k, branch, state), end = end_passed(e.law, x);
                     if (std::isnan(end)) return {};
-                    return told(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm);
+                    return beyond_end(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm);
                 },
                 [&](const Bushing& e) -> std::string {
                     const auto* law = std::get_if<PerAxis>(&e.law);
@@ -179,9 +179,9 @@ std::string outside_table(const Model& model, const Branch& branch, const Equili
                         const double value = x[static_cast<Eigen::Index>(axis)],
                                      end = end_passed(law->axis[axis], value);
                         if (std::isnan(end)) continue;
-                        return told(fmt::format("bushing '{}' {} {}", elastic.name,
-                                                axis < 3 ? "along" : "about", axes[axis % 3]),
-                                    value, end, axis < 3 ? Unit::mm : Unit::deg);
+                        return beyond_end(fmt::format("bushing '{}' {} {}", elastic.name,
+                                                      axis < 3 ? "along" : "about", axes[axis % 3]),
+                                          value, end, axis < 3 ? Unit::mm : Unit::deg);
                     }
                     return {};
                 }},

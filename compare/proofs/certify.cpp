@@ -32,8 +32,7 @@ CertifiedWay certify_way(const BranchSide& way, SolverSettings solver,
     result.outcome = path.outcome;
     result.detail = path.detail;
     for (const Equilibrium& state : path.points)
-        result.tally.add(
-            state.load, result.unit,
+        add(result.tally, state.load, result.unit,
             certificate::certify(way.model, way.branch, state, in_si(options.tolerance)));
     if (solver.leg == Leg::equilibrium && path.points.size() > 1)
         result.curve = certificate::certify_branch(way.model, way.branch, path.points,
@@ -91,7 +90,7 @@ bool CertifyStudy::excluded() const {
 }
 bool CertifyStudy::conclusive() const {
     return proved() > 0 && std::ranges::all_of(ways, [](const CertifiedWay& way) {
-               if (is_not_asked(way.outcome)) return true;
+               if (is_not_applicable(way.outcome)) return true;
                const bool ended = way.outcome == Outcome::converged ||
                                   (way.limit && way.limit->answer == Answer::proved);
                return ended && way.tally.points > 0 && way.tally.proved == way.tally.points;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/deviation/agreement.hpp"
 #include "reference/equilibrium/continuation/from_start.hpp"
 
 namespace elastocheck::compare {

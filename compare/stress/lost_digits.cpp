@@ -21,8 +21,8 @@ std::size_t place_of(std::vector<std::string>& list, const std::string& word) {
     return place;
 }
 
-// Worst result over all cells of one group.
-struct Worst {
+// GroupWorst result over all cells of one group.
+struct GroupWorst {
     bool wrong = false, reported_failure = false, unknown = false;
     std::optional<double> digits;
 
@@ -33,7 +33,7 @@ struct Worst {
         else
             (cell.outcome == Outcome::converged ? unknown : reported_failure) = true;
     }
-    Loss told() const {
+    Loss text() const {
         if (wrong) return "X";
         if (digits) return fmt::format("{:.1f}", *digits);
         return unknown ? "?" : reported_failure ? "!" : ".";
@@ -59,7 +59,7 @@ LostDigits lost_digits(const Survival& survival) {
         std::vector<const StressCell*> drawn;
         for (const auto& cell : survival.cells)
             if (cell.scene == scene && cell.sweep == as_it_is) drawn.push_back(&cell);
-        std::vector worst(result.variants.size(), std::vector<Worst>(result.groups.size()));
+        std::vector worst(result.variants.size(), std::vector<GroupWorst>(result.groups.size()));
         for (const auto& cell : survival.cells) {
             if (cell.scene != scene || cell.sweep != other_arithmetic) continue;
             worst[place_of(result.variants, cell.variant)]
@@ -78,8 +78,8 @@ LostDigits lost_digits(const Survival& survival) {
         LostDigits::Row& row = result.rows.emplace_back();
         row.scene = scene;
         for (const auto& variant : worst) {
-            auto& told = row.lost.emplace_back();
-            for (const auto& group : variant) told.push_back(group.told());
+            auto& text = row.lost.emplace_back();
+            for (const auto& group : variant) text.push_back(group.text());
         }
     }
     return result;

@@ -32,23 +32,23 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // ---- Observed places of a state.
 
-struct Place {
+struct ComparedPoint {
     std::string name;
     Point at;
 };
 
-struct Stand {
+struct Placement {
     std::vector<Vector3d> p;         // per place
     std::vector<Quaterniond> turns;  // rotation of its body since the design position
 };
 
-std::vector<Place> places_of(const Model& model, const recursive::Diagnosis& diagnosis) {
+std::vector<ComparedPoint> places_of(const Model& model, const recursive::Diagnosis& diagnosis) {
     std::vector<bool> idle(model.bodies.size());
     for (const auto& mode : diagnosis.idle)
         for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
             if (std::abs(entry.value()) > 1e-6)
                 idle[static_cast<std::size_t>(entry.index() / 6)] = true;
-    std::vector<Place> places;
+    std::vector<ComparedPoint> places;
     const auto add = [&](const std::string& name, const Point& at) {
         if (at.body != ground && !idle[static_cast<std::size_t>(at.body)])
             places.push_back({name, at});
@@ -61,8 +61,9 @@ std::vector<Place> places_of(const Model& model, const recursive::Diagnosis& dia
     return places;
 }
 
-Stand stand(const Model& model, const std::vector<Place>& places, const Equilibrium& state) {
-    Stand where;
+Placement placement(const Model& model, const std::vector<ComparedPoint>& places,
+                    const Equilibrium& state) {
+    Placement where;
     for (const auto& place : places) {
         const auto& drawn = model.bodies[static_cast<std::size_t>(place.at.body)].design;
         where.p.push_back(position(state.poses, place.at));
@@ -74,17 +75,17 @@ Stand stand(const Model& model, const std::vector<Place>& places, const Equilibr
 // Joints whose reaction is determined: no redundant joint shares the load, and no body of the joint
 // has an idle mode.
 std::vector<std::size_t> joints_of(const Model& model, const recursive::Diagnosis& diagnosis,
-                                   const std::vector<Place>& places) {
-    std::vector<bool> stands(model.joints.size()), known(model.bodies.size());
+                                   const std::vector<ComparedPoint>& places) {
+    std::vector<bool> active(model.joints.size()), known(model.bodies.size());
     for (const auto& constraint : model.constraints)
-        stands[static_cast<std::size_t>(constraint.joint)] = true;
+        active[static_cast<std::size_t>(constraint.joint)] = true;
     for (const auto& place : places) known[static_cast<std::size_t>(place.at.body)] = true;
     const auto is_known = [&](BodyId b) {
         return b == ground || known[static_cast<std::size_t>(b)];
     };
     std::vector<std::size_t> joints;
     for (std::size_t j = 0; j < model.joints.size(); ++j)
-        if (stands[j] && diagnosis.determined[j] && is_known(model.joints[j].i) &&
+        if (active[j] && diagnosis.determined[j] && is_known(model.joints[j].i) &&
             is_known(model.joints[j].j))
             joints.push_back(j);
     return joints;
@@ -96,19 +97,19 @@ std::vector<Wrench> reactions_of(const std::vector<std::size_t>& joints, const E
     return reactions;
 }
 
-bool is_finite(const Stand& where) {
+bool is_finite(const Placement& where) {
     return std::ranges::all_of(where.p, [](const auto& p) { return p.allFinite(); }) &&
            std::ranges::all_of(where.turns, [](const auto& q) { return q.coeffs().allFinite(); });
 }
 
 // Error bound of a place from the bounds of its body's origin and orientation.
-double of_place(const ErrorBound& body, const Place& place) {
+double of_place(const ErrorBound& body, const ComparedPoint& place) {
     const double lever = place.at.s_local.norm();
     return lever > 0 ? body.length + lever * body.angle : body.length;
 }
 
 // Largest distance over all places; NaN if any number is NaN.
-ErrorBound apart(const Stand& a, const Stand& b) {
+ErrorBound apart(const Placement& a, const Placement& b) {
     ErrorBound most{0, 0};
     for (std::size_t k = 0; k < a.p.size(); ++k) {
         const double length = (a.p[k] - b.p[k]).norm(),
@@ -119,13 +120,13 @@ ErrorBound apart(const Stand& a, const Stand& b) {
     return is_finite(a) && is_finite(b) ? most : ErrorBound{nan, nan};
 }
 
-Stand transforms(const Stand& where, const Retelling& how) {
-    Stand told;
-    for (const auto& p : where.p) told.p.emplace_back(how.length * (how.M * p) + how.t);
+Placement transforms(const Placement& where, const Transform& how) {
+    Placement moved;
+    for (const auto& p : where.p) moved.p.emplace_back(how.length * (how.M * p) + how.t);
     for (const auto& turn : where.turns)
-        told.turns.emplace_back(
+        moved.turns.emplace_back(
             Eigen::Matrix3d(how.M * turn.toRotationMatrix() * how.M.transpose()));
-    return told;
+    return moved;
 }
 
 // ---- Results of all solvers on one branch side.
@@ -134,7 +135,7 @@ struct Found {
     Outcome outcome = Outcome::converged;
     std::string detail;
     bool threw = false;  // an exception, which is a bug; its text is in `detail`
-    std::vector<Stand> stands;
+    std::vector<Placement> placements;
     std::vector<std::vector<Wrench>> reactions;  // per point, of WayRun::joints
     std::vector<ErrorBound> error_bounds;        // error bounds as given, per point
     std::vector<bool> elsewhere;                 // per point: off, but proved
@@ -143,7 +144,7 @@ struct Found {
 // True state of one point: x_T and e.
 struct Known {
     Knowledge how = Knowledge::none;
-    Stand where;
+    Placement where;
     ErrorBound within;
     bool of_bodies = false;              // whether the bound is of the bodies or of the places
     bool stable = false;                 // proved to be stable; only for a proved state
@@ -151,10 +152,10 @@ struct Known {
     std::vector<Wrench> reactions = {};  // of WayRun::joints; empty where they are unknown
     double force = 0, moment = 0;        // error bounds of `reactions` [N], [N·m]
 
-    double length(const Place& place) const {
+    double length(const ComparedPoint& place) const {
         return of_bodies ? of_place(within, place) : within.length;
     }
-    double length(const std::vector<Place>& places) const {  // largest over all places
+    double length(const std::vector<ComparedPoint>& places) const {  // largest over all places
         double most = 0;
         for (const auto& place : places) most = std::max(most, length(place));
         return most;
@@ -164,7 +165,7 @@ struct Known {
 struct WayRun {
     std::string name;
     std::size_t points = 0;  // requested number
-    std::vector<Place> places;
+    std::vector<ComparedPoint> places;
     // joints whose reactions are compared: determined, and between bodies that have a place
     std::vector<std::size_t> joints;
     std::vector<std::string> joint_names;
@@ -199,11 +200,11 @@ struct Claim {
     ErrorBound bound = {};
     bool of_bodies = true;
 
-    double length(const Place& place) const {
+    double length(const ComparedPoint& place) const {
         return of_bodies ? of_place(bound, place) : bound.length;
     }
     // Largest over all places.
-    ErrorBound most(const std::vector<Place>& places) const {
+    ErrorBound most(const std::vector<ComparedPoint>& places) const {
         ErrorBound worst{0, bound.angle};
         for (const auto& place : places) worst.length = std::max(worst.length, length(place));
         return worst;
@@ -215,13 +216,13 @@ Claim claim_of(const Solver& solver, const ErrorBound& error_bound, double size)
     const ErrorBound rounding = exact(size);
     if (is_reference(solver)) return {rounding, false};
     if (solver.settings.error_bound) return {};  // a point without an error bound claims nothing
-    return std::visit(overloaded{[&](const recursive::Adaptive& told) -> Claim {
-                                     return {{std::max(told.length_tolerance, rounding.length),
-                                              std::max(told.angle_tolerance, rounding.angle)}};
+    return std::visit(overloaded{[&](const recursive::Adaptive& method) -> Claim {
+                                     return {{std::max(method.length_tolerance, rounding.length),
+                                              std::max(method.angle_tolerance, rounding.angle)}};
                                  },
-                                 [&](const recursive::Series& told) -> Claim {
-                                     return {{std::max(told.tolerance, rounding.length),
-                                              std::max(told.tolerance / size, rounding.angle)},
+                                 [&](const recursive::Series& method) -> Claim {
+                                     return {{std::max(method.tolerance, rounding.length),
+                                              std::max(method.tolerance / size, rounding.angle)},
                                              false};
                                  },
                                  [](const auto&) -> Claim { return {}; }},
@@ -243,8 +244,8 @@ Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t 
         const auto i = witnesses[static_cast<std::size_t>(a)],
                    j = witnesses[static_cast<std::size_t>(b)];
         const Found &one = run.found[i], &other = run.found[j];
-        if (point >= one.stands.size() || point >= other.stands.size()) continue;
-        const ErrorBound distance = apart(one.stands[point], other.stands[point]);
+        if (point >= one.placements.size() || point >= other.placements.size()) continue;
+        const ErrorBound distance = apart(one.placements[point], other.placements[point]);
         const ErrorBound
             c_i = claim_of(solvers[i], one.error_bounds[point], run.size).most(run.places),
             c_j = claim_of(solvers[j], other.error_bounds[point], run.size).most(run.places);
@@ -257,7 +258,7 @@ Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t 
         const bool by_account = std::isfinite(tighter.error_bounds[point].length);
         const ErrorBound within = by_account ? (first ? c_i : c_j) : distance;
         Known known{Knowledge::references,
-                    tighter.stands[point],
+                    tighter.placements[point],
                     {within.length + eps * run.reach, within.angle + eps}};
         known.reactions = tighter.reactions[point];
         return known;
@@ -290,7 +291,7 @@ Known proved(const BranchSide& way, const WayRun& run,
         const bool weakly_resisted = certificate.held > 0 && !run.anything_idle;
         if (certificate.answer == reference::certificate::Answer::proved && !weakly_resisted)
             return {Knowledge::proved,
-                    stand(way.model, run.places, path[point]),
+                    placement(way.model, run.places, path[point]),
                     {certificate.error.length, certificate.error.angle},
                     true,
                     certificate.stable,
@@ -311,11 +312,11 @@ struct Breach {
 
 // |x - x_T| minus e, minus the rounding of the coordinates of both states, which grows with their
 // distance from the origin.
-Breach breach(const WayRun& run, const Claim& claim, const Stand& where, const Known& known) {
+Breach breach(const WayRun& run, const Claim& claim, const Placement& where, const Known& known) {
     Breach worst;
     const double digits = 4 * eps;
     for (std::size_t k = 0; k < run.places.size(); ++k) {
-        const Place& place = run.places[k];
+        const ComparedPoint& place = run.places[k];
         const double within = known.length(place) + digits * run.reach,
                      length = (where.p[k] - known.where.p[k]).norm() - within,
                      angle = where.turns[k].angularDistance(known.where.turns[k]) -
@@ -350,7 +351,7 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
     run.joints = joints_of(way.model, diagnosis, run.places);
     for (const std::size_t j : run.joints) run.joint_names.push_back(way.model.joints[j].name);
     const int every = std::max(1, (way.branch.steps + 1) / 2);  // start, about the middle, end
-    run.points = asked_for({way}, every).size();
+    run.points = requested_parameters({way}, every).size();
     std::vector<std::vector<Equilibrium>> states(solvers.size());
     for (std::size_t s = 0; s < solvers.size(); ++s) {
         const Solver& solver = solvers[s];
@@ -364,7 +365,7 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
         try {
             const WithArithmetic in_force(variant.arithmetic);
             const EquilibriumPath path = walk(way, settings, [&](const Equilibrium& state) {
-                found.stands.push_back(stand(way.model, run.places, state));
+                found.placements.push_back(placement(way.model, run.places, state));
                 found.error_bounds.push_back(state.bound);
                 found.reactions.push_back(reactions_of(run.joints, state));
                 states[s].push_back(state);
@@ -393,7 +394,7 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
         Known known;
         if (variant.known == Construction::nothing_moves)
             known = {Knowledge::construction,
-                     stand(way.model, run.places, drawn),
+                     placement(way.model, run.places, drawn),
                      {eps * run.reach, eps}};
         // then the truth is taken from the default arithmetic
         const bool same_scene = variant.arithmetic != Arithmetic::nearest;
@@ -404,10 +405,10 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
         if (known.how != Knowledge::proved) continue;
         for (std::size_t s = 0; s < solvers.size(); ++s) {
             Found& found = run.found[s];
-            if (k >= found.stands.size()) continue;
+            if (k >= found.placements.size()) continue;
             const Claim claim = claim_of(solvers[s], found.error_bounds[k], run.size);
             found.elsewhere[k] =
-                (breach(run, claim, found.stands[k], known).any() &&
+                (breach(run, claim, found.placements[k], known).any() &&
                  reference::certificate::certify(way.model, way.branch, states[s][k], tolerance)
                          .answer == reference::certificate::Answer::proved);
         }
@@ -434,18 +435,18 @@ TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
 struct Match {
     std::vector<std::size_t> here, there;
 };
-Match match(const std::vector<Place>& here, const std::vector<Place>& there) {
+Match match(const std::vector<ComparedPoint>& here, const std::vector<ComparedPoint>& there) {
     Match both;
     for (std::size_t k = 0; k < here.size(); ++k) {
-        const auto same = std::ranges::find(there, here[k].name, &Place::name);
+        const auto same = std::ranges::find(there, here[k].name, &ComparedPoint::name);
         if (same == there.end()) continue;
         both.here.push_back(k);
         both.there.push_back(static_cast<std::size_t>(same - there.begin()));
     }
     return both;
 }
-Stand only(const Stand& where, const std::vector<std::size_t>& places) {
-    Stand some;
+Placement only(const Placement& where, const std::vector<std::size_t>& places) {
+    Placement some;
     for (const auto k : places) some.p.push_back(where.p[k]), some.turns.push_back(where.turns[k]);
     return some;
 }
@@ -486,7 +487,8 @@ std::string ended(const std::vector<Solver>& solvers, const WayRun& run) {
     std::string why;
     for (std::size_t s = 0; s < solvers.size(); ++s) {
         if (!is_reference(solvers[s])) continue;
-        if (!says_that_it_ends(run.found[s].outcome) || run.found[s].stands.size() >= run.points)
+        if (!says_that_it_ends(run.found[s].outcome) ||
+            run.found[s].placements.size() >= run.points)
             return {};
         why = run.found[s].detail;
     }
@@ -513,8 +515,8 @@ double range_of(const WayRun& run) {
 void judge_points(const Solver& solver, const Found& found, const WayRun& run, StressCell& cell) {
     double worst = 0;
     bool any_unknown = false, breaks = false, elsewhere = false, no_digit = false, promises = true;
-    for (std::size_t k = 0; k < found.stands.size(); ++k) {
-        if (!is_finite(found.stands[k])) {
+    for (std::size_t k = 0; k < found.placements.size(); ++k) {
+        if (!is_finite(found.placements[k])) {
             cell.verdict = Verdict::wrong;
             cell.why = "a state is no number";
             return;
@@ -532,9 +534,10 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         const Known& known = run.known[k];
         if (cell.knowledge == Knowledge::none || known.how == Knowledge::transforms)
             cell.knowledge = known.how;
-        const ErrorBound d = apart(found.stands[k], known.where);
+        const ErrorBound d = apart(found.placements[k], known.where);
         worst = std::max(worst, d.length + known.length(run.places));
-        if (const Breach broken = breach(run, claim_here, found.stands[k], known); broken.any()) {
+        if (const Breach broken = breach(run, claim_here, found.placements[k], known);
+            broken.any()) {
             (found.elsewhere[k] ? elsewhere : breaks) = true;
             cell.why = fmt::format(
                 "{} is off by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} "
@@ -579,16 +582,17 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
 // coordinate. The step error depends on the reference point of a body's increments; without a claim
 // the check applies only where rigidly connected bodies use the same reference body.
 void judge_retold(const Solver& solver, const Found& found, const WayRun& run,
-                  const Found& base_found, const WayRun& base, const Retelling& how,
+                  const Found& base_found, const WayRun& base, const Transform& how,
                   StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
     if (cell.verdict == Verdict::wrong) return;
     const Match both = match(run.places, base.places);
     const bool same_bodies =
         both.here.size() == run.places.size() && both.there.size() == base.places.size();
-    for (std::size_t k = 0; k < std::min(found.stands.size(), base_found.stands.size()); ++k) {
-        const Stand here = only(found.stands[k], both.here),
-                    there = transforms(only(base_found.stands[k], both.there), how);
+    for (std::size_t k = 0; k < std::min(found.placements.size(), base_found.placements.size());
+         ++k) {
+        const Placement here = only(found.placements[k], both.here),
+                        there = transforms(only(base_found.placements[k], both.there), how);
         const ErrorBound d = apart(here, there);
         const ErrorBound c = claim_of(solver, found.error_bounds[k], run.size).most(run.places),
                          c_base = claim_of(solver, base_found.error_bounds[k], base.size)
@@ -608,7 +612,7 @@ void judge_retold(const Solver& solver, const Found& found, const WayRun& run,
 
 // Distance from the answer of the unchanged scene, and the lost digits.
 void count_lost(const Solver& solver, const Found& found, const WayRun& run,
-                const Found& base_found, const WayRun& base, const Retelling& how,
+                const Found& base_found, const WayRun& base, const Transform& how,
                 StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
     StressCell drawn;
@@ -616,9 +620,10 @@ void count_lost(const Solver& solver, const Found& found, const WayRun& run,
     judge_points(solver, base_found, base, drawn);
     const Match both = match(run.places, base.places);
     double off = 0;
-    for (std::size_t k = 0; k < std::min(found.stands.size(), base_found.stands.size()); ++k) {
-        const ErrorBound d = apart(only(found.stands[k], both.here),
-                                   transforms(only(base_found.stands[k], both.there), how));
+    for (std::size_t k = 0; k < std::min(found.placements.size(), base_found.placements.size());
+         ++k) {
+        const ErrorBound d = apart(only(found.placements[k], both.here),
+                                   transforms(only(base_found.placements[k], both.there), how));
         if (!(d.length <= off)) off = d.length;
     }
     cell.apart = off / how.length;
@@ -648,14 +653,14 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
             cell.verdict = Verdict::wrong, cell.why =
                                                "says that no equilibrium continues the branch; "
                                                "told otherwise, the same scene has one";
-        else if (all_proved(run) && !found.stands.empty())
+        else if (all_proved(run) && !found.placements.empty())
             cell.verdict = Verdict::wrong, cell.why =
                                                "says that no equilibrium continues the branch, "
                                                "where the states of another are proved";
     }
     if (found.outcome != Outcome::converged) return cell;
     const std::string end = ended(solvers, run);
-    if (found.stands.size() < run.points)
+    if (found.placements.size() < run.points)
         cell.verdict = Verdict::wrong, cell.why = "converged, and points are missing";
     else if (trial.variant.known == Construction::no_equilibrium)
         cell.verdict = Verdict::wrong,
@@ -669,7 +674,7 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
 }
 
 // Truth of a transformed scene, taken from the unchanged scene where it is known only there.
-void lend(const WayRun& base, const Retelling& how, WayRun& run) {
+void lend(const WayRun& base, const Transform& how, WayRun& run) {
     const Match both = match(run.places, base.places);
     if (both.here.size() != run.places.size()) return;
     for (std::size_t k = 0; k < std::min(run.known.size(), base.known.size()); ++k)
@@ -792,7 +797,7 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
                 base != nullptr && w < base->ways.size() ? &base->ways[w] : nullptr;
             if (same != nullptr) lend(*same, *trial.variant.transforms, way);
             for (std::size_t s = 0; s < who.size(); ++s) {
-                const bool asked = way.found[s].threw || !way.found[s].stands.empty() ||
+                const bool asked = way.found[s].threw || !way.found[s].placements.empty() ||
                                    way.found[s].outcome != Outcome::converged;
                 if (asked) survival.cells.push_back(judge(trial, who, s, way, same));
             }

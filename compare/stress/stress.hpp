@@ -43,7 +43,7 @@ namespace elastocheck::compare {
 // ---- Input.
 
 // Invariance transform of a scene: a point at p moves to  length · M p + t.
-struct Retelling {
+struct Transform {
     Eigen::Matrix3d M = Eigen::Matrix3d::Identity();  // a rotation or a mirror image
     Eigen::Vector3d t = Eigen::Vector3d::Zero();      // [m]
     double length = 1;
@@ -52,7 +52,7 @@ struct Retelling {
 struct Variant {
     std::string label;  // "as it is", "rates of 'coil' times 1e+06"
     Scene scene;        // without a trim
-    std::optional<Retelling> transforms =
+    std::optional<Transform> transforms =
         {};  // of the unchanged scene: every result must be the same
     // Properties known by construction, independent of any solver.
     enum class Construction {

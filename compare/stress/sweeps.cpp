@@ -118,7 +118,7 @@ std::vector<Variant> units(const Scene& scene) {
                                         {"its metres taken for millimetres", 1e-3}})
         variants.push_back({.label = label,
                             .scene = scaled(first_branch(scene), factor, factor * factor),
-                            .transforms = Retelling{.length = factor}});
+                            .transforms = Transform{.length = factor}});
     return variants;
 }
 
@@ -126,7 +126,7 @@ std::vector<Variant> far_away(const Scene& scene) {
     const Vector3d t(10e3, 0, 0);
     return {{.label = "10 km from the origin",
              .scene = moved(first_branch(scene), Quaterniond::Identity(), t),
-             .transforms = Retelling{.t = t}}};
+             .transforms = Transform{.t = t}}};
 }
 
 std::vector<Variant> told_otherwise(const Scene& original) {
@@ -135,12 +135,12 @@ std::vector<Variant> told_otherwise(const Scene& original) {
     const Eigen::Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     return {{.label = "rotated",
              .scene = moved(scene, R, Vector3d::Zero()),
-             .transforms = Retelling{.M = R.toRotationMatrix()}},
-            {.label = "mirrored", .scene = mirrored(scene), .transforms = Retelling{.M = S}},
-            {.label = "in reverse order", .scene = reversed(scene), .transforms = Retelling{}},
+             .transforms = Transform{.M = R.toRotationMatrix()}},
+            {.label = "mirrored", .scene = mirrored(scene), .transforms = Transform{.M = S}},
+            {.label = "in reverse order", .scene = reversed(scene), .transforms = Transform{}},
             {.label = "in other body axes",
              .scene = with_body_axes(scene, {R, R.conjugate()}),
-             .transforms = Retelling{}}};
+             .transforms = Transform{}}};
 }
 
 // The unchanged scene under other arithmetic; and every number of it changed by one ulp.
@@ -151,11 +151,11 @@ std::vector<Variant> arithmetic(const Scene& original) {
          {Arithmetic::up, Arithmetic::down, Arithmetic::towards_zero, Arithmetic::flushed})
         variants.push_back({.label = name(how),
                             .scene = scene,
-                            .transforms = Retelling{},
+                            .transforms = Transform{},
                             .skipped = exists(how) ? "" : "this processor does not have it",
                             .arithmetic = how});
     variants.push_back(
-        {.label = "an ulp off", .scene = an_ulp_off(scene), .transforms = Retelling{}});
+        {.label = "an ulp off", .scene = an_ulp_off(scene), .transforms = Transform{}});
     return variants;
 }
 

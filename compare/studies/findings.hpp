@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/compare.hpp"
 #include "compare/studies/study.hpp"
+#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
 
@@ -15,18 +15,8 @@ namespace elastocheck::compare {
 // some tenths of a millimetre, over which a camber curve has no meaning.
 inline constexpr double least_travel = 1;
 
-enum class ReadingKind { equal_parameter, equal_abscissa };
 const Reading& reading_of(const Pair& pair, ReadingKind kind);
 
-// Largest deviation of a main channel in this unit over all branches; NaN counts as largest. Empty
-// without a comparison.
-struct Worst {
-    std::string branch, channel;
-    Unit unit = Unit::mm;
-    double max = 0, end = 0, range = 0;
-    double limit = std::numeric_limits<double>::infinity();  // in `unit`, where it is judged
-    double extent = 0;  // `max` is shown as a share of this; 0: not shown as a share
-};
 // Whether outputs are compared at equal abscissa on a branch: a wheel's travel must change by at
 // least `least_travel`; a main output is always accepted.
 bool is_readable(const Comparison& comparison, const BranchComparison& branch);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/curve.hpp"
@@ -96,8 +97,8 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
         for (const auto& [name, model] : models) {
             if (progress) progress(fmt::format("{}: {}", branches[b].name, name));
             const Branch& branch = model.branches[b];
-            Walked walked = walk(model, study.channels, branch, sides_of(model, branch, steps),
-                                 {.leg = Leg::equilibrium, .every = every});
+            PathCurve walked = walk(model, study.channels, branch, sides_of(model, branch, steps),
+                                    {.leg = Leg::equilibrium, .every = every});
             if (walked.outcome != Outcome::converged) {
                 spread.not_solved.push_back(fmt::format(
                     "{}: {}: {}", name, elastocheck::name(walked.outcome), walked.detail));

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "compare/comparison/compare.hpp"
+#include "elastocheck/compare.hpp"
 #include "elastocheck/scene.hpp"
 
 namespace elastocheck::compare {

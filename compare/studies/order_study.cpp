@@ -1,4 +1,5 @@
 #include "compare/studies/order_study.hpp"
+#include "compare/comparison/legs.hpp"
 
 #include <fmt/format.h>
 

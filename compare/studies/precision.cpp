@@ -1,4 +1,5 @@
 #include "compare/studies/precision.hpp"
+#include "compare/comparison/legs.hpp"
 
 #include <fmt/format.h>
 

@@ -146,8 +146,8 @@ std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
     return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
 }
 
-Walked walk_with_steps(const Model& model, const std::vector<Channel>& channels, BranchSide way,
-                       int steps, const recursive::Method& method) {
+PathCurve walk_with_steps(const Model& model, const std::vector<Channel>& channels, BranchSide way,
+                          int steps, const recursive::Method& method) {
     way.branch.steps = steps;
     return walk(model, channels, way.branch, {way}, {.recursion = {.method = method}});
 }
@@ -163,7 +163,7 @@ MethodStudy study_method(const Model& model, const std::vector<Channel>& channel
     std::vector<Level> Phi;
     for (const int N : steps) {
         if (progress) progress(fmt::format("{}: {} with {} steps", way.name, method.name, N));
-        Walked walked = walk_with_steps(model, channels, way, N, method);
+        PathCurve walked = walk_with_steps(model, channels, way, N, method);
         m.outcomes.push_back(walked.outcome);
         if (walked.outcome != Outcome::converged) {
             m.not_studied = fmt::format("with {} steps: {}: {}", N,
@@ -303,7 +303,7 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
             .kind =
                 recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
         for (const int N : steps) {
-            Walked walked = walk_with_steps(model, channels, way, N, method);
+            PathCurve walked = walk_with_steps(model, channels, way, N, method);
             if (walked.outcome != Outcome::converged) {
                 attribution.not_attributed = fmt::format(
                     "with {} steps: {}: {}", N, elastocheck::name(walked.outcome), walked.detail);

@@ -15,9 +15,9 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/outputs/channels.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/convergence.hpp"
+#include "elastocheck/channels.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/recursive_method.hpp"

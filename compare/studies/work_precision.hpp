@@ -29,8 +29,9 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/comparison/compare.hpp"
+#include "compare/deviation/deviation.hpp"
 #include "compare/deviation/tolerance.hpp"
+#include "elastocheck/compare.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/recursive_method.hpp"

@@ -5,7 +5,6 @@
 #include <variant>
 #include <vector>
 
-#include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/proofs/certify.hpp"
 #include "compare/studies/findings.hpp"
@@ -14,6 +13,7 @@
 #include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
+#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
 

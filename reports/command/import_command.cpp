@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"

@@ -11,8 +11,8 @@
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/outputs/channels.hpp"
 #include "compare/outputs/rates.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
@@ -56,7 +56,7 @@ void write_rates(const Model& model, const std::vector<Channel>& asked,
         for (const auto& way : compare::sides_of(model, branch, how.steps)) {
             const auto path = recursive::series::follow(
                 way.model, way.branch, std::get<recursive::Series>(how.method.kind));
-            for (const double a : compare::asked_for({way}, every)) {
+            for (const double a : compare::requested_parameters({way}, every)) {
                 const auto place = recursive::series::find(path, a);
                 if (!place) break;
                 csv.add(rates_row(
@@ -93,7 +93,8 @@ std::vector<Channel> chosen(const std::vector<Channel>& all,
 
 // Forces of bushings, springs and links, and characteristics, whose cost is comparable to a step of
 // a leg, are written only if requested by name.
-std::vector<Channel> asked_for(const Model& model, const std::vector<std::string>& patterns) {
+std::vector<Channel> requested_channels(const Model& model,
+                                        const std::vector<std::string>& patterns) {
     auto all = compare::channels(model);
     if (patterns.empty()) return all;
     std::ranges::move(compare::characteristics(model), std::back_inserter(all));
@@ -113,7 +114,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     if (!request.states.empty()) check_may_write(request.states, states_file);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
     const Model& model = loaded.model;
-    const auto channels = asked_for(model, request.channels);
+    const auto channels = requested_channels(model, request.channels);
     check_every(model, how.steps, every);
     if (delivery.as_json)
         check_memory(model, {.steps = how.steps, .every = every, .written = true});
@@ -129,14 +130,15 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     const auto write = [&](const std::string& lines) {
         csv ? csv->add(lines) : delivery.say(lines);
     };
-    std::vector<compare::Walked> kept;  // only for the document
+    std::vector<compare::PathCurve> kept;  // only for the document
     write(curves_header(channels));
     int code = fine;
     const std::string who =
         leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
-    const auto promise = leg == compare::Leg::recursive
-                             ? compare::promised(how.method, recursive::diagnose(model).length)
-                             : std::nullopt;
+    const auto promise =
+        leg == compare::Leg::recursive
+            ? compare::tolerance_of_method(how.method, recursive::diagnose(model).length)
+            : std::nullopt;
     compare::SolverSettings solver = request.solver;
     solver.error_bound = error_bound || promise;
     for (const auto& branch : model.branches) {
@@ -144,7 +146,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         if (csv) progress(branch.name);
         const auto ways = compare::sides_of(model, branch, how.steps);
         compare::Analyses analyses;
-        compare::Walked whole;
+        compare::PathCurve whole;
         whole.curve.unit = compare::unit_of(branch.unit);
         const EquilibriumPath path = compare::walk(
             ways, solver,

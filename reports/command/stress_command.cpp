@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "compare/stress/stress.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "reports/command/delivery.hpp"

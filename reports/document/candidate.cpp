@@ -115,7 +115,7 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
               {"share", j.tolerance.share},
               {"asked", j.asked}}},
             {"worst", worst},
-            {"findings", j.said},
+            {"findings", j.hints},
             {"reasons", j.reasons},
             {"not_given", j.not_given},
             {"notes", j.notes},

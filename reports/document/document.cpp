@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/deviation/agreement.hpp"
 #include "compare/studies/findings.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -75,6 +76,7 @@ json channels_json(const std::vector<compare::Channel>& channels) {
                         {"unit", symbol(channel.unit)},
                         {"main", channel.main},
                         {"kinematic", channel.kinematic()},
+                        {"kind", name(channel.kind())},
                         {"definition", channel.definition}});
     return list;
 }
@@ -123,7 +125,7 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
             {"seconds", run.seconds},
             {"residuals_by", judged},
             {"proof", run.proved.points > 0 ? proof_json(run.proved) : json(nullptr)},
-            {"told", run.told},
+            {"told", run.messages},
             {"curve", curve_json(run.curve, run.constraint_error, channels)}};
 }
 
@@ -233,7 +235,7 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
 // where the scene is too large for states of the energy leg; null where the energy leg judges as
 // usual.
 json witness_json(const compare::BranchComparison& branch) {
-    if (!energy_bears_witness(branch)) return nullptr;
+    if (!energy_judges_states(branch)) return nullptr;
     const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
     const auto three = [](double force, double moment, double length) {
         return json{{"force_N", force}, {"moment_Nm", moment}, {"constraint_mm", length}};
@@ -316,12 +318,12 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
 
 void add_curves(json& scene_document, const Model& model,
                 const std::vector<compare::Channel>& channels, compare::Leg leg,
-                const std::string& method, const std::vector<compare::Walked>& branches) {
+                const std::string& method, const std::vector<compare::PathCurve>& branches) {
     std::vector<std::string> reasons;
     json list = json::array();
     int numbers = 0;
     for (std::size_t b = 0; b < branches.size(); ++b) {
-        const compare::Walked& walked = branches[b];
+        const compare::PathCurve& walked = branches[b];
         json one = branch_json(model, model.branches[b]);
         one["legs"] =
             json::array({{{"leg", name(leg)},

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/trim.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/study.hpp"
 #include "elastocheck/scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/files/provenance.hpp"
 
@@ -40,7 +40,7 @@ void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, 
 // comparison.
 void add_curves(nlohmann::ordered_json& scene_document, const Model& model,
                 const std::vector<compare::Channel>& channels, compare::Leg leg,
-                const std::string& method, const std::vector<compare::Walked>& branches);
+                const std::string& method, const std::vector<compare::PathCurve>& branches);
 
 // "channels" and "inspection": bodies, elements, branches and their settled states, the numbers of
 // the file.

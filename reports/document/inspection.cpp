@@ -8,7 +8,7 @@
 #include <span>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "reports/document/document.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/model.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 

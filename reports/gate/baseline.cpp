@@ -21,8 +21,7 @@ using compare::ToleranceClass;
 using json = nlohmann::ordered_json;
 
 bool is_known(const std::string& unit) {
-    return unit == "count" ||
-           std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
+    return unit == "count" || compare::find_unit(unit);
 }
 
 // A field of the file with its path for messages.

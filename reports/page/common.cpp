@@ -24,7 +24,8 @@ std::vector<ChannelInfo> channels_of(const Field& scene) {
     std::vector<ChannelInfo> all;
     for (const auto& c : scene["channels"].items())
         all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(),
-                       c["kinematic"].truth(), c["definition"].text()});
+                       c["kinematic"].truth(), c["definition"].text(),
+                       c.find("kind") && c["kind"].text() == "drive"});
     return all;
 }
 

@@ -16,6 +16,7 @@ struct ChannelInfo {
     std::string name, unit;
     bool main = true, kinematic = true;  // kinematic: a position or an angle, not a force
     std::string definition = {};
+    bool drive = false;  // effort of a driver
 
     bool angle() const { return unit == "deg"; }
     std::string label() const;    // "wheel centre y"

@@ -121,7 +121,7 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
         partly += fmt::format(" Its states are out of balance by up to {:.2g} N and {:.2g} N·m.",
                               force, moment);
     if (j.others == 0 && j.has_forces) partly += " No force or moment was compared.";
-    const std::string hints = j.said.empty() ? "" : fmt::format(" {}.", joined(j.said, 4));
+    const std::string hints = j.hints.empty() ? "" : fmt::format(" {}.", joined(j.hints, 4));
     switch (j.verdict) {
         case Grade::not_judged:
             return fmt::format("Not judged: {}{}.{}", j.reasons.front(),
@@ -143,11 +143,11 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                                j.not_given.empty() ? " everywhere" : " where it says something",
                                worst_of(j, comparison), partly);
         case Grade::fail:
-            if (!j.said.empty() && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
+            if (!j.hints.empty() && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
                     return w.max <= w.limit;
                 }))
                 return fmt::format("Fail: {} is no solution: {}. The tolerance is {}.{}", who,
-                                   joined(j.said, 4), tolerance_of(j), partly);
+                                   joined(j.hints, 4), tolerance_of(j), partly);
             return fmt::format(
                 "Fail: {} is off from the full solution by up to {}. The tolerance is {}.{}{}", who,
                 worst_of(j, comparison), tolerance_of(j), hints, partly);
@@ -262,7 +262,7 @@ std::string candidate_text(const CandidateJudgement& j, const compare::Compariso
     fmt::format_to(out, "\n");
     for (const auto& missing : j.not_given) fmt::format_to(out, "  not given: {}\n", missing);
     for (const auto& note : j.notes) fmt::format_to(out, "  note: {}\n", note);
-    for (const auto& hint : j.said) fmt::format_to(out, "  {}\n", hint);
+    for (const auto& hint : j.hints) fmt::format_to(out, "  {}\n", hint);
     for (const auto& reason : j.reasons) fmt::format_to(out, "  could not judge: {}\n", reason);
     fmt::format_to(out, "{} numbers compared.\n\n", j.compared);
     return text;

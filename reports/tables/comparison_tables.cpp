@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/deviation/agreement.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"
 
@@ -130,7 +131,8 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
 // Messages from the error bounds of the points: predicted singular points, exceeded tolerances.
 void error_bounds(const compare::BranchComparison& branch, std::string& text) {
     for (const auto& run : branch.runs)
-        for (const auto& line : run.told) text += fmt::format("  {}: {}\n", solver_of(run), line);
+        for (const auto& line : run.messages)
+            text += fmt::format("  {}: {}\n", solver_of(run), line);
 }
 
 // Interval proofs of the points at the start, the middle and the ends.
@@ -183,7 +185,7 @@ std::string recursion_of(const compare::Comparison& comparison) {
 std::string instead_of_energy(const compare::Comparison& comparison) {
     bool none = false, large = false;
     for (const auto& branch : comparison.branches)
-        if (!branch.not_asked.empty()) (energy_bears_witness(branch) ? large : none) = true;
+        if (!branch.not_asked.empty()) (energy_judges_states(branch) ? large : none) = true;
     if (!none && !large) return "";
     return fmt::format(", or series where {}{}{},", none ? "no energy exists" : "",
                        none && large ? " or " : "", large ? "the scene is too large for it" : "");
@@ -193,7 +195,7 @@ std::string instead_of_energy(const compare::Comparison& comparison) {
 std::string not_asked(const compare::BranchComparison& branch) {
     const std::string who =
         fmt::format("  the equilibrium leg and {} judge each other", name(branch.second));
-    if (!energy_bears_witness(branch))
+    if (!energy_judges_states(branch))
         return fmt::format("{}; no energy exists: {}\n", who, branch.not_asked);
     const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
     const compare::Bounds& b = branch.bounds;

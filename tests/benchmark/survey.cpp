@@ -18,9 +18,12 @@
 #include <limits>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/trim.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/deviation/deviation.hpp"
+#include "compare/outputs/curve.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "recursive/series/path.hpp"
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/comparison/compare.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -66,7 +67,7 @@ CandidateJudgement judged(const Candidate& candidate) {
 
 std::string texts(const CandidateJudgement& judgement) {
     std::string text = name(judgement.verdict);
-    for (const auto* list : {&judgement.reasons, &judgement.said, &judgement.not_given})
+    for (const auto* list : {&judgement.reasons, &judgement.hints, &judgement.not_given})
         for (const auto& one : *list) text += "; " + one;
     return text;
 }
@@ -83,7 +84,7 @@ TEST(Candidate, ThatIsTheReferencePassesAndNoNumberOfItIsOff) {
     for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
         const auto judgement = judged(table_of(leg));
         EXPECT_EQ(judgement.verdict, Grade::pass) << texts(judgement);
-        EXPECT_TRUE(judgement.said.empty() && judgement.not_given.empty()) << texts(judgement);
+        EXPECT_TRUE(judgement.hints.empty() && judgement.not_given.empty()) << texts(judgement);
         ASSERT_EQ(judgement.branches.size(), 2u);
         for (const auto& branch : judgement.branches)
             for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa})
@@ -131,9 +132,9 @@ TEST(Candidate, WithATurnedSignIsToldSo) {
     const auto* found = explained(judgement, "toe", Kind::sign);
     ASSERT_NE(found, nullptr) << texts(judgement);
     EXPECT_LE(found->left, 1e-8);
-    ASSERT_EQ(judgement.said.size(), 1u);
-    EXPECT_TRUE(judgement.said[0].starts_with("toe agrees to ")) << judgement.said[0];
-    EXPECT_TRUE(judgement.said[0].ends_with(" deg with its sign turned")) << judgement.said[0];
+    ASSERT_EQ(judgement.hints.size(), 1u);
+    EXPECT_TRUE(judgement.hints[0].starts_with("toe agrees to ")) << judgement.hints[0];
+    EXPECT_TRUE(judgement.hints[0].ends_with(" deg with its sign turned")) << judgement.hints[0];
 }
 
 TEST(Candidate, InAnotherUnitIsToldWhich) {
@@ -176,9 +177,9 @@ TEST(Candidate, WithTwoColumnsChangedOverIsToldWhich) {
     std::swap(values(candidate, "toe"), values(candidate, "camber"));
     const auto judgement = judged(candidate);
     EXPECT_EQ(judgement.verdict, Grade::fail);
-    ASSERT_EQ(judgement.said.size(), 1u) << texts(judgement);
-    EXPECT_TRUE(judgement.said[0].starts_with("toe and camber are changed over"))
-        << judgement.said[0];
+    ASSERT_EQ(judgement.hints.size(), 1u) << texts(judgement);
+    EXPECT_TRUE(judgement.hints[0].starts_with("toe and camber are changed over"))
+        << judgement.hints[0];
 }
 
 TEST(Candidate, OffByAThousandthFailsAndTheThousandthIsTold) {
@@ -192,8 +193,8 @@ TEST(Candidate, OffByAThousandthFailsAndTheThousandthIsTold) {
     const auto* found = explained(judgement, "wheel_centre_z", Kind::factor);
     ASSERT_NE(found, nullptr) << texts(judgement);
     EXPECT_NEAR(found->factor, 1.001, 1e-6);
-    EXPECT_TRUE(judgement.said[0].starts_with("wheel_centre_z is 0.1 % too large throughout"))
-        << judgement.said[0];
+    EXPECT_TRUE(judgement.hints[0].starts_with("wheel_centre_z is 0.1 % too large throughout"))
+        << judgement.hints[0];
 }
 
 TEST(Candidate, WrongFromTheMiddleOfABranchOnIsToldFromWhere) {
@@ -223,7 +224,7 @@ TEST(Candidate, ThatIsSmoothlyWrongIsExplainedByNothing) {
             toe[k] += 0.02 * std::pow(std::abs(candidate.points.a[k]) / 3000, power);
         const auto judgement = judged(candidate);
         EXPECT_EQ(judgement.verdict, Grade::fail);
-        EXPECT_TRUE(judgement.said.empty()) << power << texts(judgement);
+        EXPECT_TRUE(judgement.hints.empty()) << power << texts(judgement);
     }
 }
 

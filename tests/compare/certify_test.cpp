@@ -52,11 +52,11 @@ TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
     proved.answer = Answer::proved;
     proved.error = {1e-12, 1e-12, 1e-9, 1e-9};
     proved.unique = {1e-4, 1e-4, 1, 1};
-    way.tally.add(0, way.unit, proved);
+    add(way.tally, 0, way.unit, proved);
     EXPECT_TRUE(study.conclusive());
     Certificate open;
     open.detail = "the box is too wide";
-    way.tally.add(120, way.unit, open);
+    add(way.tally, 120, way.unit, open);
     EXPECT_FALSE(study.conclusive());
     EXPECT_FALSE(study.excluded());
     EXPECT_EQ(way.tally.not_proved, "open at 120 N: the box is too wide");

@@ -1,5 +1,5 @@
 // Output channels: wheel angles by definition, travel, units.
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,9 +11,9 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/comparison/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
@@ -40,8 +40,8 @@ class Read {
         EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
         if (path.points.empty()) return;
         state = path.points.front();
-        answers = answer(way_, {.leg = leg}, steering_joint(model), state);
-        EXPECT_EQ(answers.why_not, "") << name(leg);
+        response = wheel_response(way_, {.leg = leg}, steering_joint(model), state);
+        EXPECT_EQ(response.why_not, "") << name(leg);
         values_ = row_of(model, channels_, way_, {.leg = leg}, state).values;
     }
     double operator[](const std::string& name) const {
@@ -56,7 +56,7 @@ class Read {
     const std::vector<Channel>& channels() const { return channels_; }
 
     Equilibrium state;
-    Answers answers;
+    WheelResponse response;
 
   private:
     static BranchSide way(const Model& model, const std::string& name) {
@@ -151,7 +151,7 @@ wheels:
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
         const Read is(model, leg);
-        EXPECT_TRUE(is.answers.tied);
+        EXPECT_TRUE(is.response.tied);
         for (const std::string wheel : {"left.", "right."}) {
             EXPECT_NEAR(is[wheel + "recession_gradient"], 25, 1e-9);
             EXPECT_NEAR(is[wheel + "track_gradient"], wheel == "left." ? 10 : -10, 1e-9);
@@ -184,7 +184,7 @@ wheels:
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
         const Read is(model, leg);
-        EXPECT_TRUE(is.answers.tied);
+        EXPECT_TRUE(is.response.tied);
         EXPECT_NEAR(is["left.bump_camber"], -deg / 10 / 2.8, 1e-9);
         EXPECT_NEAR(is["right.bump_camber"], deg / 10 / 1.2, 1e-9);
         EXPECT_NEAR(is["left.track_gradient"], 100 * 0.3 / 2.8, 1e-9);
@@ -220,12 +220,12 @@ TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
     const auto list = characteristics(model);
     const auto& rate = list[static_cast<std::size_t>(find_channel(list, "wheel_rate"))];
     const auto value = [&] {
-        return value_of(model, std::get<Characteristic>(rate.reads), is.state, is.answers);
+        return value_of(model, std::get<Characteristic>(rate.reads), is.state, is.response);
     };
     EXPECT_TRUE(std::isfinite(value()));
-    is.answers.free.clear();
+    is.response.free.clear();
     EXPECT_TRUE(std::isnan(value()));
-    is.answers.nothing_resists = true;
+    is.response.nothing_resists = true;
     EXPECT_EQ(value(), undefined);
 }
 
@@ -383,16 +383,17 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
     const Matrix6 expected = A.transpose() * flexible.asDiagonal() * A;
     for (const Leg leg : all_legs) {
         const Read is(model, leg);
-        const Eigen::MatrixXd C = compliance(model, WheelPoint::patch, is.state, is.answers);
+        const Eigen::MatrixXd C = compliance(model, WheelPoint::patch, is.state, is.response);
         ASSERT_EQ(C.rows(), 6);
         EXPECT_LE((C - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff())
             << name(leg) << "\n"
             << C;
         EXPECT_LE(reciprocity(model, C), 1e-13);
         EXPECT_NEAR(is["wheel_rate"],
-                    1e-3 / compliance(model, WheelPoint::centre, is.state, is.answers)(2, 2), 1e-6);
+                    1e-3 / compliance(model, WheelPoint::centre, is.state, is.response)(2, 2),
+                    1e-6);
         // With the wheel's height held: the compliance minus the part of the jack.
-        Matrix6 at_centre = compliance(model, WheelPoint::centre, is.state, is.answers);
+        Matrix6 at_centre = compliance(model, WheelPoint::centre, is.state, is.response);
         const Vector6 z = at_centre.col(2);
         at_centre -= z * z.transpose() / z[2];
         EXPECT_NEAR(is["longitudinal_stiffness_at_centre"], 1e-3 / at_centre(0, 0), 1e-6);
@@ -483,7 +484,7 @@ TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
             }
         }
         for (const Read* leg : {&truth, &second, &series}) {
-            const auto C = compliance(model, WheelPoint::centre, leg->state, leg->answers);
+            const auto C = compliance(model, WheelPoint::centre, leg->state, leg->response);
             EXPECT_LE(reciprocity(model, C), 1e-8);
         }
     }
@@ -537,7 +538,7 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
         const Pose& wheel = is.state.poses[static_cast<std::size_t>(model.wheels[0].body)];
         const double y = (wheel.r + wheel.p * model.wheels[0].contact_local).y();
         // The jack acts at the centre; the rise of the patch differs slightly with camber.
-        const double rises = moved(is.state, is.answers.travel[0],
+        const double rises = moved(is.state, is.response.travel[0],
                                    {model.wheels[0].body, model.wheels[0].contact_local})
                                  .z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;

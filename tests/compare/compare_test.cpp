@@ -137,16 +137,6 @@ TEST(Compare, RecursionIsOffAlongThePathMuchMoreThanAcrossIt) {
     }
 }
 
-TEST(Compare, DeviationFromOneReferenceIsTheDeviationFromTheOther) {
-    for (const auto& branch : mcpherson().branches)
-        for (std::size_t c = 0; c < mcpherson().channels.size(); ++c)
-            if (!is_undefined(mcpherson(), branch, c)) {
-                EXPECT_NEAR(branch.deviation.equal_parameter.channels[c].max,
-                            branch.cross_check.equal_parameter.channels[c].max,
-                            std::max(1e-5, share_of_rate(mcpherson(), branch, c)));
-            }
-}
-
 TEST(Compare, ShippedScenesAreConclusiveAndEveryLegConverges) {
     for (const auto& name : support::small_scene_names()) {
         const auto comparison = compare(compile(support::scene(name)));

@@ -117,17 +117,6 @@ TEST(Convergence, SmallOrdersKeepTheirSign) {
         }
 }
 
-TEST(Convergence, TheSideFromWhichTheLimitIsApproachedIsKept) {
-    for (const double C : {0.7, -0.7}) {
-        const auto levels = doubling({2 + C, 2 + C / 2, 2 + C / 4, 2 + C / 8});
-        const auto c = step_convergence(levels, 1, exact);
-        EXPECT_NEAR(c.limit, 2, 1e-12);
-        EXPECT_EQ(levels.back().value - c.limit > 0, C > 0);
-        const double reference = 1.9;  // formulation gap: own limit minus reference
-        EXPECT_NEAR(c.limit - reference, 0.1, 1e-12);
-    }
-}
-
 TEST(Convergence, ScaleSignAndOffsetOfTheValuesDoNotMatter) {
     const auto law = [](double h) { return 0.4 + h + 3 * h * h; };
     const std::vector<double> steps = {10, 20, 40, 80, 160, 320};
@@ -595,17 +584,6 @@ TEST(Convergence, AnOrderBeyondTheSearchRangeIsReadAsTenOrMore) {
         EXPECT_FALSE(c.as_formal);
         EXPECT_LE(std::abs(c.limit), c.band);
     }
-}
-
-TEST(Convergence, EveryBehaviourHasItsOwnName) {
-    std::set<std::string> names;
-    for (const Behaviour each :
-         {Behaviour::converging, Behaviour::oscillating, Behaviour::diverging,
-          Behaviour::round_off_floor, Behaviour::reference_floor, Behaviour::not_finite,
-          Behaviour::too_few_levels})
-        names.insert(name(each));
-    EXPECT_EQ(names.size(), 7u);
-    EXPECT_EQ(names.count("?"), 0u);
 }
 
 // ---- steps for an error ----

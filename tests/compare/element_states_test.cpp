@@ -8,7 +8,7 @@
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "compare/outputs/positions.hpp"
 #include "compare/tables/table.hpp"
 #include "elastocheck/compile.hpp"

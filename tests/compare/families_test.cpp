@@ -30,13 +30,14 @@ std::string named(const Family& f) {
 
 // A family with its branch and the results of a leg. Leg::recursive is the series, tolerance 1e-13
 // m.
-struct Walked {
+struct FamilyScene {
     Family family;
     Scene scene;
     Model model;
 
-    explicit Walked(const Family& f) : Walked(f, parse_scene(families::scene(f), named(f))) {}
-    Walked(const Family& f, const Scene& s) : family(f), scene(s), model(compile(s)) {}
+    explicit FamilyScene(const Family& f)
+        : FamilyScene(f, parse_scene(families::scene(f), named(f))) {}
+    FamilyScene(const Family& f, const Scene& s) : family(f), scene(s), model(compile(s)) {}
 
     EquilibriumPath by(Leg leg) const {
         const auto path =
@@ -101,7 +102,7 @@ Eigen::Vector3d on_axle(const Lifted& at, double F, const Eigen::Vector3d& drawn
     return {drawn.x() - std::copysign(at.c_ground * at.H, drawn.x()), drawn.y(), at.c_ground * F};
 }
 
-double off_the_closed_form_mm(const Walked& w, const EquilibriumPath& path) {
+double off_the_closed_form_mm(const FamilyScene& w, const EquilibriumPath& path) {
     const Family& f = w.family;
     const int links = f.kind == Kind::chain  ? f.bodies
                       : f.kind == Kind::tree ? families::levels(f.bodies)
@@ -143,7 +144,7 @@ const std::vector<Family> of_sixty{{Kind::chain, 60},
 
 TEST(Families, StandWhereTheirClosedFormSaysInEveryLeg) {
     for (const Family& family : of_fifteen) {
-        const Walked w(family);
+        const FamilyScene w(family);
         for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series, Leg::recursive})
             EXPECT_LE(off_the_closed_form_mm(w, w.by(leg)), references)
                 << named(family) << " by " << name(leg);
@@ -152,7 +153,7 @@ TEST(Families, StandWhereTheirClosedFormSaysInEveryLeg) {
 
 TEST(Families, StandThereWithFourTimesTheBodies) {
     for (const Family& family : of_sixty) {
-        const Walked w(family);
+        const FamilyScene w(family);
         const auto equilibrium = w.by(Leg::equilibrium), series = w.by(Leg::recursive);
         EXPECT_LE(off_the_closed_form_mm(w, equilibrium), references) << named(family);
         EXPECT_LE(furthest_apart_mm(equilibrium, series), expansions) << named(family);
@@ -161,7 +162,7 @@ TEST(Families, StandThereWithFourTimesTheBodies) {
 
 // ---- Unequal load sharing and beams: the legs are compared with each other.
 
-Walked pushed_at_a_corner() {
+FamilyScene pushed_at_a_corner() {
     const Family grid{Kind::grid, 15};
     Scene scene = parse_scene(families::scene(grid), "grid");
     scene.branches[0].drivers.erase(scene.branches[0].drivers.begin(),
@@ -170,7 +171,7 @@ Walked pushed_at_a_corner() {
 }
 
 TEST(Families, WithoutAClosedFormStandWhereBothReferencesSay) {
-    std::vector<Walked> all{pushed_at_a_corner()};
+    std::vector<FamilyScene> all{pushed_at_a_corner()};
     for (const Family& family : {Family{Kind::tree, 12},
                                  {Kind::tree, 12, Hinge::revolute},
                                  {Kind::axle, 12},
@@ -178,7 +179,7 @@ TEST(Families, WithoutAClosedFormStandWhereBothReferencesSay) {
                                  {Kind::leaf_spring, 15},
                                  {Kind::ladder_frame, 15}})
         all.emplace_back(family);
-    for (const Walked& w : all) {
+    for (const FamilyScene& w : all) {
         const auto equilibrium = w.by(Leg::equilibrium);
         EXPECT_LE(furthest_apart_mm(equilibrium, w.by(Leg::energy)), references) << named(w.family);
         EXPECT_LE(furthest_apart_mm(equilibrium, w.by(Leg::recursive)), expansions)
@@ -188,7 +189,7 @@ TEST(Families, WithoutAClosedFormStandWhereBothReferencesSay) {
 
 TEST(Families, OfBeamsStandWithFourTimesTheBodiesWhereEquilibriumLegAndSeriesSay) {
     for (const Kind kind : {Kind::leaf_spring, Kind::ladder_frame}) {
-        const Walked w({kind, 60});
+        const FamilyScene w({kind, 60});
         EXPECT_LE(furthest_apart_mm(w.by(Leg::equilibrium), w.by(Leg::recursive)), expansions)
             << name(kind);
     }
@@ -204,7 +205,7 @@ double flexibility(const Family& family, Leg leg) {
     double rise = 0;
     for (const double sign : {1, -1}) {
         scene.branches[0].to = sign * F;
-        const Walked w(family, scene);
+        const FamilyScene w(family, scene);
         rise += sign * (w.end(w.by(leg).points.back()).z() - w.end(w.by(leg).points.front()).z());
     }
     return rise / (2 * F);
@@ -305,7 +306,7 @@ TEST(Families, MethodsHaveTheOrderTheyDeclare) {
     all.push_back({Kind::leaf_spring, 15});
     all.push_back({Kind::ladder_frame, 15});
     for (const Family& family : all) {
-        const Walked w(family);
+        const FamilyScene w(family);
         const bool nothing_turns = family.hinge == Hinge::revolute && family.kind != Kind::axle;
         const bool beams =
             !has_hinges(family.kind);  // nearly inextensible: large higher-order terms
@@ -346,10 +347,11 @@ TEST(Families, HaveAsManyBodiesAsAskedAndMoveAboutAsFar) {
             if (hinge == Hinge::revolute && !has_hinges(kind)) continue;
             for (const int n : {families::least_bodies(kind), 7, 24, 100, 2000}) {
                 const Family family{kind, n, hinge};
-                EXPECT_EQ(static_cast<int>(Walked(family).model.bodies.size()), n) << named(family);
+                EXPECT_EQ(static_cast<int>(FamilyScene(family).model.bodies.size()), n)
+                    << named(family);
             }
             for (const int n : {16, 31, 33}) {
-                const Walked w({kind, n, hinge});
+                const FamilyScene w({kind, n, hinge});
                 const double z = w.end(w.by(Leg::recursive).points.back()).z();
                 EXPECT_GT(z, 0.03) << named(w.family);
                 EXPECT_LT(z, 0.45) << named(w.family);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "compare/comparison/compare.hpp"
 #include "compare/tables/table.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"

@@ -81,7 +81,7 @@ TEST(Visit, TheReferencesHandOverThePointsThatTheyWouldKeep) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
             for (const auto& way : sides_of(model, branch, 3)) {
-                const auto a = asked_for({way}, 1);
+                const auto a = requested_parameters({way}, 1);
                 std::vector<Equilibrium> by_equilibrium, by_energy;
                 const auto equilibrium = reference::equilibrium::solve(
                     way.model, way.branch, a, {},
@@ -156,7 +156,7 @@ TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
                     EXPECT_TRUE(same(found.rows[k], model, points[k])) << where << ", row " << k;
                 expect_same(walk(ways, solver).points, points, where);
                 if (found.path.outcome != Outcome::converged) continue;
-                const auto a = asked_for(ways, 1);
+                const auto a = requested_parameters(ways, 1);
                 ASSERT_EQ(a.size(), points.size()) << where;
                 for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(points[k].load, a[k]) << where;
             }

@@ -22,6 +22,13 @@ EquilibriumPath accounted(const Model& model, double to, Leg leg) {
                                           .error_bound = true});
 }
 
+ErrorBoundSummary summary_of(std::span<const Equilibrium> points,
+                             const std::optional<ErrorBound>& tolerance = {}) {
+    ErrorBoundSummary summary;
+    for (const auto& point : points) add(summary, point, tolerance);
+    return summary;
+}
+
 // The squared stiffness is linear in the load only near the limit point: three points at a
 // twentieth of the branch predict the limit to a tenth of the remaining distance.
 TEST(Extrapolation, ALimitPointIsAnnouncedBeforeItIsMet) {
@@ -33,9 +40,9 @@ TEST(Extrapolation, ALimitPointIsAnnouncedBeforeItIsMet) {
             const auto gone = stiffness_gone_near(path.points);
             ASSERT_TRUE(gone.has_value()) << name(leg);
             EXPECT_NEAR(*gone, -211.5166, 0.1 * (211.5166 + to)) << name(leg) << " from " << to;
-            EXPECT_TRUE(outlook(path.points, ParameterUnit::newton)
+            EXPECT_TRUE(stiffness_message(path.points, ParameterUnit::newton)
                             .starts_with("at this rate the stiffness is gone near -2"))
-                << outlook(path.points, ParameterUnit::newton);
+                << stiffness_message(path.points, ParameterUnit::newton);
         }
 }
 
@@ -57,14 +64,14 @@ TEST(Extrapolation, IsToldSinceThePointFromWhichOnItIsSaid) {
     const Model model = compile(support::scene("two_spring_arch"));
     const auto path = accounted(model, -211, Leg::series);
     const std::span<const Equilibrium> points(path.points);
-    const auto from = announced_from(points);
+    const auto from = summary_of(points).announced_from;
     ASSERT_TRUE(from.has_value());
     for (std::size_t k = 3; k <= points.size(); ++k)
-        EXPECT_EQ(!outlook(points.first(k), ParameterUnit::newton).empty(),
+        EXPECT_EQ(!stiffness_message(points.first(k), ParameterUnit::newton).empty(),
                   points[k - 1].load <= *from)
             << points[k - 1].load;
     EXPECT_LT(-211, *from);
-    EXPECT_FALSE(announced_from(accounted(model, 150, Leg::series).points).has_value());
+    EXPECT_FALSE(summary_of(accounted(model, 150, Leg::series).points).announced_from.has_value());
 }
 
 // Both sides of a branch start at a = 0: the prediction of the first is reported although the
@@ -75,7 +82,7 @@ TEST(Extrapolation, OfABranchIsToldWayByWay) {
     for (const double to : {-211., 150.})
         for (const auto& point : accounted(model, to, Leg::series).points) add(error_bound, point);
     EXPECT_EQ(error_bound.ways.size(), 2u);
-    const auto lines = told(error_bound, ParameterUnit::newton);
+    const auto lines = messages(error_bound, ParameterUnit::newton);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_TRUE(lines[0].starts_with("at this rate the stiffness is gone near -211.")) << lines[0];
     EXPECT_NE(lines[0].find(", announced from -"), std::string::npos) << lines[0];
@@ -95,51 +102,56 @@ TEST(Extrapolation, IsToldByWhoeverCompares) {
         const Comparison all = compare(model, options);
         const auto& runs = all.branches[0].runs;
         const LegRun& equilibrium = runs[1];
-        ASSERT_EQ(equilibrium.told.size(), 1u) << method;
+        ASSERT_EQ(equilibrium.messages.size(), 1u) << method;
         EXPECT_TRUE(
-            equilibrium.told[0].starts_with("at this rate the stiffness is gone near -211."))
-            << equilibrium.told[0];
+            equilibrium.messages[0].starts_with("at this rate the stiffness is gone near -211."))
+            << equilibrium.messages[0];
         const LegRun alone = run(model, model.branches[0], Leg::equilibrium);
-        EXPECT_TRUE(alone.told.empty());
+        EXPECT_TRUE(alone.messages.empty());
         EXPECT_EQ(alone.counts.factorisations, equilibrium.counts.factorisations);
         EXPECT_EQ(alone.counts.evaluations, equilibrium.counts.evaluations);
         EXPECT_EQ(alone.curve.a, equilibrium.curve.a);
         if (std::string(method) != "series") {
-            EXPECT_TRUE(runs[0].told.empty()) << method;
+            EXPECT_TRUE(runs[0].messages.empty()) << method;
         } else {
-            EXPECT_FALSE(runs[0].told.empty()) << method;  // the series predicts it too
+            EXPECT_FALSE(runs[0].messages.empty()) << method;  // the series predicts it too
         }
     }
     const Comparison bushing = compare(compile(support::scene("single_bushing")));
-    for (const auto& run : bushing.branches[0].runs) EXPECT_TRUE(run.told.empty()) << run.told[0];
+    for (const auto& run : bushing.branches[0].runs)
+        EXPECT_TRUE(run.messages.empty()) << run.messages[0];
 }
 
 TEST(Extrapolation, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {
-    const auto promise = promised(*recursive::find_method("adaptive"), 1);
-    ASSERT_TRUE(promise.has_value());
-    EXPECT_EQ(promise->length, recursive::Adaptive{}.length_tolerance);
-    EXPECT_FALSE(promised(*recursive::find_method("published"), 1).has_value());
+    const auto tolerance = tolerance_of_method(*recursive::find_method("adaptive"), 1);
+    ASSERT_TRUE(tolerance.has_value());
+    EXPECT_EQ(tolerance->length, recursive::Adaptive{}.length_tolerance);
+    EXPECT_FALSE(tolerance_of_method(*recursive::find_method("published"), 1).has_value());
     std::vector<Equilibrium> points(3);
     for (std::size_t k = 0; k < 3; ++k)
         points[k].load = 1e3 * static_cast<double>(k),
-        points[k].bound = {promise->length, promise->angle};
-    EXPECT_EQ(unkept(points, *promise, ParameterUnit::newton), "");
+        points[k].bound = {tolerance->length, tolerance->angle};
+    const auto text = [&] {
+        return exceeded_bounds(summary_of(points, tolerance), *tolerance, ParameterUnit::newton);
+    };
+    EXPECT_EQ(text(), "");
     points[2].bound.length *= 2;
-    EXPECT_TRUE(unkept(points, *promise, ParameterUnit::newton)
-                    .starts_with("promises 0.01 mm and 0.001 deg, which 1 of 3 points do not keep "
-                                 "by their own account: "
-                                 "within 0.02 mm and 0.001 deg at 2000 N"))
-        << unkept(points, *promise, ParameterUnit::newton);
+    EXPECT_TRUE(
+        text().starts_with("promises 0.01 mm and 0.001 deg, which 1 of 3 points do not keep "
+                           "by their own account: "
+                           "within 0.02 mm and 0.001 deg at 2000 N"))
+        << text();
     points[1].bound = {};
     EXPECT_TRUE(
-        unkept(points, *promise, ParameterUnit::newton)
-            .ends_with("; of 1 of 3 points no account can be given: nothing is promised of them"))
-        << unkept(points, *promise, ParameterUnit::newton);
+        text().ends_with("; of 1 of 3 points no account can be given: nothing is promised of them"))
+        << text();
 }
 
 TEST(Extrapolation, NothingIsAnnouncedOfAStiffnessThatStaysOrThatNobodyTold) {
     const Model model = compile(support::scene("two_spring_arch"));
-    EXPECT_EQ(outlook(accounted(model, 150, Leg::equilibrium).points, ParameterUnit::newton), "");
+    EXPECT_EQ(
+        stiffness_message(accounted(model, 150, Leg::equilibrium).points, ParameterUnit::newton),
+        "");
     const auto untold = walk(sides_of(model, model.branches[0]), {.leg = Leg::recursive});
     EXPECT_FALSE(stiffness_gone_near(untold.points).has_value());
     EXPECT_FALSE(stiffness_gone_near({}).has_value());

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/comparison/legs.hpp"
 #include "compare/studies/study.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
@@ -137,7 +138,7 @@ TEST(SecondReference, IsTheSeriesWhereTheSceneIsTooLargeAndTheEnergyLegBearsWitn
     EXPECT_NE(branch.not_asked.find("operations for 840 coordinates"), std::string::npos)
         << branch.not_asked;
     EXPECT_EQ(branch.second, Leg::series);
-    EXPECT_TRUE(energy_bears_witness(branch));
+    EXPECT_TRUE(energy_judges_states(branch));
     const Residuals left = witness(branch);
     EXPECT_TRUE(std::isfinite(left.force) && left.force <= branch.bounds.residual_force)
         << left.force;
@@ -174,7 +175,7 @@ TEST(SecondReference, AWitnessThatCannotJudgeIsNoPass) {
 // Without an energy the energy leg judges nothing.
 TEST(SecondReference, WithoutEnergyThereIsNoWitness) {
     const Comparison found = compare(compile(follower()));
-    EXPECT_FALSE(energy_bears_witness(found.branches[0]));
+    EXPECT_FALSE(energy_judges_states(found.branches[0]));
 }
 
 }  // namespace

@@ -53,32 +53,6 @@ TEST(Rates, AreTheDerivativesOfTheOutputs) {
     }
 }
 
-TEST(Rates, ParameterForAnOutputIsTheInverseOfTheOutputForAParameter) {
-    for (const char* name : {"chrono_mcpherson", "chrono_mcpherson_preload", "pinned_bar",
-                             "pendulum", "two_spring_arch"}) {
-        const Model model = compile(support::scene(name));
-        const auto all = channels(model);
-        for (const auto& branch : model.branches) {
-            const auto path = follow(model, branch);
-            const auto sampled = curve(model, all, branch, sample(model, path, branch, 20).points);
-            const Channel& by = all[static_cast<std::size_t>(default_abscissa(all, sampled))];
-            const auto read = [&](auto place) {
-                return compare::evaluate(model, {&by, 1}, evaluate(model, branch, path, place))
-                    .front();
-            };
-            for (const double share : {0.0, 1e-6, 0.2, 0.7, 0.999, 1.0}) {
-                const double there = read(*find(path, share * branch.to));
-                const auto place = place_at(model, by, branch, path, there);
-                ASSERT_TRUE(place) << name << " " << share;
-                EXPECT_NEAR(read(*place), there, 1e-9) << name << " " << share;
-            }
-            EXPECT_FALSE(place_at(model, by, branch, path, 1e5)) << name;
-            EXPECT_FALSE(place_at(model, by, branch, path, -1e5)) << name;
-            EXPECT_FALSE(place_at(model, by, branch, path, std::nan(""))) << name;
-        }
-    }
-}
-
 TEST(OrderStudy, ErrorStaysWithinWhatWasTold) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     OrderOptions options;

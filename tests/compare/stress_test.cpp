@@ -76,7 +76,7 @@ TEST(Stress, AnAnswerThatTheTellingChangesIsWrong) {
     const Trial lie{
         "pendulum",
         "moved",
-        {.label = "not moved at all", .scene = scene, .transforms = Retelling{.t = {1e-3, 0, 0}}}};
+        {.label = "not moved at all", .scene = scene, .transforms = Transform{.t = {1e-3, 0, 0}}}};
     const Survival survival = stress(std::vector{itself, lie});
     ASSERT_FALSE(survival.cells.empty());
     for (const auto& cell : survival.cells)

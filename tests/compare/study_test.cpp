@@ -218,16 +218,5 @@ TEST(Study, ABranchThatMovesNothingIsNotStudied) {
         << s.inconclusive[0];
 }
 
-TEST(Study, IsTheSameFromRunToRun) {
-    const Model model = compile(support::scene("chrono_mcpherson"));
-    const auto a = study(model, options()), b = study(model, options());
-    for (std::size_t c = 0; c < a.channels.size(); ++c) {
-        EXPECT_EQ(a.branches[0].methods[0].equal_parameter[c].gap,
-                  b.branches[0].methods[0].equal_parameter[c].gap);
-        EXPECT_EQ(a.branches[0].methods[0].equal_abscissa[c].end.limit,
-                  b.branches[0].methods[0].equal_abscissa[c].end.limit);
-    }
-}
-
 }  // namespace
 }  // namespace elastocheck::compare

@@ -1,11 +1,12 @@
 // Trim: closed forms, equilibrium after the trim, and all ill-posed or unreachable cases.
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>
 
+#include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/read_scene.hpp"

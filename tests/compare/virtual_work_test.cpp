@@ -21,8 +21,8 @@
 #include <limits>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/trim.hpp"
+#include "elastocheck/channels.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/deviation/tolerance.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/tables/judgement.hpp"
 #include "tests/reports/command.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/document/document.hpp"
 #include "reports/page/report/report.hpp"

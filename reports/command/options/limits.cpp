@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
 #include "models/branch.hpp"
 
 namespace elastocheck::reports {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"

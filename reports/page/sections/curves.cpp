@@ -51,7 +51,7 @@ std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
         } else {  // the driving force instead of the load
             for (const auto& c : channels_of(scene))
                 for (const auto& moved : sweep.branches.front()["drivers"]["moved"].texts())
-                    if (c.name.starts_with(moved + ".drive_"))
+                    if (c.drive && c.name.starts_with(moved + "."))
                         outputs.push_back({slug(c.name), c.label(), c.heading(), c.name});
         }
     }

@@ -85,15 +85,14 @@ json force_words(const Field& scene) {
         for (const auto& channel : channels_of(scene)) {
             if (channel.kinematic) continue;
             const auto d = branch["deviation"]["at_equal_parameter"]["channels"].find(channel.name);
-            const bool drive = channel.name.find(".drive_") != channel.name.npos;
-            if (!d || (of_drive && !drive)) continue;
+            if (!d || (of_drive && !channel.drive)) continue;
             const double max = (*d)["max"].number();
-            if (max <= 1e-6 || (drive == of_drive && max <= most)) continue;
-            most = max, of_drive = drive;
+            if (max <= 1e-6 || (channel.drive == of_drive && max <= most)) continue;
+            most = max, of_drive = channel.drive;
             words = {{"value", quantity(max, channel.unit)},
                      {"channel", channel.label()},
                      {"share", percent(max / (*d)["range"].number())},
-                     {"drive", drive}};
+                     {"drive", of_drive}};
         }
     return words;
 }

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/trim.hpp"
+#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"

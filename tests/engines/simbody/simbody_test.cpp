@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/compile/parts.hpp"
 #include "tests/engines/simbody/engine.hpp"
 #include "tests/support/command.hpp"
@@ -284,7 +284,7 @@ TEST(SimbodyCandidate, TellsEveryBodyAtEveryStepFromEndToEnd) {
     ASSERT_EQ(loads.size(), 2u);
     for (const auto& [name, told] : loads) {
         const auto branch = std::ranges::find(model.branches, name, &Branch::name);
-        const auto asked = compare::asked_for(compare::sides_of(model, *branch, 4), 1);
+        const auto asked = compare::requested_parameters(compare::sides_of(model, *branch, 4), 1);
         EXPECT_EQ(told, asked) << name;
     }
 }

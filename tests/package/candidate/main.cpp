@@ -1,7 +1,7 @@
-#include <elastocheck/compare/candidate.hpp>
-#include <elastocheck/compare/trim.hpp>
-#include <elastocheck/models/compile.hpp>
-#include <elastocheck/models/reader/scene_file.hpp>
+#include <elastocheck/candidate.hpp>
+#include <elastocheck/compile.hpp>
+#include <elastocheck/read_scene.hpp>
+#include <elastocheck/trim.hpp>
 #include <iostream>
 
 using namespace elastocheck;

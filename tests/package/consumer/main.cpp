@@ -1,6 +1,6 @@
-#include <elastocheck/models/compile.hpp>
-#include <elastocheck/models/reader/scene_file.hpp>
-#include <elastocheck/recursive/solve.hpp>
+#include <elastocheck/compile.hpp>
+#include <elastocheck/read_scene.hpp>
+#include <elastocheck/recursive.hpp>
 #include <iostream>
 
 int main(int, char** arguments) {

@@ -1,7 +1,8 @@
-#include <elastocheck/compare/legs.hpp>
-#include <elastocheck/compare/trim.hpp>
-#include <elastocheck/models/compile.hpp>
-#include <elastocheck/models/reader/scene_file.hpp>
+#include <elastocheck/channels.hpp>
+#include <elastocheck/compile.hpp>
+#include <elastocheck/legs.hpp>
+#include <elastocheck/read_scene.hpp>
+#include <elastocheck/trim.hpp>
 #include <iostream>
 
 int main(int, char** arguments) {

@@ -1,11 +1,11 @@
 // A block on a vertical slide and a spring, built in code: 1 kN/m lets it sink by 10 mm under 10 N.
 #include <cmath>
-#include <elastocheck/models/compile.hpp>
-#include <elastocheck/recursive/solve.hpp>
+#include <elastocheck/compile.hpp>
+#include <elastocheck/recursive.hpp>
 #include <iostream>
 
-#if __has_include(<include/elastocheck/compile.hpp>) || __has_include(<include/elastocheck/recursive.hpp>)
-#error "headers of the house are on the path without elastocheck/"
+#if __has_include(<compile.hpp>) || __has_include(<models/scenes/README.md>)
+#error "headers are on the path without elastocheck/"
 #endif
 
 using namespace elastocheck;

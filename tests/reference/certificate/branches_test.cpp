@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/equilibrium.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "tests/support/scenes.hpp"

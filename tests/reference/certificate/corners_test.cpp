@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/state.hpp"

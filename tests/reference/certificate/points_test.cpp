@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "reference/certificate/certificate.hpp"
 #include "tests/support/scenes.hpp"
@@ -33,7 +33,7 @@ std::vector<Walked> walked(const std::string& scene, int points,
                 compare::SolverSettings solver;
                 solver.leg = leg;
                 const EquilibriumPath path = compare::walk(way, solver);
-                if (compare::is_not_asked(path.outcome)) continue;
+                if (compare::is_not_applicable(path.outcome)) continue;
                 EXPECT_EQ(path.outcome, Outcome::converged)
                     << scene << " " << way.name << " " << path.detail;
                 all.push_back({way, leg, path.points});

@@ -2,8 +2,8 @@
 // of all legs.
 #pragma once
 
-#include <array>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,37 +33,36 @@ enum class Unit {
     deg_per_100Nm,
     percent,
 };
-inline constexpr std::array all_units{Unit::mm,
-                                      Unit::deg,
-                                      Unit::newton,
-                                      Unit::newton_metre,
-                                      Unit::none,
-                                      Unit::deg_per_m,
-                                      Unit::deg_per_100mm,
-                                      Unit::mm_per_100mm,
-                                      Unit::deg_per_mm,
-                                      Unit::deg_per_deg,
-                                      Unit::newton_per_mm,
-                                      Unit::deg_per_kN,
-                                      Unit::deg_per_100Nm,
-                                      Unit::percent};
-const char* symbol(Unit unit);     // "mm", ..., "-", "deg/kN"
-double in_unit(Unit unit);         // factor from SI (m, rad, N, N·m, 1) to this unit
+const char* symbol(Unit unit);  // "mm", ..., "-", "deg/kN"
+double in_unit(Unit unit);      // factor from SI (m, rad, N, N·m, 1) to this unit
+std::optional<Unit> find_unit(std::string_view symbol);
 Unit unit_of(ParameterUnit unit);  // display unit of a branch parameter
 
 // ---- What a channel reads, one type each.
 
+enum class ChannelKind {
+    motion,    // of the configuration alone: a position or an angle
+    drive,     // effort of a driver
+    reaction,  // of a joint, or of several together
+    element,   // deformation or force of an element, axial force of a link
+    characteristic,
+};
+const char* name(ChannelKind kind);  // "motion", ...
+
 // sign (p_axis - counted_from)
 struct Coordinate {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     Point at;
     int axis = 0;             // 0 x, 1 y, 2 z
     double counted_from = 0;  // [m]
     int sign = +1;
 };
 struct Toe {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     std::size_t wheel = 0;  // position in Model::wheels
 };
 struct Camber {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     std::size_t wheel = 0;
 };
 // Position of a wheel's steering axis in the road plane, the horizontal plane through the contact
@@ -78,6 +77,7 @@ struct Camber {
 //
 // All four are undefined (NaN) for an axis within 0.1 rad of the road plane.
 struct Steering {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     enum class Figure {
         caster,
         kingpin_inclination,
@@ -88,6 +88,7 @@ struct Steering {
 };
 // Track: y of the left contact patch minus that of the right.
 struct Track {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     std::size_t left = 0, right = 0;  // positions in Model::wheels
 };
 // Ackermann fraction: how nearly the perpendiculars to two steered wheels meet on the line of the
@@ -97,6 +98,7 @@ struct Track {
 //
 // Undefined (NaN) unless both wheels turn the same way by 2 deg or more: 0/0 straight ahead.
 struct Ackermann {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     std::size_t left = 0, right = 0;
     // wheelbase l over j: lateral distance between the points where the steering axes meet the road
     // in the design position, or between the patches for a wheel without an axis
@@ -104,12 +106,14 @@ struct Ackermann {
 };
 // Reduction of the distance between two points since the design position.
 struct Compression {
+    static constexpr ChannelKind kind = ChannelKind::motion;
     Point i, j;
     double drawn = 0;  // distance in the design position [m]
 };
 // Deformation, or elastic force, of an element in its own axes; evaluated only by
 // compare/comparison/elements.hpp, which needs the branch.
 struct OfElement {
+    static constexpr ChannelKind kind = ChannelKind::element;
     int element = 0;  // position in Model::elastics
     int component =
         0;  // 0-5 along and about x y z, of a spring 0; then 6-11 the conjugate forces and moments
@@ -117,6 +121,7 @@ struct OfElement {
 // Axial force of a joint that fixes the distance of two points, positive in tension:
 // F · (p_j - p_i) / |p_j - p_i|, F on its body i.
 struct AxialForce {
+    static constexpr ChannelKind kind = ChannelKind::element;
     int joint = 0;       // position in Model::joints
     int constraint = 0;  // position in Model::constraints, a DistanceBetween
 };
@@ -126,22 +131,26 @@ struct AxialForce {
 //   point i above plane j           F · n_j                           pushes i along the normal
 //   direction i at an angle in j    M · (x_j × y_j)                   turns i from x_j towards y_j
 struct Effort {
+    static constexpr ChannelKind kind = ChannelKind::drive;
     int joint = 0;  // position in Model::joints
 };
 // Component of the wrench of a joint on its body i, about the joint's point: 0-2 force, 3-5 moment.
 struct Reaction {
+    static constexpr ChannelKind kind = ChannelKind::reaction;
     int joint = 0;
     int component = 0;
 };
 // Total wrench of several joints on one body about the point of the first: it stays determined
 // where redundant joints share a load in an undetermined way.
 struct Total {
+    static constexpr ChannelKind kind = ChannelKind::reaction;
     std::vector<int> joints;
     BodyId on = ground;
     int component = 0;
 };
 // Kinematics or compliance characteristic of a state and its response (characteristics.hpp).
 struct Characteristic {
+    static constexpr ChannelKind kind = ChannelKind::characteristic;
     std::size_t entry = 0;  // position in the list of characteristics
     std::size_t of = 0;     // index of the wheel, spring or damper
 };
@@ -161,7 +170,8 @@ struct Channel {
     // meaning of an undefined value; empty where the channel always has a value
     std::string undefined = {};
 
-    bool kinematic() const;  // of the configuration alone: a position or an angle
+    ChannelKind kind() const;
+    bool kinematic() const { return kind() == ChannelKind::motion; }
     // a quotient: `undefined` at a zero of its denominator, and large beside it
     bool may_be_undefined() const;
     std::vector<int> joints() const;  // joints whose wrenches it reads

@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/comparison/legs.hpp"
-#include "compare/outputs/channels.hpp"
+#include "elastocheck/channels.hpp"
+#include "elastocheck/legs.hpp"
 #include "elastocheck/scene.hpp"
 
 namespace elastocheck::compare {
