@@ -8,15 +8,15 @@
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
-#include "models/curve.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
+#include "models/laws.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
 constexpr double nothing = 1e-9;  // [mm], [deg]: smaller spreads are rounding
 
-bool is_zero(const ScalarLaw& law) { return !(steepest(law) > 0); }
+bool is_flat(const ScalarLaw& law) { return !(steepest(law) > 0); }
 
 // Number of the six deformations that have a stiffness.
 int axes_resisted(const SpatialLaw& law) {
@@ -27,7 +27,7 @@ int axes_resisted(const SpatialLaw& law) {
                    [](const PerAxis& u) {
                        return static_cast<int>(std::ranges::count_if(
                            u.axis,
-                           [](const ScalarLaw& law_of_axis) { return !is_zero(law_of_axis); }));
+                           [](const ScalarLaw& law_of_axis) { return !is_flat(law_of_axis); }));
                    }},
         law);
 }
@@ -66,9 +66,9 @@ std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::
 }  // namespace
 
 bool is_reformulated(const Elastic& elastic) {
-    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-    return bushing != nullptr && bushing->formulation.frame != Formulation::Frame::middle &&
-           axes_resisted(bushing->law) > 1;
+    const auto* formulation = member<Formulation>(elastic.kind);
+    return formulation != nullptr && formulation->frame != Formulation::Frame::middle &&
+           axes_resisted(*member<SpatialLaw>(elastic.kind)) > 1;
 }
 
 Scene reformulated(const Scene& scene, const Formulation& formulation) {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -129,34 +129,36 @@ using Written = std::unordered_map<std::string, Formulation>;
 Written written_formulations(const Scene& scene) {
     Written written;
     for (const auto& elastic : scene.elastics)
-        if (const auto* bushing = std::get_if<Bushing>(&elastic.kind))
-            written.emplace(elastic.name, bushing->formulation);
+        if (const auto* formulation = member<Formulation>(elastic.kind))
+            written.emplace(elastic.name, *formulation);
     return written;
 }
 
 bool is_beam(const Elastic& elastic) {
-    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::middle &&
-           std::holds_alternative<LinearStiffness>(bushing->law);
+    const auto* formulation = member<Formulation>(elastic.kind);
+    return formulation != nullptr && formulation->frame == Formulation::Frame::middle &&
+           matrix_of(*member<SpatialLaw>(elastic.kind)) != nullptr;
 }
 
-std::string bushing_words(const Written& written, const Elastic& elastic, const Bushing& bushing) {
-    const Resisted axes = resisted(bushing.law);
+std::string bushing_words(const Written& written, const Elastic& elastic, const SpatialLaw& law) {
+    const Resisted axes = resisted(law);
     if (elastic.active_only_where_driven && axes.all == std::vector<std::size_t>{2})
         return fmt::format("tyre, {}, stands on the branches that drive its road",
-                           law_words(bushing.law, 2, lengths));
+                           law_words(law, 2, lengths));
     if (axes.all == std::vector<std::size_t>{5})
-        return "torsion spring, " + law_words(bushing.law, 5, angles);
+        return "torsion spring, " + law_words(law, 5, angles);
     std::string text = is_beam(elastic) ? "beam" : "bushing";
     if (!is_beam(elastic)) {
         const auto as_written = written.find(elastic.name);
         text += formulation_words(as_written != written.end() ? as_written->second
-                                                              : bushing.formulation);
+                                                              : *member<Formulation>(elastic.kind));
     }
     for (const std::size_t k : axes.curves)
-        text += fmt::format(", {}: {}", components[k],
-                            law_words(bushing.law, k, k < 3 ? lengths : angles));
-    if (!bushing.undeformed.isZero(0)) text += ", undeformed elsewhere than drawn";
+        text += fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angles));
+    bool elsewhere = false;
+    each_member(elastic.kind,
+                [&](Deformation<const Vector6> e) { elsewhere = !e.value.isZero(0); });
+    if (elsewhere) text += ", undeformed elsewhere than drawn";
     return text;
 }
 
@@ -176,18 +178,11 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
     const auto body = [&](BodyId b) {
         return b == ground ? std::string("ground") : model.bodies[static_cast<std::size_t>(b)].name;
     };
-    const auto ends = [](const Elastic& elastic) {
-        return std::visit(
-            [](const auto& e) {
-                return std::pair{e.i.body, e.j.body};
-            },
-            elastic.kind);
-    };
     const Written written = written_formulations(scene);
     std::vector<ElementLine> lines;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& elastic = model.elastics[k];
-        const auto [i, j] = ends(elastic);
+        const auto [i, j] = ends(elastic.kind);
         std::size_t last = k;  // of a chain
         const auto [name, number] = stem(elastic.name);
         while (number > 0 && is_beam(elastic) && last + 1 < model.elastics.size() &&
@@ -199,17 +194,18 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
             const Elastic& end = model.elastics[last];
             lines.push_back({fmt::format("{} ... {}", elastic.name,
                                          last - k + static_cast<std::size_t>(number)),
-                             body(i) + " - " + body(ends(end).second),
+                             body(i) + " - " + body(ends(end.kind).j),
                              fmt::format("beam in {} segments", last - k + 1)});
             k = last;
             continue;
         }
-        lines.push_back(
-            {elastic.name, body(i) + " - " + body(j),
-             std::visit(
-                 overloaded{[](const AxialSpring& e) { return spring_words(e.law); },
-                            [&](const Bushing& e) { return bushing_words(written, elastic, e); }},
-                 elastic.kind)});
+        std::string words;
+        each_member(elastic.kind,
+                    overloaded{[&](const ScalarLaw& law) { words = spring_words(law); },
+                               [&](const SpatialLaw& law) {
+                                   words = bushing_words(written, elastic, law);
+                               }});
+        lines.push_back({elastic.name, body(i) + " - " + body(j), words});
     }
     return lines;
 }

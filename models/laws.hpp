@@ -1,0 +1,38 @@
+// Data of force laws: values, scaling, reversal, and the curves of an element.
+#pragma once
+
+#include <functional>
+
+#include "elastocheck/mechanism.hpp"
+
+namespace elastocheck {
+
+// f(x), for compile() and the reader, which need the force at the design position. Each leg has its
+// own evaluation.
+double force(const ScalarLaw& law, double x);
+
+// No force at any deformation.
+bool is_zero(const ScalarLaw& law);
+bool is_zero(const SpatialLaw& law);
+
+// f(x) → -f(-x): the law for the opposite sign of the deformation.
+Curve reversed(const Curve& curve);
+ScalarLaw reversed(const ScalarLaw& law);
+// The law for deformations and forces multiplied by `signs`, each 1 or -1.
+SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
+
+// The law for a deformation `stretch` times and a force `force` times as large:
+// f'(x) = force · f(x / stretch). A full matrix remains symmetric: its coupling terms take the
+// square roots of the factors of both axes.
+ScalarLaw scaled(const ScalarLaw& law, double stretch, double force);
+SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
+
+// Calls f for every number of a law; the entries of a symmetric matrix once each.
+void each_number(ScalarLaw& law, const std::function<void(double&)>& f);
+void each_number(SpatialLaw& law, const std::function<void(double&)>& f);
+
+// The same bushing with its markers i and j swapped; deformations, preload and undeformed offset
+// change sign. A frame on j becomes a frame on i and vice versa.
+Bushing markers_swapped(const Bushing& bushing);
+
+}  // namespace elastocheck
