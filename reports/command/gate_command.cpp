@@ -174,14 +174,13 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
     if (was.numbers && is.numbers) scene.changed = compare::changes(*was.numbers, *is.numbers);
     if (was.input_hash == is.input_hash) return;
-    const char* what =
-        !was.numbers || !is.numbers
-            ? "; which of its numbers changed is not known, they are kept from the next --accept on"
-        : scene.changed.empty() ? "; none of its numbers changed"
-                                : "";
-    scene.notes.push_back(
-        fmt::format("the scene file is not the one that was accepted ({}, now {}){}",
-                    was.input_hash, is.input_hash, what));
+    const char* what = !was.numbers || !is.numbers
+                           ? "; the changed numbers are unknown (this older baseline does not "
+                             "contain the numbers of the scene)"
+                       : scene.changed.empty() ? "; none of its numbers changed"
+                                               : "";
+    scene.notes.push_back(fmt::format("the scene file differs from the accepted one ({}, now {}){}",
+                                      was.input_hash, is.input_hash, what));
 }
 
 // Judges by the default tolerance, independent of the baseline, since no accepted result applies to
@@ -216,7 +215,7 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
                      .is = worst.max});
         if (offences.empty())
             scene.verdict.reasons.push_back(
-                fmt::format("candidate '{}': its states miss the constraints", judgement.name));
+                fmt::format("candidate '{}': its states violate the constraints", judgement.name));
         scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(),
                                       offences.end());
     }
@@ -235,7 +234,7 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
             // A baseline made in the same run would always agree.
             if (says_yes("CI"))
                 if (const std::string why = not_committed(task.baseline); !why.empty())
-                    scene.verdict.reasons.push_back(fmt::format("nobody can have reviewed {}: {}",
+                    scene.verdict.reasons.push_back(fmt::format("the baseline {} is unreviewed: {}",
                                                                 task.baseline.string(), why));
         } else {
             compile(read_scene(task.scene,
@@ -285,8 +284,7 @@ int accept_scene(const Task& task, const GateOptions& options) {
                                             name(s.quantity), s.channel));
     if (now.series.empty()) worthless.emplace_back("nothing was measured");
     if (!worthless.empty()) {
-        print_error("elastocheck: {}: nothing is accepted: {}\n", scene.file,
-                    fmt::join(worthless, "; "));
+        print_error("elastocheck: {}: not accepted: {}\n", scene.file, fmt::join(worthless, "; "));
         return could_not_judge;
     }
     is.baseline.reason = options.reason;
@@ -332,15 +330,12 @@ int accept_scene(const Task& task, const GateOptions& options) {
 int accept(const GateOptions& options) {
     if (says_yes("CI"))
         throw std::invalid_argument(
-            "--accept: not where CI is set: a baseline is accepted by a person, and reviewed");
+            "--accept: not in CI (variable CI is set): a person accepts a baseline");
     if (blank(options.reason))
-        throw std::invalid_argument("--accept: needs --reason, in words for whoever reviews it");
-    if (!options.from.empty())
-        throw std::invalid_argument("--accept: only what was measured here, not --from");
-    if (options.as_json)
-        throw std::invalid_argument("--accept: not with --json: what changes is for a person");
-    if (!options.settings.empty())
-        throw std::invalid_argument("--accept: only the scene as its file says, not with --set");
+        throw std::invalid_argument("--accept: needs --reason, a text for the reviewer");
+    if (!options.from.empty()) throw std::invalid_argument("--accept: not with --from");
+    if (options.as_json) throw std::invalid_argument("--accept: not with --json");
+    if (!options.settings.empty()) throw std::invalid_argument("--accept: not with --set");
     int code = fine;
     const auto all = tasks(options);
     for (const auto& task : all) {
@@ -353,11 +348,10 @@ int accept(const GateOptions& options) {
 int gate(const GateOptions& options) {
     check(options.candidate, options.settings);
     if (options.candidate.wanted() && options.accept)
-        throw std::invalid_argument(
-            "--candidate: not with --accept: nothing of a candidate is kept");
+        throw std::invalid_argument("--candidate: not with --accept");
     if (!options.candidate.files.empty() && options.scenes.size() != 1)
         throw std::invalid_argument(
-            "--candidate: a file is of one scene; name it, or give --candidate-command");
+            "--candidate: a file belongs to one scene; give the SCENE, or --candidate-command");
     if (options.accept) return accept(options);
     const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
@@ -371,9 +365,9 @@ int gate(const GateOptions& options) {
     std::vector<GatedScene> scenes;
     for (const auto& task : tasks(options)) {
         scenes.push_back(gate_scene(task, options));
-        delivery.say(gate_table(scenes.back()));
+        delivery.print_text(gate_table(scenes.back()));
     }
-    delivery.say(gate_conclusion(scenes) + "\n");
+    delivery.print_text(gate_conclusion(scenes) + "\n");
     if (options.as_json) print_document(gate_document(scenes, provenance()));
     // GitHub reads them from either stream.
     if (says_yes("GITHUB_ACTIONS"))
@@ -405,14 +399,15 @@ Command gate_command() {
         {"--class", Text{&options->kind, one_of(kinds)},
          "tolerances: same-build, cross-build or physical (default: by how the builds differ)"},
         {"--from", Text{&options->from, a_file("*.json")},
-         "judge this measurement (a file like a baseline); nothing is solved"}};
+         "judge this measurement (a file like a baseline) without solving"}};
     add_candidate_options(list, options->candidate);
     list.push_back(json_option(options->as_json));
     list.push_back(
-        {"--accept", Flag{&options->accept}, "print what changed, then make it the baseline"});
-    list.push_back({"--reason", Text{&options->reason}, "why, in words; with --accept"});
-    return {"gate", "Judge scenes by their accepted baselines, for CI", std::move(list),
-            [options](const std::string&) { return gate(*options); }};
+        {"--accept", Flag{&options->accept}, "print the changes and write the new baseline"});
+    list.push_back(
+        {"--reason", Text{&options->reason}, "reason of the change, required with --accept"});
+    return {"gate", "Regression test of scenes against their accepted baselines, for CI",
+            std::move(list), [options](const std::string&) { return gate(*options); }};
 }
 
 }  // namespace elastocheck::reports

@@ -26,7 +26,6 @@
 #include "reports/files/provenance.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/json/json_cursor.hpp"
-#include "reports/page/gnuplot.hpp"
 
 namespace {
 
@@ -35,9 +34,9 @@ using namespace elastocheck::reports;
 
 std::string footer(const std::function<std::string(const std::string&)>& place) {
     return fmt::format(
-        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 "
+        "Exit codes: 0 success, 1 failed judgement or gate, 2 bad input, 3 could not judge, 4 "
         "internal error.\n"
-        "The scene files: {}\nWhat commands write: {}\n",
+        "Scene files: {}\nOutput files: {}\n",
         place("models/scenes/README.md"), place("reports/README.md"));
 }
 
@@ -47,16 +46,15 @@ int print_text(const std::string& text) {
 }
 
 Program program(const std::function<std::string(const std::string&)>& place) {
-    return {.name = "elastocheck",
-            .description =
-                "Can I trust my suspension solver? One scene, solved three ways that share nothing "
-                "but the "
-                "scene:\n"
-                "the linear recursive formula of Kang's paper, the full equilibrium equations, and "
-                "an energy "
-                "minimisation.",
-            .version = version_text(provenance()),
-            .footer = footer(place)};
+    return {
+        .name = "elastocheck",
+        .description =
+            "Verification of a suspension solver: one scene, solved by three independent methods:\n"
+            "the linear recursive formula of Kang's paper, the full equilibrium equations, and "
+            "an energy "
+            "minimisation.",
+        .version = version_text(provenance()),
+        .footer = footer(place)};
 }
 
 // The commands of the registry, and the two that print their description.
@@ -120,8 +118,6 @@ int main(int argc, char** argv) {
         return fail(bad_input, error.what());
     } catch (const MeasurementError& error) {
         return fail(bad_input, error.what());
-    } catch (const PlotError& error) {
-        return fail(bad_input, error.what());
         // loops of links, inaccessible folders
     } catch (const std::filesystem::filesystem_error& error) {
         return fail(bad_input,
@@ -129,7 +125,7 @@ int main(int argc, char** argv) {
     } catch (const std::invalid_argument& error) {
         return fail(bad_input, error.what());
     } catch (const std::bad_alloc&) {
-        return fail(bad_input, "more memory was asked for than there is; take fewer steps");
+        return fail(bad_input, "not enough memory; use fewer steps");
     } catch (const std::exception& error) {
         return fail(bug, error.what());
     }

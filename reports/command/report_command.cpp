@@ -30,7 +30,6 @@
 #include "reports/files/terminal.hpp"
 #include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
-#include "reports/page/gnuplot.hpp"
 #include "reports/page/report/report.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
@@ -59,7 +58,6 @@ struct Request {
     std::string alarms;                    // JSON, results of `./dev mutate`
     std::string stress;                    // JSON, results of `elastocheck stress`
     std::string tolerance = "0.01mm,0.001deg,1%";
-    std::string figures = "svg";
     bool archive = false;
     bool as_json = false;  // write the answers as a document to standard output
     bool open = false;     // open the finished page in a browser
@@ -94,33 +92,36 @@ json solve_scene(const std::string& file, const Request& request) {
     const LoadedScene loaded = load_scene(file, request.settings);
     const Scene& scene = loaded.scene;
     const Model& model = loaded.model;
-    const auto tell = [&](std::string_view what) { progress(fmt::format("{}: {}", file, what)); };
+    const auto report_progress = [&](std::string_view what) {
+        progress(fmt::format("{}: {}", file, what));
+    };
     json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
     if (loaded.trim) add_trim(document, *loaded.trim);
 
     compare::Options options;
-    options.progress = tell;
+    options.progress = report_progress;
     const auto comparison = compare::compare(model, options);
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
-        add_formulations(document, compare::formulation_study(scene, 0, 1, tell), comparison);
+        add_formulations(document, compare::formulation_study(scene, 0, 1, report_progress),
+                         comparison);
     if (!request.measured.empty()) {
         add_measurement(document, read_whole(request.measured, largest_measurement),
                         request.measured, model, comparison, load_cases(request));
         if (compared_with_measurement(document) == 0)
-            reasons.push_back(fmt::format(
-                "no point of {} lies where the legs could be compared with it", request.measured));
+            reasons.push_back(
+                fmt::format("no point of {} is within the range of the legs", request.measured));
     }
 
     compare::StudyOptions study_options;
     study_options.methods.clear();
     for (const auto& method : recursive::methods)
         if (recursive::has_steps(method)) study_options.methods.push_back(method);
-    study_options.progress = tell;
+    study_options.progress = report_progress;
     const auto study = compare::study(model, study_options);
     add_gap(document, comparison, study);
-    document["convergence"] = study_json(study, compare::attribute_gap(model, tell));
+    document["convergence"] = study_json(study, compare::attribute_gap(model, report_progress));
     for (const auto& reason : study.inconclusive)
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 
@@ -128,17 +129,18 @@ json solve_scene(const std::string& file, const Request& request) {
     trade_options.tolerance =
         compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     if (request.archive) trade_options.rounds = 0;
-    trade_options.progress = tell;
+    trade_options.progress = report_progress;
     const auto trade = compare::trade(model, trade_options);
     document["trade"] = trade_json(trade);
     if (const json profile = recommended(model, trade); !profile.is_null())
         document["recommended"] = profile;
 
-    document["orders"] = table_json(order_table(compare::order_study(model, {.progress = tell})));
+    document["orders"] =
+        table_json(order_table(compare::order_study(model, {.progress = report_progress})));
 
     // `elastocheck trade` uses a million steps, which shows more round-off but takes half a minute.
     document["precision"] = precision_json(compare::precision_study(
-        model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
+        model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = report_progress}));
     if (request.candidate.wanted()) {
         document["candidates"] = json::array();
         const auto tolerance =
@@ -240,7 +242,6 @@ int report(const Request& request, const std::string& reproduce) {
         throw std::invalid_argument("--open: not with --archive, which has no page");
     const std::string opener = request.open ? browser() : "";
     Staging::check(request.folder);
-    run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
@@ -248,15 +249,12 @@ int report(const Request& request, const std::string& reproduce) {
     (void)load_cases(request);
     if (request.measured.empty() &&
         (request.branch_column != Request{}.branch_column || !request.cases.empty()))
-        throw std::invalid_argument(
-            "report: --branch-column and --case say how to read --measured; give a file");
+        throw std::invalid_argument("report: --branch-column and --case: only with --measured");
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
-        throw std::invalid_argument(
-            "report: --alarms belongs to what is solved; --from has it already");
+        throw std::invalid_argument("report: --alarms: not with --from");
     if (!request.stress.empty() && !request.from.empty())
-        throw std::invalid_argument(
-            "report: --stress belongs to what is solved; --from has it already");
+        throw std::invalid_argument("report: --stress: not with --from");
     const json stress = request.stress.empty() ? json() : read_stress(request.stress);
     const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
@@ -273,9 +271,8 @@ int report(const Request& request, const std::string& reproduce) {
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
-    const auto answers = write_report(
-        result, file, request.folder,
-        {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
+    const auto answers = write_report(result, file, request.folder,
+                                      {.archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
@@ -311,33 +308,31 @@ Command report_command() {
          "scene files (YAML)"},
         set_option(request->settings),
         {"--from", Text{&request->from, a_file("*.json")},
-         "draw from this result.json, without solving"},
+         "write the report from this result.json without solving"},
         {"-o,--output", Text{&request->folder, a_folder()},
          "folder for report.html, report.md, result.json, curves.csv, figures/", true},
         {"--tolerance", Text{&request->tolerance},
-         "accuracy asked for (default: 0.01mm,0.001deg,1%)"},
+         "required accuracy (default: 0.01mm,0.001deg,1%)"},
         {"--alarms", Text{&request->alarms, a_file("*.json")},
-         "results.json of seeded faults (./dev mutate), to show which alarms ring"},
+         "results.json of mutation tests (./dev mutate), shown as a section"},
         {"--stress", Text{&request->stress, a_file("*.json")},
-         "stress.json of `elastocheck stress`, to show what becomes of it at the extremes"},
+         "stress.json of `elastocheck stress`, shown as a section"},
         {"--measured", Text{&request->measured, a_file("*.csv")},
-         "CSV of measured curves, to draw over and compare with"},
+         "CSV of measured curves, for comparison"},
         {"--branch-column", Text{&request->branch_column},
-         "column of --measured that says which branch a point belongs to (default: branch)"},
+         "column of --measured with the branch of a point (default: branch)"},
         {"--case", TextList{&request->cases, TextList::Form::separate},
-         "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated"}};
+         "NAME=BRANCH: a name in that column and its branch of the scene; repeatable"}};
     add_candidate_options(options, request->candidate);
-    options.insert(options.end(), {{"--figures", Text{&request->figures, one_of({"svg", "pdf"})},
-                                    "svg (default), or pdf: PDF files beside the SVG"},
-                                   {"--archive", Flag{&request->archive},
-                                    "only what belongs in version control: README.md, numbers.csv, "
-                                    "figures/*.svg, without times"},
-                                   json_option(request->as_json),
-                                   {"--open", Flag{&request->open},
-                                    "then open the page: by $BROWSER, else by xdg-open"}});
-    return {"report", "Everything about one or more scenes as a page: verdict, figures, tables",
-            std::move(options),
-            [request](const std::string& line) { return report(*request, line); }};
+    options.insert(
+        options.end(),
+        {{"--archive", Flag{&request->archive},
+          "the form for version control: README.md, numbers.csv, figures/*.svg, without times"},
+         json_option(request->as_json),
+         {"--open", Flag{&request->open}, "open the page with $BROWSER or xdg-open"}});
+    return {
+        "report", "Write a report of one or more scenes as an HTML page: verdict, figures, tables",
+        std::move(options), [request](const std::string& line) { return report(*request, line); }};
 }
 
 }  // namespace elastocheck::reports

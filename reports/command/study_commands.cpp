@@ -102,7 +102,7 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
     for (const auto& text : request.files)
         if (text.find('=') == text.npos)
             throw std::invalid_argument(fmt::format(
-                "--candidate {}: how many steps it has is missing; allowed: 75={}", text, text));
+                "--candidate {}: the number of steps is missing; allowed: 75={}", text, text));
     if (!request.files.empty() && !request.command.empty())
         throw std::invalid_argument("converge: --candidate or --candidate-command, one of the two");
     const compare::Comparison outline = compare::outline(loaded.model);
@@ -177,8 +177,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
         study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every,
                                            progress);
     progress("");
-    delivery.say(tables(model, comparison));
-    if (study) delivery.say(formulation_text(*study, comparison));
+    delivery.print_text(tables(model, comparison));
+    if (study) delivery.print_text(formulation_text(*study, comparison));
     const auto tolerance = compare::parse_tolerance(request.within, compare::Asks::forces_too);
     const bool asked = request.within != CompareRequest{}.within;
     const auto judgement = compare::assess(model, comparison, tolerance, asked);
@@ -188,7 +188,7 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
                     {request.recursion.steps > 0 ? request.recursion.steps : steps_of(model)})) {
         candidates.push_back(
             judged(output, request.candidate, loaded, comparison, tolerance, asked));
-        delivery.say("\n" + candidate_text(candidates.back(), comparison));
+        delivery.print_text("\n" + candidate_text(candidates.back(), comparison));
     }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
@@ -209,11 +209,11 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
                 candidate_json(candidate, comparison, sentence(candidate, comparison)));
         deliver(delivery, std::move(part), std::move(files));
     }
-    delivery.say(sentence(judgement) + "\n");
+    delivery.print_text(sentence(judgement) + "\n");
     // a difference is a result of `compare`, as for the recursion; `judge` makes it an exit code
     bool judged_all = true;
     for (const auto& candidate : candidates) {
-        delivery.say(sentence(candidate, comparison) + "\n");
+        delivery.print_text(sentence(candidate, comparison) + "\n");
         judged_all = judged_all && candidate.verdict != compare::Grade::not_judged;
     }
     return judged_all && comparison.conclusive() && (!study || study->conclusive())
@@ -245,9 +245,10 @@ int converge(const std::string& file, const Settings& settings,
     if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
         orders = compare::order_study(model, {.progress = progress});
     progress("");
-    if (!options.methods.empty()) delivery.say(study_text(model, study, attribution));
-    delivery.say(order_text(order_table(orders)));
-    if (of_candidate) delivery.say("\nthe candidate: " + study_text(model, *of_candidate, {}));
+    if (!options.methods.empty()) delivery.print_text(study_text(model, study, attribution));
+    delivery.print_text(order_text(order_table(orders)));
+    if (of_candidate)
+        delivery.print_text("\nthe candidate: " + study_text(model, *of_candidate, {}));
     const bool conclusive = (!of_candidate || of_candidate->conclusive()) &&
                             (options.methods.empty() || study.conclusive()) &&
                             (orders.empty() || compare::conclusive(orders));
@@ -272,7 +273,7 @@ int converge(const std::string& file, const Settings& settings,
             std::ranges::copy(of_candidate->inconclusive, std::back_inserter(reasons));
         }
         if (!conclusive && reasons.empty())
-            reasons.emplace_back("no order of the series gave a number");
+            reasons.emplace_back("no order of the series gave a result");
         add_verdict(part, 0, reasons);
         deliver(delivery, std::move(part), std::move(files));
     }
@@ -284,7 +285,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     check(candidate, settings);
     if (!candidate.files.empty())
         throw std::invalid_argument(
-            "trade: a --candidate file says nothing of time; give --candidate-command");
+            "trade: a --candidate file has no time; give --candidate-command");
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
@@ -295,12 +296,12 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const compare::PrecisionStudy precision =
         compare::precision_study(model, {.progress = progress});
     progress("");
-    delivery.say(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
+    delivery.print_text(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
     std::optional<compare::Table> of_candidate;
     auto reasons = trade.inconclusive;
     if (candidate.wanted()) {
         of_candidate = price_of(candidate, file, loaded, options.tolerance, reasons);
-        delivery.say("\nthe candidate\n" + candidate_trade_text(*of_candidate));
+        delivery.print_text("\nthe candidate\n" + candidate_trade_text(*of_candidate));
     }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
@@ -341,8 +342,7 @@ Command inspect_command() {
     options.push_back({"--verbose", Flag{&given->verbose},
                        "long lists whole, and the size of the matrix, its order and its fill-in"});
     options.push_back(keep_all_option(given->keep_all));
-    return {"inspect",
-            "Show how a scene is understood: bodies, coordinates, constraints, idle modes",
+    return {"inspect", "Show the compiled scene: bodies, coordinates, constraints, idle modes",
             std::move(options), [given](const std::string& line) {
                 return inspect(given->scene, given->settings,
                                given->keep_all ? Detail::everything : Detail::required,
@@ -361,11 +361,10 @@ Command compare_command() {
     for (const auto& method : recursive::methods) methods.emplace_back(method.name);
     std::vector<Option> options = given->options();
     options.push_back(keep_all_option(given->keep_all));
-    options.push_back(
-        {"--formulations", Flag{&given->request.formulations},
-         "how much the outputs depend on the formulation of the bushings, in which tools differ"});
+    options.push_back({"--formulations", Flag{&given->request.formulations},
+                       "add the spread of the outputs over the bushing formulations of tools"});
     options.push_back({"--within", Text{&given->request.within},
-                       "accuracy that the verdict asks for: mm, deg, N, Nm, and % of the extent of "
+                       "required accuracy of the verdict: mm, deg, N, Nm, and % of the extent of "
                        "forces, moments "
                        "and rates (default: 0.01mm,0.001deg,1%)"});
     add_recursion_options(options, given->recursion);
@@ -376,7 +375,7 @@ Command compare_command() {
     options.push_back(every_option(given->request.every));
     options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
     add_candidate_options(options, given->request.candidate);
-    return {"compare", "Solve a scene all three ways and show how far apart they are",
+    return {"compare", "Solve a scene with all three methods and show the deviations",
             std::move(options), [given](const std::string& line) {
                 CompareRequest request = given->request;
                 request.recursion = recursion(given->recursion);
@@ -407,7 +406,9 @@ Command converge_command() {
         given->folder,
         "folder for result.json, convergence.csv, step_errors.csv and attribution.csv"));
     add_candidate_options(options, given->candidate);
-    return {"converge", "Split the recursion's error into steps, formulation and reference",
+    return {"converge",
+            "Convergence study: split the recursion's error into step error, formulation gap and "
+            "reference uncertainty",
             std::move(options), [given](const std::string& line) {
                 return converge(given->scene, given->settings, given->methods, given->steps,
                                 given->candidate, given->delivery(line));
@@ -422,12 +423,11 @@ Command trade_command() {
     const auto given = std::make_shared<Given>();
     std::vector<Option> options = given->options();
     options.push_back({"--tolerance", Text{&given->tolerance},
-                       "accuracy asked for (default: 0.01mm,0.001deg,1%)"});
+                       "required accuracy (default: 0.01mm,0.001deg,1%)"});
     options.push_back(
         output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
     add_candidate_options(options, given->candidate);
-    return {"trade",
-            "What accuracy costs: every method against both references, and a recommendation",
+    return {"trade", "Cost of accuracy: every method against both references, and a recommendation",
             std::move(options), [given](const std::string& line) {
                 return trade(given->scene, given->settings, given->tolerance, given->candidate,
                              given->delivery(line));

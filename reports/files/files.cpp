@@ -2,11 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -18,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void cannot(const fs::path& file, const char* what, int error = errno) {
+[[noreturn]] void fail_access(const fs::path& file, const char* what, int error = errno) {
     throw FileError(fmt::format("{}: cannot be {}: {}", file.string(), what, std::strerror(error)));
 }
 
-std::string without_space(std::string_view text) {
+std::string without_white_space(std::string_view text) {
     std::string solid;
     for (const char c : text)
         if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) solid.push_back(c);
@@ -34,10 +35,10 @@ bool begins_as(const fs::path& file, const FileKind& kind) {
     std::ifstream in(file, std::ios::binary);
     in.read(start.data(), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<std::size_t>(in.gcount()));
-    return without_space(start).starts_with(without_space(kind.beginning));
+    return without_white_space(start).starts_with(without_white_space(kind.beginning));
 }
 
-const char* sort_of(const struct stat& entry) {
+const char* type_of(const struct stat& entry) {
     return S_ISLNK(entry.st_mode)    ? "a symbolic link"
            : S_ISDIR(entry.st_mode)  ? "a folder"
            : S_ISBLK(entry.st_mode)  ? "a block device"
@@ -71,167 +72,124 @@ bool write_and_close(int out, std::string_view content) {
     return flush_and_close(out, write_all(out, content));
 }
 
-// Whether the open file still has a name.
-bool is_there(int open) {
-    struct stat entry {};
-    return ::fstat(open, &entry) == 0 && entry.st_nlink > 0;
-}
-
 }  // namespace
 
 void check_may_write(const fs::path& file, const FileKind& kind) {
     struct stat entry {};
     if (::lstat(file.c_str(), &entry) != 0) {
         // A missing folder will be created; an inaccessible one is an error now.
-        if (errno != ENOENT) cannot(file, "written");
+        if (errno != ENOENT) fail_access(file, "written");
         return;
     }
     if (!S_ISREG(entry.st_mode))
         throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
-                                    sort_of(entry)));
+                                    type_of(entry)));
     if (!begins_as(file, kind))
         throw FileError(fmt::format(
-            "{}: is there, and is no {} that elastocheck wrote; choose another name, or "
-            "remove it",
+            "{}: exists and is no {} written by elastocheck; choose another name, or remove it",
             file.string(), kind.name));
 }
 
 namespace {
 
-// Temporary name of a file, ".NAME.elastocheck-PID-N.tmp", which no other program uses.
-std::string temporary_prefix(const fs::path& file) {
-    return fmt::format(".{}.elastocheck-", file.filename().string());
-}
-bool is_temporary_name(std::string_view name, std::string_view prefix) {
-    constexpr std::string_view suffix = ".tmp", digits = "0123456789";
-    if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
-    name.remove_prefix(prefix.size());
-    name.remove_suffix(suffix.size());
-    const auto dash = name.find('-');
-    const auto is_number = [&](std::string_view part) {
-        return !part.empty() && part.find_first_not_of(digits) == part.npos;
-    };
-    return dash != name.npos && is_number(name.substr(0, dash)) && is_number(name.substr(dash + 1));
+std::string temporary_prefix(const fs::path& path) {
+    return fmt::format(".{}.elastocheck-", path.filename().string());
 }
 
-// Removes temporary files of killed runs beside the file. A running owner holds a lock on its file.
-void remove_abandoned(const fs::path& file) {
-    const std::string prefix = temporary_prefix(file);
-    std::error_code failed;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    for (auto at = fs::directory_iterator(folder, failed); !failed && at != fs::end(at);
-         at.increment(failed)) {
-        const std::string name = at->path().filename().string();
-        if (!is_temporary_name(name, prefix)) continue;
-        const int left = ::open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-        if (left < 0) continue;
-        struct stat entry {};
-        // Checks the inode: the owner may have renamed the file and created another one of this
-        // name since it was opened.
-        struct stat now {};
-        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) &&
-            ::flock(left, LOCK_EX | LOCK_NB) == 0 && ::lstat(at->path().c_str(), &now) == 0 &&
-            now.st_ino == entry.st_ino && now.st_dev == entry.st_dev)
-            ::unlink(at->path().c_str());
-        ::close(left);
-    }
+bool is_running(pid_t process) {
+    return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }
 
 }  // namespace
 
-FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
+fs::path temporary_beside(const fs::path& path) {
+    const std::string prefix = temporary_prefix(path);
+    std::error_code failed;
+    for (auto at =
+             fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", failed);
+         !failed && at != fs::end(at); at.increment(failed)) {
+        const std::string name = at->path().filename().string();
+        if (!name.starts_with(prefix)) continue;
+        pid_t process = 0;
+        const char* const last = name.data() + name.size();
+        const auto [end, error] = std::from_chars(name.data() + prefix.size(), last, process);
+        std::error_code ignored;
+        if (error == std::errc{} && end == last && !is_running(process))
+            fs::remove_all(at->path(), ignored);
+    }
+    fs::path temporary = path;
+    return temporary.replace_filename(fmt::format("{}{}", prefix, ::getpid()));
+}
+
+AtomicFile::AtomicFile(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
     std::error_code failed;
     if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
     if (failed)
         throw FileError(
             fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
-    remove_abandoned(file_);
-    temporary_ = file_;
-    const auto lock = no_cleanup_now();
-    for (int k = 0; out_ < 0; ++k) {
-        temporary_.replace_filename(
-            fmt::format("{}{}-{}.tmp", temporary_prefix(file_), ::getpid(), k));
-        out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (out_ < 0 && errno != EEXIST) cannot(file_, "written");
-        // Another run may have removed it as abandoned before it was locked.
-        if (out_ >= 0 &&
-            (::flock(out_, LOCK_EX | LOCK_NB) == 0 ? !is_there(out_) : errno == EWOULDBLOCK))
-            ::close(std::exchange(out_, -1));
-    }
+    temporary_ = temporary_beside(file_);
+    const auto lock = block_cleanup();
+    out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (out_ < 0) fail_access(file_, "written");
     cleanup_.emplace([path = temporary_](int) { ::unlink(path.c_str()); });
 }
 
-FileToBe::~FileToBe() {
+AtomicFile::~AtomicFile() {
     if (out_ < 0) return;
     ::close(out_);
     ::unlink(temporary_.c_str());
 }
 
-void FileToBe::give_up(int error) {
+void AtomicFile::fail_writing(int error) {
     if (out_ >= 0) ::close(std::exchange(out_, -1));
     ::unlink(temporary_.c_str());
-    cannot(file_, "written", error);
+    fail_access(file_, "written", error);
 }
 
-void FileToBe::write_waiting() {
-    if (!write_all(out_, waiting_)) give_up(errno);
-    waiting_.clear();
+void AtomicFile::write_buffer() {
+    if (!write_all(out_, buffer_)) fail_writing(errno);
+    buffer_.clear();
 }
 
-void FileToBe::add(std::string_view content) {
-    constexpr std::size_t together = 1 << 16;
-    waiting_ += content;
-    if (waiting_.size() >= together) write_waiting();
+void AtomicFile::add(std::string_view content) {
+    constexpr std::size_t buffer_size = 1 << 16;
+    buffer_ += content;
+    if (buffer_.size() >= buffer_size) write_buffer();
 }
 
-void FileToBe::finish() {
-    write_waiting();
-    // the lock is kept until the file is renamed
-    const int lock = ::fcntl(out_, F_DUPFD_CLOEXEC, 0);
-    bool good = lock >= 0 && flush_and_close(std::exchange(out_, -1), true);
-    int error = errno;
-    if (good) {
-        // A file that appeared meanwhile is replaced only if it was made by this program as well.
-        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(),
-                           RENAME_NOREPLACE) == 0;
-        // EINVAL: not supported by the file system
-        if (!good && (errno == EEXIST || errno == EINVAL)) {
-            try {
-                check_may_write(file_, *kind_);
-            } catch (const FileError&) {
-                ::close(lock);
-                ::unlink(temporary_.c_str());
-                throw;
-            }
-            good = ::rename(temporary_.c_str(), file_.c_str()) == 0;
-        }
-        error = errno;
+void AtomicFile::finish() {
+    write_buffer();
+    if (!flush_and_close(std::exchange(out_, -1), true)) fail_writing(errno);
+    try {
+        check_may_write(file_, *kind_);  // again: a file may have appeared meanwhile
+    } catch (const FileError&) {
+        ::unlink(temporary_.c_str());
+        throw;
     }
-    if (lock >= 0) ::close(lock);
-    if (!good) give_up(error);
+    if (::rename(temporary_.c_str(), file_.c_str()) != 0) fail_writing(errno);
 }
 
 void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {
-    FileToBe whole(file, kind);
+    AtomicFile whole(file, kind);
     whole.add(content);
     whole.finish();
 }
 
 void append(const fs::path& file, std::string_view content) {
     const int out = ::open(file.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-    if (out < 0) cannot(file, "appended to");
+    if (out < 0) fail_access(file, "appended to");
     struct stat entry {};
     if (::fstat(out, &entry) != 0 || !S_ISREG(entry.st_mode)) {
         ::close(out);
         throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
-                                    sort_of(entry)));
+                                    type_of(entry)));
     }
-    if (!write_and_close(out, content)) cannot(file, "appended to");
+    if (!write_and_close(out, content)) fail_access(file, "appended to");
 }
 
 void fill(const fs::path& file, std::string_view content) {
-    const auto lock = no_cleanup_now();
+    const auto lock = block_cleanup();
     std::error_code failed;
     fs::create_directories(file.parent_path(), failed);
     if (failed)
@@ -239,18 +197,18 @@ void fill(const fs::path& file, std::string_view content) {
             fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
     const int out =
         ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (out < 0 || !write_and_close(out, content)) cannot(file, "written");
+    if (out < 0 || !write_and_close(out, content)) fail_access(file, "written");
 }
 
 std::string read_whole(const fs::path& file, std::size_t largest) {
     const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat entry {};
-    if (in < 0 || ::fstat(in, &entry) != 0) cannot(file, "read");
+    if (in < 0 || ::fstat(in, &entry) != 0) fail_access(file, "read");
     std::string text;
     bool good = S_ISREG(entry.st_mode) || S_ISFIFO(entry.st_mode);
     if (!good) {
         ::close(in);
-        throw FileError(fmt::format("{}: cannot be read: it is {}", file.string(), sort_of(entry)));
+        throw FileError(fmt::format("{}: cannot be read: it is {}", file.string(), type_of(entry)));
     }
     for (char buffer[1 << 16]; good;) {
         const ssize_t count = ::read(in, buffer, sizeof buffer);
@@ -266,7 +224,7 @@ std::string read_whole(const fs::path& file, std::size_t largest) {
     }
     const int error = errno;
     ::close(in);
-    if (!good) cannot(file, "read", error);
+    if (!good) fail_access(file, "read", error);
     return text;
 }
 

@@ -34,28 +34,32 @@ inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 // no device, no link, no folder, no file of another program.
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
+// Temporary name ".NAME.elastocheck-PROCESS" beside a file or folder that is being written. Removes
+// those that killed runs left there.
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
 // A file that is written in pieces under a temporary name beside its own, and renamed when it is
 // complete. An unfinished file is removed by its owner, also when a signal ends the program; if the
 // owner was killed, by the next run that writes this file. Throws FileError; an older file of that
 // name is then untouched.
-class FileToBe {
+class AtomicFile {
   public:
     // check_may_write; creates the folder when it is missing.
-    FileToBe(std::filesystem::path file, const FileKind& kind);
-    FileToBe(const FileToBe&) = delete;
-    FileToBe& operator=(const FileToBe&) = delete;
-    ~FileToBe();
+    AtomicFile(std::filesystem::path file, const FileKind& kind);
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+    ~AtomicFile();
 
     void add(std::string_view content);
     void finish();  // flushes it to the disk and renames it
 
   private:
-    [[noreturn]] void give_up(int error);
-    void write_waiting();
+    [[noreturn]] void fail_writing(int error);
+    void write_buffer();
 
     const FileKind* kind_;  // one of the constants above
     std::filesystem::path file_, temporary_;
-    std::string waiting_;  // write buffer
+    std::string buffer_;  // write buffer
     int out_ = -1;
     std::optional<CleanupOnSignal> cleanup_;
 };

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "reports/page/common.hpp"
 #include "reports/text/numbers.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -20,11 +20,6 @@ using compare::Worst;
 constexpr double nothing = 1e-9;        // [mm], [deg]: smaller deviations are rounding
 constexpr double nothing_of_it = 1e-6;  // share of an extent: likewise
 
-std::string spaced(std::string name) {
-    std::ranges::replace(name, '_', ' ');
-    return name;
-}
-
 std::string subject(const Assessment& j) {
     if (j.method.empty() || j.method == "published") return "the linear recursion as published";
     return fmt::format("the recursion by method ‘{}’", j.method);
@@ -32,7 +27,7 @@ std::string subject(const Assessment& j) {
 
 // `limit`: the tolerance; a small excess is shown with enough digits.
 std::string size(const Worst& worst, double limit) {
-    if (std::isnan(worst.max)) return "a number that is none";
+    if (std::isnan(worst.max)) return "not a number";
     if (worst.max > limit && worst.max < 1.1 * limit)
         return fmt::format("{:.6g} {}", worst.max, symbol(worst.unit));
     if (worst.max < nothing)
@@ -57,7 +52,7 @@ std::string other_of(const Assessment& j) {
     if (!worst || !(worst->max >= nothing_of_it * worst->extent || std::isnan(worst->max)))
         return "";
     return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
-                       percent(worst->max / worst->extent), spaced(worst->channel), worst->branch,
+                       percent(worst->max / worst->extent), as_words(worst->channel), worst->branch,
                        crosswise ? ", at equal position" : "");
 }
 
@@ -74,7 +69,7 @@ std::string worst_of(const Assessment& j) {
         const auto& worst = crosswise ? *across : *at;
         if (!worst || (worst->max < nothing && worst->max <= limit)) continue;
         parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit),
-                                    spaced(worst->channel), worst->branch,
+                                    as_words(worst->channel), worst->branch,
                                     crosswise ? ", at equal position" : ""));
     }
     if (auto other = other_of(j); !other.empty()) parts.push_back(std::move(other));
@@ -135,15 +130,14 @@ std::string sentence(const Assessment& j) {
             const std::string more =
                 j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)
                                      : "";
-            return fmt::format("Not judged: {}{}. What is shown is no basis for a decision.",
+            return fmt::format("Not judged: {}{}. The results are no basis for a decision.",
                                j.reasons.empty() ? "nothing was compared" : j.reasons.front(),
                                more);
         }
         case Grade::pass:
             if (j.exact)
-                return fmt::format(
-                    "Pass: {} is exact here, within the arithmetic; the tolerance is {}; {}.",
-                    subject(j), asked(j), compared(j));
+                return fmt::format("Pass: {} is exact to round-off; the tolerance is {}; {}.",
+                                   subject(j), asked(j), compared(j));
             return fmt::format(
                 "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.",
                 subject(j), asked(j), worst_of(j), rate_of(j), compared(j));

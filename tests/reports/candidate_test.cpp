@@ -336,7 +336,7 @@ TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
         const char *text, *what;
     } cases[] = {
         {"columns:\n  TOE: {output: toes}\n",
-         "map.yaml:2: columns.TOE.output: no output is called 'toes', did you mean 'toe'?"},
+         "map.yaml:2: columns.TOE.output: there is no output 'toes', did you mean 'toe'?"},
         {"columns:\n  TOE: {output: toe, unit: mm}\n", "columns.TOE.unit: 'mm' is no unit of toe"},
         {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
         {"columns:\n  GONE: {output: toe}\n", "no column 'GONE', which"},
@@ -358,7 +358,7 @@ TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
         std::string text, what;
     } cases[] = {
         {"a.csv", "load_N,toes_deg\n1,2\n", "a.csv:1: unknown column 'toes_deg', did you mean"},
-        {"a.csv", "toe_deg\n1\n", "a.csv:1: no column says where a point is"},
+        {"a.csv", "toe_deg\n1\n", "a.csv:1: no column gives the parameter or travel of a point"},
         {"a.csv", "branch,load_N,toe_deg\njounce,1,2\nbounce,1,2\n",
          "a.csv:3: branch: the scene has no branch 'bounce'"},
         {"a.csv", "branch,load_N,toe_deg\njounce,1,x\n", "a.csv:2: toe_deg: 'x' is not a number"},

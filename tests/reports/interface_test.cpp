@@ -194,7 +194,7 @@ TEST(Version, NamesTheCommitAndEveryLibrary) {
         said, std::regex("^elastocheck [0-9]+\\.[0-9]+\\.[0-9]+\ncommit (unknown|[0-9a-f]{40})")))
         << said;
     for (const char* library :
-         {"Eigen", "Ceres", "NLopt", "yaml-cpp", "fmt", "CLI11", "nlohmann-json", "pugixml"})
+         {"Eigen", "Ceres", "NLopt", "yaml-cpp", "fmt", "CLI11", "nlohmann-json"})
         EXPECT_TRUE(std::regex_search(said, std::regex(std::string(library) + " [0-9]+\\.[0-9]")))
             << library << said;
 }
@@ -348,7 +348,7 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
     EXPECT_TRUE(page.starts_with(".TH ELASTOCHECK 1 ")) << page.substr(0, 80);
     for (const std::string part :
          {"\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fIFOLDER\\fR\n", ".SS elastocheck gate\n",
-          "\\fB\\-\\-set\\fR \\fIPATH=VALUE\\fR\n", "Exit codes: 0 fine",
+          "\\fB\\-\\-set\\fR \\fIPATH=VALUE\\fR\n", "Exit codes: 0 success",
           "PREFIX/share/doc/elastocheck/models/scenes/README.md"})
         EXPECT_TRUE(contains(page, part)) << part;
     EXPECT_FALSE(contains(page, std::filesystem::current_path().string()));
@@ -361,7 +361,8 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
     const Said said = support::says("env LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l " +
                                     folder.write("e.1", page));
     EXPECT_EQ(said.err, "");
-    EXPECT_TRUE(contains(said.out, "can I trust my suspension solver?")) << said.out.substr(0, 500);
+    EXPECT_TRUE(contains(said.out, "verification of suspension solvers by independent solutions"))
+        << said.out.substr(0, 500);
 }
 
 // ---- report

@@ -89,7 +89,7 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
     result["scenes"][0]["measured"] = measured("travel_mm,toe_deg\n-50,1.4\n50,-1.8\n");
     const std::string file = "result.json";
     bool section = false, drawn = false, fourth = false;
-    for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
+    for (const auto& s : sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file})) {
         section = section || s.id == "measured";
         for (const auto& group : s.figures)
             for (const auto& figure : group.figures) {
@@ -142,7 +142,8 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
           Case{"travel_mm,toe_rad\n1,2\n",
                "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
           Case{"toe_deg\n1\n",
-               "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
+               "kc.csv:1: no column gives the parameter or travel of a point; allowed: load_N, "
+               "travel_mm"},
           Case{"travel_mm,load_N\n1,2\n", "kc.csv:1: no output among the columns"},
           Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n",
                "kc.csv:1: column 'toe_deg' stands there twice"},
@@ -165,7 +166,7 @@ TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
 }
 
 Sweep first_sweep(const json& result, const std::string& file) {
-    return sweeps_of(Field{&result["scenes"][0], "scenes[0]", &file}).front();
+    return sweeps_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file}).front();
 }
 
 // A point of one branch is not compared, drawn or tabulated on another.
@@ -177,7 +178,7 @@ TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
     result["scenes"][0]["measured"] = json::parse(
         measured("branch,travel_mm,toe_deg\njounce,20,-0.7\njounce,60,-2\nrebound,-60,2\n").dump());
     const std::string file = "result.json";
-    const Field scene{&result["scenes"][0], "scenes[0]", &file};
+    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
     Sweep sweep = first_sweep(result, file);
     ASSERT_EQ(sweep.branches.size(), 2u);
     EXPECT_EQ(measured_series(scene, sweep, "toe", false)->rows.size(), 3u);
@@ -196,7 +197,7 @@ TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
         measured("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n").dump());
     const std::string file = "result.json";
     int figures = 0, drawn = 0;
-    for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
+    for (const auto& s : sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file})) {
         if (s.id != "curves") continue;
         for (const auto& group : s.figures)
             for (const auto& figure : group.figures) {
@@ -338,7 +339,7 @@ TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
                  {})
             .dump());
     const std::string file = "result.json";
-    const Field scene{&result["scenes"][0], "scenes[0]", &file};
+    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
     int seen = 0;
     for (const auto& sweep : sweeps_of(scene)) {
         const auto points = measured_series(scene, sweep, "toe", false);

@@ -56,7 +56,7 @@ compare::Table through_json(const compare::Table& table) {
     compare::Table like = table;
     like.rows.clear();
     const json read = json::parse(table_json(table).dump());
-    return read_table(Field{&read, "", &file}, like);
+    return read_table(JsonCursor{&read, "", &file}, like);
 }
 
 TEST(Tables, CsvHasAUnitInTheHeaderAndExactNumbers) {
@@ -77,7 +77,7 @@ TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
     like.rows.clear();
     const auto refused = [&](const json& damaged) -> std::string {
         try {
-            (void)read_table(Field{&damaged, "t", &file}, like);
+            (void)read_table(JsonCursor{&damaged, "t", &file}, like);
         } catch (const ResultError& error) {
             return error.what();
         }
@@ -189,7 +189,7 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     }
     EXPECT_EQ(study_json(study, attribution)["gap"].dump(), table_json(gaps).dump());
 
-    // The error to the truth is step error plus gap; the contributions add up to the gap.
+    // The error against the reference is step error plus gap; the contributions add up to the gap.
     const auto steps = step_table(study);
     const double gap = number(outputs, 0, "gap");
     EXPECT_EQ(number(steps, 0, "error"), number(steps, 0, "end") + gap);

@@ -60,7 +60,7 @@ json paragraphs(const Section& section) {
 
 // A scene with its sections and its prefix for files and ids.
 struct ScenePart {
-    Field scene;
+    JsonCursor scene;
     std::string id;
     std::vector<Section> sections;
     std::vector<Plot> plots{};
@@ -77,7 +77,7 @@ struct Page {
         return name;
     }
 
-    ScenePart part(const Field& scene) {
+    ScenePart part(const JsonCursor& scene) {
         ScenePart part{scene, unique(slug(fs::path(scene["source"].text()).stem().string())),
                        sections_of(scene)};
         for (const auto& section : part.sections)
@@ -157,8 +157,7 @@ struct Page {
 Table summary(const std::list<ScenePart>& parts) {
     Table table{
         .caption =
-            "At a glance: the largest deviations of the linear recursion as published, and whether "
-            "they are within the tolerance",
+            "Summary: largest deviations of the linear recursion as published, and the verdict",
         .columns = {{"scene", true},
                     {"verdict", true},
                     {"position, at equal load or drive"},
@@ -198,8 +197,8 @@ Table summary(const std::list<ScenePart>& parts) {
     return table;
 }
 
-json provenance(const Field& result) {
-    const Field p = result["provenance"];
+json provenance(const JsonCursor& result) {
+    const JsonCursor p = result["provenance"];
     Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
     table.rows = {
         {"elastocheck", p["elastocheck"].text()},
@@ -215,14 +214,14 @@ json provenance(const Field& result) {
 }
 
 // Seeded faults (mutation tests), and the first failing check of each.
-json alarms(const Field& result) {
+json alarms(const JsonCursor& result) {
     const auto found = result.find("alarms");
     if (!found) return nullptr;
-    Table table{.caption = "Seeded faults, and the first alarm to ring",
+    Table table{.caption = "Seeded faults and the first test that failed",
                 .columns = {{"fault", true},
                             {"in", true},
                             {"what it simulates", true},
-                            {"first to ring", true},
+                            {"first failing test", true},
                             {"margin"},
                             {"alarms"}},
                 .rows = {},
@@ -244,9 +243,10 @@ json alarms(const Field& result) {
 
 std::string numbers_csv(const json& result, const std::string& file) {
     std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
-    const Field root{&result, "", &file};
-    const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
-                         const std::string& quantity, double value, double tolerance) {
+    const JsonCursor root{&result, "", &file};
+    const auto row = [&](const JsonCursor& scene, const JsonCursor& branch,
+                         const ChannelInfo& channel, const std::string& quantity, double value,
+                         double tolerance) {
         csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
                            for_csv(fs::path(scene["source"].text()).stem().string()),
                            for_csv(branch["name"].text()), for_csv(channel.name),
@@ -284,7 +284,7 @@ namespace {
 
 // Checks also fields without a section, since they are copied to the report's own result.json. (It
 // escapes line ends.)
-void expect_plain(const Field& field) {
+void expect_plain(const JsonCursor& field) {
     const auto check = [&](std::string text) {
         std::ranges::replace_if(
             text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
@@ -305,19 +305,19 @@ void expect_plain(const Field& field) {
 
 json parse_result(std::string_view text, const std::string& file) {
     json result;
-    const Field root{&result, "", &file};
+    const JsonCursor root{&result, "", &file};
     try {
         result = parse_json(text);
     } catch (const JsonError& error) {
         root.fail(error.what());
     }
-    const Field schema = root["schema"];
+    const JsonCursor schema = root["schema"];
     if (schema.text() != result_schema)
         schema.fail(
             fmt::format("'{}' is not a document this program reads; allowed: '{}'. Run the command "
                         "that made it again",
                         schema.text(), result_schema));
-    if (root["scenes"].items().empty()) root["scenes"].fail("there is no scene in it");
+    if (root["scenes"].items().empty()) root["scenes"].fail("it has no scene");
     expect_plain(root);
     return result;
 }
@@ -331,7 +331,7 @@ struct Draft {
     std::vector<Plot> plots{};
 };
 
-Draft draft(const Field& root) {
+Draft draft(const JsonCursor& root) {
     Draft made;
     for (const auto& scene : root["scenes"].items()) {
         made.parts.push_back(made.page.part(scene));
@@ -348,8 +348,8 @@ struct Texts {
 };
 
 // `sections` as in Page::scene.
-Answer answer(const Field& scene, const json& sections) {
-    const Field verdict = scene["verdict"];
+Answer answer(const JsonCursor& scene, const json& sections) {
+    const JsonCursor verdict = scene["verdict"];
     Answer made{.name = scene["name"].text(),
                 .source = scene["source"].text(),
                 .sentence = {},
@@ -366,7 +366,7 @@ Answer answer(const Field& scene, const json& sections) {
 }
 
 Texts texts(Draft draft, const json& result, const std::string& file, bool archive) {
-    const Field root{&result, "", &file};
+    const JsonCursor root{&result, "", &file};
     json scenes = json::array();
     for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
     json tints = json::array();
@@ -403,8 +403,7 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
 std::vector<NamedContent> report_texts(const json& result, const std::string& file) {
     Draft report = draft({&result, "", &file});
     std::vector<NamedContent> files;
-    for (const auto& plot : report.plots)
-        std::ranges::move(sources(plot), std::back_inserter(files));
+    for (const auto& plot : report.plots) files.push_back(data_file(plot));
     report.page.pictures.resize(report.plots.size());
     for (const bool archive : {true, false})
         std::ranges::move(texts(report, result, file, archive).files, std::back_inserter(files));
@@ -416,8 +415,7 @@ std::vector<Answer> write_report(const json& result, const std::string& file,
     Staging staging(folder);
     Draft report = draft({&result, "", &file});
     if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
-    report.page.pictures =
-        draw(report.plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
+    report.page.pictures = draw(report.plots, staging.path(), !options.archive);
     const Texts made = texts(std::move(report), result, file, options.archive);
     for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
     staging.publish();

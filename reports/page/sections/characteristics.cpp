@@ -27,11 +27,10 @@ Table figures_table(const compare::Table& at_design) {
                 .columns = {{"figure", true},
                             {"value"},
                             {"unit", true},
-                            {"published recursion off by"},
-                            {"what it is", true}}};
+                            {"error of the published recursion"},
+                            {"definition", true}}};
     for (std::size_t r = 0; r < at_design.rows.size(); ++r) {
-        std::string name = words(at_design, r, "output");
-        std::ranges::replace(name, '_', ' ');
+        const std::string name = as_words(words(at_design, r, "output"));
         const std::string& undefined = words(at_design, r, "undefined");
         table.rows.push_back(
             {name, undefined.empty() ? number(reports::number(at_design, r, "value"), 4) : "none",
@@ -106,8 +105,9 @@ bool is(const std::string& channel, std::string_view name) {
     return channel == name || channel.ends_with("." + std::string(name));
 }
 
-std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const Drawn& drawn,
-                                  const std::string& x_axis, bool over_abscissa) {
+std::optional<FigureGroup> figure(const JsonCursor& scene, const JsonCursor& branch,
+                                  const Drawn& drawn, const std::string& x_axis,
+                                  bool over_abscissa) {
     FigureGroup group;
     Figure figure{
         .id = fmt::format("{}-{}", slug(std::string(drawn.name)), slug(branch["name"].text())),
@@ -169,7 +169,7 @@ std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const
 
 }  // namespace
 
-std::optional<Section> characteristics_section(const Field& scene) {
+std::optional<Section> characteristics_section(const JsonCursor& scene) {
     const auto found = scene.find("characteristics");
     if (!found) return std::nullopt;
     Section section{.id = "characteristics", .title = "Kinematics and compliance"};

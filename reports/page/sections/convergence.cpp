@@ -49,7 +49,7 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps,
 }
 
 // "at equal wheel centre y": display name of a channel.
-std::string spoken(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
+std::string readable(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
 
 // Step errors of one method over one branch.
 std::optional<FigureGroup> group(const std::string& branch, const compare::Table& table) {
@@ -63,7 +63,7 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
         const Levels levels = levels_of(where(table, "reading", reading));
         if (levels.steps.empty()) continue;
         const auto& [steps, phi, step, truth] = levels;
-        const std::string name = spoken(reading);
+        const std::string name = readable(reading);
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
                       .title = fmt::format("{}: {}", branch, name),
                       .description = {},
@@ -71,22 +71,22 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
                       .y = "at the end of the branch [mm]",
                       .log_x = true,
                       .log_y = true};
-        figure.series = {
-            {"error to the truth", Series::Style::line_points, vermilion, 6, rows(steps, truth)},
-            {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
-            {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
+        figure.series = {{"error against the reference", Series::Style::line_points, vermilion, 6,
+                          rows(steps, truth)},
+                         {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
+                         {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
         std::erase_if(figure.series, [](const Series& s) { return s.rows.empty(); });
         if (figure.series.empty()) continue;
         figure.description = fmt::format(
             "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes from "
             "{} to {} "
             "mm, "
-            "the step error from {} to {} mm, the error to the truth from {} to {} mm.",
+            "the step error from {} to {} mm, the error against the reference from {} to {} mm.",
             name, number(steps.front(), 4), number(steps.back(), 4), number(phi.front(), 2),
             number(phi.back(), 2), number(step.front(), 2), number(step.back(), 2),
             number(truth.front(), 2), number(truth.back(), 2));
         group.table.columns.push_back({fmt::format("step error, {}", name)});
-        group.table.columns.push_back({fmt::format("error to the truth, {}", name)});
+        group.table.columns.push_back({fmt::format("error against the reference, {}", name)});
         group.figures.push_back(std::move(figure));
         both.push_back(levels);
     }
@@ -107,10 +107,10 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
 
 }  // namespace
 
-std::optional<Section> convergence_section(const Field& scene) {
+std::optional<Section> convergence_section(const JsonCursor& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
-    Section section{.id = "convergence", .title = "Error over steps"};
+    Section section{.id = "convergence", .title = "Convergence with the number of steps"};
     section.words["reasons"] = (*study)["reasons"].texts();
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto steps = read_table((*study)["step_errors"], compare::step_table({}));
@@ -125,7 +125,7 @@ std::optional<Section> convergence_section(const Field& scene) {
                 !why.empty() && words(published, r, "reading") != readings.front())
                 section.words["notes"].push_back(
                     {{"branch", branch},
-                     {"reading", spoken(words(published, r, "reading"))},
+                     {"reading", readable(words(published, r, "reading"))},
                      {"why", why}});
         section.tables.push_back(
             page_table(fmt::format("Orders and gaps, branch {}, {}", branch, readings.front()),
