@@ -22,7 +22,8 @@ std::size_t literal_end(std::string_view text, std::size_t i) {
     if (text.substr(i, 2) == "//") return std::min(text.find('\n', i), text.size());
     if (text.substr(i, 2) == "R\"") {
         const std::size_t open = std::min(text.find('(', i), text.size());
-        return to(")" + std::string(text.substr(i + 2, open - i - 2)) + "\"");
+        std::string end(1, ')');
+        return to(end.append(text.substr(i + 2, open - i - 2)).append("\""));
     }
     const bool separates_digits = text[i] == '\'' && i > 0 && is_word(text[i - 1]);
     if ((text[i] != '"' && text[i] != '\'') || separates_digits) return i;

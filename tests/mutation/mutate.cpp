@@ -156,7 +156,7 @@ struct Rang {
 Rang rang(const std::string& log, int code) {
     Rang result;
     std::smatch found;
-    static const std::regex failed(R"(\[  FAILED  \] (\S+?),?.* \(\d+ ms\))");
+    static const std::regex failed(R"(\[  FAILED  \] ([^ ,]+),?.* \(\d+ ms\))");
     for (std::sregex_iterator i(log.begin(), log.end(), failed), none; i != none; ++i) {
         if (result.tests++ == 0) result.first = (*i)[1];
     }
