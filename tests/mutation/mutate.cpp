@@ -197,12 +197,20 @@ std::string copy_of_program(const Paths& paths, const Trial& trial) {
     return copy;
 }
 
-Rang run_suite(const Trial& trial, const std::string& program) {
+Rang run_program(const Trial& trial, const std::string& program, const std::string& filter) {
     const std::string log = trial.folder + "/test.log";
-    const int code =
-        run(fmt::format("timeout 600 '{}' '--gtest_filter={}' --gtest_brief=1 >'{}' 2>&1", program,
-                        trial.filter(), log));
+    const int code = run(fmt::format(
+        "timeout 600 '{}' '--gtest_filter={}' --gtest_brief=1 >'{}' 2>&1", program, filter, log));
     return rang(read_file(log), code);
+}
+
+// Where the suite does not fail, which other one of its program does is printed.
+Rang run_suite(const Trial& trial, const std::string& program) {
+    const Rang found = run_program(trial, program, trial.filter());
+    if (found.first.empty())
+        fmt::print("mutate: {} survives {}; of its program fails: {}\n", trial.fault.name,
+                   trial.fault.suite, run_program(trial, program, "*").first);
+    return found;
 }
 
 Rang run_ctest(const Paths& paths, const Trial& trial) {
@@ -262,7 +270,10 @@ int run_faults(const Paths& paths, const std::vector<Fault>& all,
             !program.empty() &&
             read_file(program).find(paths.build + "/reports/elastocheck") != std::string::npos;
         if (is_built && program.empty()) finish(trial, run_ctest(paths, trial));
-        if (runs_command) finish(trial, run_suite(trial, program));
+        if (runs_command) {
+            finish(trial, run_suite(trial, program));
+            fs::remove(program);
+        }
         put_back(paths);
         if (!is_built) {
             const std::lock_guard lock(mutex);
