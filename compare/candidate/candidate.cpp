@@ -10,6 +10,7 @@
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/outputs/deformation.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"
 #include "elastocheck/equilibrium.hpp"
@@ -17,7 +18,6 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double same_load = 1e-14;  // of a branch's length: rounding of a unit conversion
 constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a point at the end
 // of a branch's length: a larger missing part counts as not given

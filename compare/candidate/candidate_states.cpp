@@ -9,12 +9,11 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/equilibrium.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool is_said(const Pose& pose) { return pose.r.allFinite() && pose.p.coeffs().allFinite(); }
 // An infinite entry marks a value that is not a number.

@@ -7,11 +7,10 @@
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/comparison/points.hpp"
+#include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string branch_of(const Model& model, const Points& points, std::size_t k) {
     return points.branch.empty() ? model.branches.front().name : points.branch[k];

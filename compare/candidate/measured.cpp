@@ -6,10 +6,10 @@
 #include <limits>
 #include <optional>
 
+#include "compare/outputs/not_a_number.hpp"
+
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 const Curve& curve_of(const BranchComparison& branch, Leg leg) {
     return branch.runs[static_cast<std::size_t>(leg)].curve;

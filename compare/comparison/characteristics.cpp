@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/positions.hpp"
 #include "compare/outputs/rates.hpp"
 #include "models/kinds.hpp"
@@ -18,8 +19,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Arms and centres farther than this are at infinity, and joints stiffer than this are rigid:
 // beyond, the quotient is round-off of a part that does not rotate or deform.

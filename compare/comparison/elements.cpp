@@ -9,6 +9,8 @@
 #include <set>
 
 #include "compare/outputs/deformation.hpp"
+#include "compare/outputs/not_a_number.hpp"
+#include "compare/outputs/positions.hpp"
 #include "elastocheck/compare.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
@@ -16,8 +18,6 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array axes{"x", "y", "z"};
 constexpr double nothing = 1e-6;  // [mm], [deg], [N], [N·m]: smaller values are rounding
 
 const Elastic& elastic_of(const Model& model, int k) {

@@ -16,6 +16,7 @@
 #include "compare/deviation/agreement.hpp"
 #include "compare/deviation/tolerance.hpp"
 #include "compare/outputs/deformation.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "models/branch.hpp"
@@ -23,8 +24,6 @@
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Whether the k-th recorded point of a branch side is requested.
 bool is_asked_for(const Branch& way, int k, int every) { return k % every == 0 || k == way.steps; }

@@ -35,7 +35,7 @@ struct Problem {
     VectorXd asked;                 // [m, rad]
 };
 
-struct Answer {
+struct TrimAttempt {
     Outcome outcome = Outcome::converged;
     std::string detail;
     Equilibrium state;
@@ -118,7 +118,7 @@ BranchSide held_at(const Problem& problem, const VectorXd& p) {
     return way;
 }
 
-Answer settle(const Problem& problem, const VectorXd& p, Leg leg) {
+TrimAttempt settle(const Problem& problem, const VectorXd& p, Leg leg) {
     const EquilibriumPath path = rest(held_at(problem, p), leg);
     if (path.points.empty()) return {path.outcome, path.detail, {}, {}};
     return {Outcome::converged, "", path.points.front(),
@@ -138,15 +138,15 @@ double step(const Trim::Adjustment& adjustment) {
 }
 
 // J, one column per step h: change of the conditions with an adjustment. Empty where a leg failed.
-std::optional<MatrixXd> responses(const Problem& problem, const VectorXd& p, Answer& failed) {
+std::optional<MatrixXd> responses(const Problem& problem, const VectorXd& p, TrimAttempt& failed) {
     const Index n = p.size();
     MatrixXd J(static_cast<Index>(problem.channels.size()), n);
     for (Index k = 0; k < n; ++k) {
         const VectorXd h =
             step(problem.trim->adjust[static_cast<std::size_t>(k)]) * VectorXd::Unit(n, k);
-        const Answer more = settle(problem, p + h, Leg::equilibrium),
-                     less = settle(problem, p - h, Leg::equilibrium);
-        for (const Answer* answer : {&more, &less})
+        const TrimAttempt more = settle(problem, p + h, Leg::equilibrium),
+                          less = settle(problem, p - h, Leg::equilibrium);
+        for (const TrimAttempt* answer : {&more, &less})
             if (answer->outcome != Outcome::converged) {
                 failed = *answer;
                 return std::nullopt;
@@ -284,7 +284,7 @@ Trimmed trim(const Scene& scene) {
                         trim.adjust.size(), trim.until.size()));
     const Problem problem = pose(scene);
     TrimRecord& record = result.record.emplace();
-    const auto give_up = [&](const Answer& answer, const std::string& where) {
+    const auto give_up = [&](const TrimAttempt& answer, const std::string& where) {
         record.outcome = answer.outcome;
         record.detail =
             fmt::format("{}: {}: {}", where, elastocheck::name(answer.outcome), answer.detail);
@@ -294,14 +294,14 @@ Trimmed trim(const Scene& scene) {
     VectorXd p = VectorXd::Zero(static_cast<Index>(trim.adjust.size())), h = p;
     for (std::size_t k = 0; k < trim.adjust.size(); ++k)
         h[static_cast<Index>(k)] = step(trim.adjust[k]);
-    Answer here = settle(problem, p, Leg::equilibrium);
+    TrimAttempt here = settle(problem, p, Leg::equilibrium);
     if (here.outcome != Outcome::converged)
         return give_up(here, "the scene as written does not settle");
     std::string stuck;
     // J is checked before convergence is accepted: conditions met by chance may leave p
     // undetermined.
     for (bool first = true; first || here.missed.lpNorm<2>() > met; first = false) {
-        Answer failed;
+        TrimAttempt failed;
         const auto J = responses(problem, p, failed);
         if (!J && record.iterations == 0) return give_up(failed, "beside the state reached");
         if (!J) {
@@ -319,7 +319,7 @@ Trimmed trim(const Scene& scene) {
         }
         if (!(here.missed.norm() > met) || record.iterations == most_iterations) break;
         const VectorXd dp = h.cwiseProduct(J->colPivHouseholderQr().solve(-here.missed));
-        Answer next;
+        TrimAttempt next;
         double share = 1;
         for (int halved = 0; halved <= most_halvings; ++halved, share /= 2) {
             next = settle(problem, p + share * dp, Leg::equilibrium);
@@ -356,7 +356,7 @@ Trimmed trim(const Scene& scene) {
         return result;
     }
 
-    Answer second = settle(problem, p, Leg::energy);
+    TrimAttempt second = settle(problem, p, Leg::energy);
     if (is_not_applicable(second.outcome)) {
         record.confirmed_by = Leg::series;
         second = settle(problem, p, Leg::series);

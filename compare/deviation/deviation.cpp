@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "compare/deviation/tolerance.hpp"
+#include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Accumulates the deviation of one channel. A difference that is not finite makes max and rms NaN
 // for good.

@@ -21,7 +21,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::array axes{"x", "y", "z"};
 constexpr std::array towards{"forward", "to the left", "up"};
 
 Vector3d position(const Equilibrium& state, const Point& point) {

@@ -74,8 +74,6 @@ bool is_corner(const elastocheck::Curve& curve, double x) {
     return std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind));
 }
 
-constexpr std::array axes{"x", "y", "z"};
-
 std::string beyond_end(const std::string& what, double x, double end, Unit unit) {
     return fmt::format("{} is deformed by {:.6g} {}, and its curve ends at {:.6g} {}", what,
                        in_unit(unit) * x, symbol(unit), in_unit(unit) * end, symbol(unit));
@@ -192,8 +190,9 @@ std::string outside_table(const Model& model, const Branch& branch, const Equili
                                          state)[static_cast<Eigen::Index>(axis)],
                          end = end_passed(curve, x);
             if (std::isnan(end) || !found.empty()) return;
-            found = is_spring ? beyond_end(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm)
-                              : beyond_end(fmt::format("bushing '{}' {} {}", elastic.name,
+            found = is_spring
+                        ? beyond_end(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm)
+                        : beyond_end(fmt::format("bushing '{}' {} {}", elastic.name,
                                                  axis < 3 ? "along" : "about", axes[axis % 3]),
                                      x, end, axis < 3 ? Unit::mm : Unit::deg);
         });

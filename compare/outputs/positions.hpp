@@ -1,11 +1,15 @@
 // Positions of bodies and points in a state, as computed by compare/.
 #pragma once
 
+#include <array>
+
 #include <vector>
 
 #include "elastocheck/mechanism.hpp"
 
 namespace elastocheck::compare {
+
+inline constexpr std::array axes{"x", "y", "z"};
 
 inline const Pose& pose(const std::vector<Pose>& poses, BodyId body) {
     static const Pose at_rest;

@@ -52,7 +52,7 @@ std::vector<Pose> drawn(const Model& model) {
 }
 
 // Mirrors every body's displacement about its design position.
-std::vector<Pose> mirrored(const Model& model, const std::vector<Pose>& poses) {
+std::vector<Pose> mirror_image(const Model& model, const std::vector<Pose>& poses) {
     std::vector<Pose> other;
     for (std::size_t b = 0; b < poses.size(); ++b) {
         const Pose& design = model.bodies[b].design;
@@ -201,7 +201,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     if (arrives) add(leg::solve_from(way.model, way.branch, a, path.points.back().poses), true);
     for (auto point = path.points.rbegin(); point != path.points.rend(); ++point) {
         starts.push_back(point->poses);
-        starts.push_back(mirrored(way.model, point->poses));
+        starts.push_back(mirror_image(way.model, point->poses));
     }
     starts.push_back(drawn(way.model));
     const double size = scale_of(way.model, way.branch, path.points).length;

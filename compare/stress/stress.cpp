@@ -13,6 +13,7 @@
 
 #include "compare/deviation/agreement.hpp"
 #include "compare/deviation/reactions.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/overloaded.hpp"
@@ -27,7 +28,6 @@ using Eigen::Vector3d;
 
 using Construction = Variant::Construction;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // ---- Observed places of a state.

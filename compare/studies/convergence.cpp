@@ -5,10 +5,11 @@
 #include <stdexcept>
 #include <valarray>
 
+#include "compare/outputs/not_a_number.hpp"
+
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = StepConvergence::nan;
 using Levels = std::span<const Level>;
 
 void check_steps(Levels levels) {

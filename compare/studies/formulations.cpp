@@ -14,7 +14,7 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nothing = 1e-9;  // [mm], [deg]: smaller spreads are rounding
+constexpr double least_spread = 1e-9;  // [mm], [deg]: smaller spreads are rounding
 
 bool is_flat(const ScalarLaw& law) { return !(steepest(law) > 0); }
 
@@ -59,7 +59,7 @@ std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::
         found.highest = high->name;
     }
     if (found.spread < 0) return std::nullopt;
-    if (found.spread < nothing) found.lowest.clear(), found.highest.clear();
+    if (found.spread < least_spread) found.lowest.clear(), found.highest.clear();
     return found;
 }
 

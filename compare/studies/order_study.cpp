@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/outputs/not_a_number.hpp"
+
 namespace elastocheck::compare {
 namespace {
 
 // NaN unless the series reached the end.
 Accuracy apart(const std::vector<Channel>& channels, const References& truth, const Curve& curve,
                Outcome outcome) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     if (!truth.failures.empty() || outcome != Outcome::converged) return {nan, nan};
     return distance(channels, truth.truth, curve);
 }

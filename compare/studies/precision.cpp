@@ -8,10 +8,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compare/outputs/not_a_number.hpp"
+
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The last point of a curve, at which step counts are compared.
 Curve end_of(const Curve& curve) {

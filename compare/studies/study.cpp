@@ -8,12 +8,12 @@
 
 #include "compare/comparison/legs.hpp"
 #include "compare/deviation/agreement.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "models/branch.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double round_off = 1e-9;  // [mm], [deg]: smaller differences are rounding
 constexpr int stations = 30;        // along a branch, where curves are compared
 constexpr int reference_points = 300;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/studies/timing.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/overloaded.hpp"
@@ -14,7 +15,6 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Ratio of the tolerances of `adaptive` [rad/m]: 0.001 deg for 0.01 mm.
 constexpr double angle_per_length = 1.745;
 

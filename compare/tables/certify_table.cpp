@@ -3,16 +3,14 @@
 #include <limits>
 #include <numbers>
 
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/proofs/certify.hpp"
 #include "compare/tables/table.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degrees = 180 / std::numbers::pi;
-
-double finite(double value) { return std::isfinite(value) ? value : nan; }
 
 }  // namespace
 
@@ -46,7 +44,7 @@ Table certify_table(const CertifyStudy& study) {
     for (const CertifiedWay& way : study.ways) {
         const Tally& t = way.tally;
         const bool any = t.proved > 0;
-        const auto where = [&](double value) { return any ? finite(value) : nan; };
+        const auto where = [&](double value) { return any ? finite_or_nan(value) : nan; };
         std::string remark = way.detail;
         for (const std::string& also :
              {t.not_proved,
@@ -69,10 +67,10 @@ Table certify_table(const CertifyStudy& study) {
                               where(1e3 * t.gap),
                               std::string(way.curve ? name(way.curve->answer) : ""),
                               way.curve ? double(way.curve->pieces) : nan,
-                              way.curve ? finite(1e3 * way.curve->width.length) : nan,
+                              way.curve ? finite_or_nan(1e3 * way.curve->width.length) : nan,
                               std::string(way.limit ? name(way.limit->answer) : ""),
-                              way.limit ? finite(in_unit(way.unit) * way.limit->from) : nan,
-                              way.limit ? finite(in_unit(way.unit) * way.limit->to) : nan,
+                              way.limit ? finite_or_nan(in_unit(way.unit) * way.limit->from) : nan,
+                              way.limit ? finite_or_nan(in_unit(way.unit) * way.limit->to) : nan,
                               remark});
     }
     return table;

@@ -6,18 +6,15 @@
 #include <limits>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/tables/table.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 Column words(std::string name, std::string description = "") {
     return {std::move(name), "", std::move(description), true};
 }
-
-double finite(double value) { return std::isfinite(value) ? value : nan; }
 
 // At a = 0, as a leg has it.
 double at_start(const LegRun& run, std::size_t channel) {
@@ -56,9 +53,10 @@ Table characteristic_table(const Comparison& comparison) {
         const double is = at_start(run(Leg::equilibrium), c),
                      second = at_start(run(branch.second), c),
                      recursion = at_start(run(Leg::recursive), c);
-        table.rows.push_back({channel.name, symbol(channel.unit), finite(is), finite(second - is),
-                              finite(recursion), finite(recursion - is),
-                              finite(100 * (recursion - is) / std::abs(is)),
+        table.rows.push_back({channel.name, symbol(channel.unit), finite_or_nan(is),
+                              finite_or_nan(second - is), finite_or_nan(recursion),
+                              finite_or_nan(recursion - is),
+                              finite_or_nan(100 * (recursion - is) / std::abs(is)),
                               is == undefined ? channel.undefined : "", channel.definition});
     }
     return table;

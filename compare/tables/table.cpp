@@ -4,12 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/readings.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double count(auto number) { return static_cast<double>(number); }
 

@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
-#include "elastocheck/trim.hpp"
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/import/export/export_adm.hpp"
 #include "models/import/export/export_chrono.hpp"
 #include "models/import/import.hpp"
@@ -188,7 +188,7 @@ int import(const ImportRequest& request) {
             "import: one FILE at a time makes a scene; several with --table");
     if (!request.output.empty()) check_may_write(request.output, scene_file);
     importer::Imported result = importer::import_file(request.files.front(), options(request));
-    auto lines = importer::told(result.notes);
+    auto lines = importer::described(result.notes);
     if (const std::string line = settling(result.yaml); !line.empty()) {
         lines.push_back(line);
         result.yaml.insert(result.yaml.find("\nelastocheck: 1"), importer::commented(line));
@@ -238,7 +238,7 @@ int export_scene(const ExportRequest& request) {
         print("{}", result.text);
     else
         write_whole(request.output, result.text, chrono ? suspension_file : dataset_file);
-    for (const auto& line : importer::told(result.notes))
+    for (const auto& line : importer::described(result.notes))
         if (line.starts_with("Warning") || line.starts_with("MISSING"))
             print_error("elastocheck: {}\n", line);
     return is_known ? fine : could_not_judge;

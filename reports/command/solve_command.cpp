@@ -167,7 +167,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
-        for (const auto& line : told(said, branch.unit))
+        for (const auto& line : messages(said, branch.unit))
             print_error("{}: {}: {}\n", who, branch.name, line);
         if (path.outcome == Outcome::converged) continue;
         print_error("{}: {}: {}\n", who, name(path.outcome), path.detail);

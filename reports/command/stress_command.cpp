@@ -8,9 +8,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "elastocheck/trim.hpp"
 #include "compare/stress/stress.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"

@@ -13,18 +13,21 @@
 #include <set>
 
 #include "compare/comparison/elements.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "reports/document/measurement.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/json/json.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
+using compare::nan;
+
 using compare::Unit;
 using json = nlohmann::ordered_json;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double unit_length = 1e-6;  // allowed deviation of a quaternion's length from one
 
 // ---- Accepted units of a table.
@@ -34,14 +37,14 @@ struct Written {
     Unit unit;      // base unit
     double factor;  // to the base unit
 };
-constexpr double deg = 180 / std::numbers::pi;
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
 constexpr std::array written{Written{"mm", Unit::mm, 1},
                              Written{"cm", Unit::mm, 10},
                              Written{"m", Unit::mm, 1e3},
                              Written{"in", Unit::mm, 25.4},
                              Written{"deg", Unit::deg, 1},
-                             Written{"rad", Unit::deg, deg},
-                             Written{"mrad", Unit::deg, 1e-3 * deg},
+                             Written{"rad", Unit::deg, degrees_per_radian},
+                             Written{"mrad", Unit::deg, 1e-3 * degrees_per_radian},
                              Written{"N", Unit::newton, 1},
                              Written{"kN", Unit::newton, 1e3},
                              Written{"N·m", Unit::newton_metre, 1},
@@ -92,7 +95,7 @@ struct Meaning {
     double factor = 1, offset = 0;
     std::string unit;  // of a parameter, as written; empty: the branch's own, or given by a column
 };
-using Kind = Meaning::Kind;
+using MeaningKind = Meaning::Kind;
 
 // "toe [deg]", "toe_deg", "toe_change_deg", "toe"
 std::optional<Meaning> output_of(std::string_view name, const compare::Comparison& all) {
@@ -100,7 +103,8 @@ std::optional<Meaning> output_of(std::string_view name, const compare::Compariso
         const auto& channel = all.channels[c];
         if (!name.starts_with(channel.name)) continue;
         std::string_view rest = name.substr(channel.name.size());
-        Meaning meaning{.kind = Kind::output, .name = std::string(name), .channel = c, .unit = {}};
+        Meaning meaning{
+            .kind = MeaningKind::output, .name = std::string(name), .channel = c, .unit = {}};
         if (rest.starts_with("_change_")) {
             meaning.change = true;
             rest.remove_prefix(8);
@@ -124,15 +128,16 @@ std::optional<Meaning> parameter_of(std::string_view name) {
         if (!name.starts_with(word)) continue;
         std::string_view rest = name.substr(word.size());
         if (rest.empty())
-            return Meaning{.kind = Kind::parameter, .name = std::string(name), .unit = {}};
+            return Meaning{.kind = MeaningKind::parameter, .name = std::string(name), .unit = {}};
         if (rest.starts_with(" [") && rest.ends_with("]"))
             rest = rest.substr(2, rest.size() - 3);
         else if (rest.starts_with("_"))
             rest.remove_prefix(1);
         for (const auto& w : written)
             if (rest == w.symbol)
-                return Meaning{
-                    .kind = Kind::parameter, .name = std::string(name), .unit = std::string(rest)};
+                return Meaning{.kind = MeaningKind::parameter,
+                               .name = std::string(name),
+                               .unit = std::string(rest)};
     }
     return std::nullopt;
 }
@@ -151,9 +156,9 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
     };
     Meaning meaning{.name = entry.theirs, .unit = {}};
     if (entry.output == "branch") {
-        meaning.kind = Kind::branch;
+        meaning.kind = MeaningKind::branch;
     } else if (entry.output == "parameter" || entry.output == "load") {
-        meaning.kind = Kind::parameter;
+        meaning.kind = MeaningKind::parameter;
         meaning.unit = entry.unit;
         meaning.factor = entry.sign, meaning.offset = entry.offset;
         if (!entry.unit.empty() &&
@@ -168,7 +173,7 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
             wrong("output", fmt::format("there is no output {}{}", reader::quote(entry.output),
                                         reader::did_you_mean(entry.output, names, "outputs")));
         }
-        meaning.kind = Kind::output;
+        meaning.kind = MeaningKind::output;
         meaning.channel = static_cast<std::size_t>(channel);
         const Unit unit = all.channels[meaning.channel].unit;
         const auto factor = factor_of(entry.unit, unit);
@@ -228,11 +233,11 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
             if (entry != map.columns.end())
                 meaning = mapped(*entry, map, all);
             else if (name == "branch")
-                meaning = Meaning{.kind = Kind::branch, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::branch, .name = name, .unit = {}};
             else if (name == "leg")
-                meaning = Meaning{.kind = Kind::leg, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::leg, .name = name, .unit = {}};
             else if (name == "unit")
-                meaning = Meaning{.kind = Kind::parameter_unit, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::parameter_unit, .name = name, .unit = {}};
             else
                 meaning = parameter_of(name);
             if (!meaning) meaning = output_of(name, all);
@@ -245,7 +250,7 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
                             fmt::format("unknown column {}{}", reader::quote(name),
                                         reader::did_you_mean(name, known, "allowed")));
                 passed_over.push_back(name);
-                meaning = Meaning{.kind = Kind::nothing, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::nothing, .name = name, .unit = {}};
             }
             table.columns.push_back(*meaning);
         }
@@ -262,15 +267,15 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
         for (std::size_t c = 0; c < cells.size(); ++c) {
             const Meaning& meaning = table.columns[c];
             switch (meaning.kind) {
-                case Kind::branch:
+                case MeaningKind::branch:
                     table.branch.push_back(
                         branch_named(cells[c], all, map, file, line, meaning.name));
                     break;
-                case Kind::parameter_unit: table.unit.emplace_back(cells[c]); break;
-                case Kind::leg: table.legs.emplace(cells[c]); break;
-                case Kind::nothing: break;
-                case Kind::parameter:
-                case Kind::output:
+                case MeaningKind::parameter_unit: table.unit.emplace_back(cells[c]); break;
+                case MeaningKind::leg: table.legs.emplace(cells[c]); break;
+                case MeaningKind::nothing: break;
+                case MeaningKind::parameter:
+                case MeaningKind::output:
                     table.values[c].push_back(number_or_none(cells[c], file, line, meaning.name) *
                                                   meaning.factor +
                                               meaning.offset);
@@ -286,10 +291,6 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
     return table;
 }
 
-bool is_travel(const compare::Channel& channel) {
-    return channel.name == "travel" || channel.name.ends_with(".travel");
-}
-
 compare::Candidate from_table(std::string_view csv, const std::string& file, const Model& model,
                               const compare::Comparison& all, const ColumnMap& map) {
     compare::Candidate result;
@@ -299,7 +300,7 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
     const std::size_t n = table.lines.size();
     std::vector<std::size_t> parameters;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-        if (table.columns[c].kind == Kind::parameter) parameters.push_back(c);
+        if (table.columns[c].kind == MeaningKind::parameter) parameters.push_back(c);
     // Each point by the column in the unit of its branch, converted to that unit.
     for (const std::size_t c : parameters) {
         const Meaning& meaning = table.columns[c];
@@ -331,7 +332,7 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
             if (branch.unit != all.branches.front().unit)
                 fail_at(file, 1, "a column 'branch' is needed: branches have different units");
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-        if (table.columns[c].kind == Kind::output) {
+        if (table.columns[c].kind == MeaningKind::output) {
             const auto& channel = all.channels[table.columns[c].channel];
             if (std::ranges::find(points.columns, table.columns[c].channel,
                                   &compare::PointColumn::channel) != points.columns.end())

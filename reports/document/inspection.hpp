@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "elastocheck/trim.hpp"
 #include "elastocheck/model.hpp"
+#include "elastocheck/trim.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 
 namespace elastocheck::reports {

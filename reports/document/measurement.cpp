@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "compare/candidate/measured.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/files/provenance.hpp"
@@ -14,10 +15,10 @@
 namespace elastocheck::reports {
 namespace {
 
+using compare::nan;
+
 using json = nlohmann::ordered_json;
 using compare::Leg;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Column {
     std::string name;
@@ -93,11 +94,6 @@ void check_parameters(const Points& points, const std::string& file,
                         fmt::format("{}: the parameter of branch '{}' is {}", parameter,
                                     points.branch[k], own));
         }
-}
-
-// The channels that may place a point: the travel of each wheel.
-bool is_travel(const compare::Channel& channel) {
-    return channel.name == "travel" || channel.name.ends_with(".travel");
 }
 
 // Branch of a cell: a name from the file's mapping, or a name of the scene.
@@ -200,6 +196,10 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
 }
 
 }  // namespace
+
+bool is_travel(const compare::Channel& channel) {
+    return channel.name == "travel" || channel.name.ends_with(".travel");
+}
 
 void add_measurement(json& scene_document, std::string_view csv, const std::string& file,
                      const Model& model, const compare::Comparison& all, const LoadCases& cases) {

@@ -16,13 +16,10 @@ namespace elastocheck::reports {
 namespace {
 
 using compare::Quantity;
-using compare::Series;
 using compare::ToleranceClass;
 using json = nlohmann::ordered_json;
 
-bool is_known(const std::string& unit) {
-    return unit == "count" || compare::find_unit(unit);
-}
+bool is_known(const std::string& unit) { return unit == "count" || compare::find_unit(unit); }
 
 // The element of `kinds` with this name.
 template <class Kinds>
@@ -67,10 +64,10 @@ std::map<ToleranceClass, compare::Tolerances> tolerances_of(const JsonCursor& in
     return result;
 }
 
-Series series_of(const JsonCursor& in) {
+compare::Series series_of(const JsonCursor& in) {
     in.only_keys({"branch", "of", "channel", "unit", "values"});
-    Series s{in["branch"].text(), named(in["of"], compare::quantities), in["channel"].text(),
-             in["unit"].text(), in["values"].numbers()};
+    compare::Series s{in["branch"].text(), named(in["of"], compare::quantities),
+                      in["channel"].text(), in["unit"].text(), in["values"].numbers()};
     if (!is_known(s.unit)) in["unit"].fail(fmt::format("'{}' is not known", s.unit));
     return s;
 }
@@ -132,7 +129,7 @@ BaselineFile parse(const JsonCursor& top) {
     std::set<std::tuple<std::string, Quantity, std::string>> seen;
     for (const auto& entry : top["series"].items()) {
         file.baseline.accepted.series.push_back(series_of(entry));
-        const Series& s = file.baseline.accepted.series.back();
+        const compare::Series& s = file.baseline.accepted.series.back();
         if (!seen.emplace(s.branch, s.quantity, s.channel).second) entry.fail("is given twice");
     }
     return file;

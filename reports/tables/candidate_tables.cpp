@@ -23,7 +23,7 @@ using compare::Grade;
 using compare::Unit;
 
 std::string tolerance_of(const CandidateJudgement& j) {
-    return words(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
+    return tolerance_text(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
 }
 
 std::string worst_of(const CandidateJudgement& j, const compare::Comparison& comparison) {

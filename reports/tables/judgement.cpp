@@ -37,7 +37,7 @@ std::string size(const Worst& worst, double limit) {
 }
 
 std::string asked(const Assessment& j) {
-    return words(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
+    return tolerance_text(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
 }
 
 // "6.9 N, 7 % of its extent (rod.drive force, branch len)"
@@ -103,7 +103,7 @@ json worst_json(const std::optional<Worst>& worst) {
 
 }  // namespace
 
-std::string words(const compare::Tolerance& tolerance, bool others) {
+std::string tolerance_text(const compare::Tolerance& tolerance, bool others) {
     std::vector<std::string> parts;
     const auto add = [&](double value, const char* unit) {
         if (std::isfinite(value)) parts.push_back(setting(value, unit));

@@ -12,7 +12,7 @@ std::string sentence(const compare::Assessment& judgement);
 
 // The tolerance as text: "0.01 mm, 0.001 deg and 1 % of the extent of forces, moments and rates";
 // the last part only if `others`, outputs that are neither positions nor angles, are judged.
-std::string words(const compare::Tolerance& tolerance, bool others);
+std::string tolerance_text(const compare::Tolerance& tolerance, bool others);
 
 //   verdict         "pass", "fail", "not judged"
 //   sentence        as above

@@ -45,10 +45,6 @@ const Shape spring_shape{{"TRANSLATIONAL", "ROTATIONAL"},
                          {"I", "J", "K", "C", "KT", "CT", "LENGTH", "ANGLE", "FORCE", "TORQUE"},
                          {}};
 
-Vector3d vector(const std::vector<double>& v) {
-    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
-}
-
 // Laws of one element, in units of the scene.
 struct SixLaws {
     Matrix6 K = Matrix6::Zero();
@@ -130,7 +126,7 @@ Matrix6 in_scene_units(Matrix6 K, const Units& units) {
     K.bottomRightCorner<3, 3>() *= units.force * units.length;
     return K;
 }
-Vector6 forces(Vector6 F, const Units& units) {
+Vector6 wrench_in_scene_units(Vector6 F, const Units& units) {
     F.head<3>() *= units.force;
     F.tail<3>() *= units.force * units.length;
     return F;
@@ -193,7 +189,7 @@ void convert_bushing(Conversion& c, const Statement& s) {
                         units.length_name));
     c.draft.notes.count("BUSHING");
     Element{c, s, at, I, J.part, J.pose}.put(
-        {.K = in_scene_units(K, units), .preload = forces(F, units)});
+        {.K = in_scene_units(K, units), .preload = wrench_in_scene_units(F, units)});
 }
 
 void convert_field(Conversion& c, const Statement& s) {
@@ -222,7 +218,8 @@ void convert_field(Conversion& c, const Statement& s) {
         laws.x_0.head<3>() *= units.length;
     }
     if (at.has("FORCE"))
-        laws.preload = forces(Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
+        laws.preload = wrench_in_scene_units(
+            Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
     c.draft.notes.count("FIELD");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
 }
@@ -721,7 +718,7 @@ void convert_vector(Conversion& c, const Statement& s) {
             return miss(fmt::format("{}: {}", names[k], why));
         F[static_cast<int>(k)] = component[k].constant;
     }
-    F = forces(F, units);
+    F = wrench_in_scene_units(F, units);
     if (RM.part != floating.part)
         return miss("a force between two parts in the axes of neither the one it reacts on");
     // Displacements of I from one marker on the other part, in the axes of RM, and angles about

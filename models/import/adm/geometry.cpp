@@ -12,6 +12,11 @@
 #include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
+
+Vector3d vector(const std::vector<double>& v) {
+    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
+}
+
 namespace {
 
 using Eigen::Matrix3d;
@@ -139,10 +144,6 @@ Matrix3d about(int axis, double angle) {
 // Euler angles 3-1-3: body-fixed about z, the new x, the new z.
 Matrix3d euler_313(const std::vector<double>& a) {
     return about(2, a[0]) * about(0, a[1]) * about(2, a[2]);
-}
-
-Vector3d vector(const std::vector<double>& v) {
-    return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
 }
 
 // Origin and axes from `origin` (QP, QG), REULER, or two points: z along the first, x in the half

@@ -15,6 +15,9 @@
 
 namespace elastocheck::importer::adm {
 
+// Three numbers of a statement as a vector.
+Eigen::Vector3d vector(const std::vector<double>& v);
+
 struct Units {
     double length = 1;  // scene units per unit of the file
     double force = 1;

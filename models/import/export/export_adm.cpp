@@ -48,9 +48,9 @@ Matrix3d with_x(const Vector3d& u, const Vector3d& v) {
     return A;
 }
 
-class Writer {
+class AdmWriter {
   public:
-    Writer(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
+    AdmWriter(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
 
     void whole() {
         std::string& t = result_.text;
@@ -468,7 +468,7 @@ void require_whole(const Exported& exported, const Scene& scene, bool allow_miss
 
 Exported export_adm(const Scene& scene, bool allow_missing, Notes notes) {
     Exported result{.text = {}, .notes = std::move(notes)};
-    Writer(scene, result).whole();
+    AdmWriter(scene, result).whole();
     require_whole(result, scene, allow_missing);
     return result;
 }

@@ -24,7 +24,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using json = nlohmann::ordered_json;
 
-json list(const Vector3d& v) { return json::array({v.x(), v.y(), v.z()}); }
+json coordinates(const Vector3d& v) { return json::array({v.x(), v.y(), v.z()}); }
 
 Matrix3d frame(const Vector3d& x, const Vector3d& z) {
     Matrix3d A;
@@ -36,9 +36,9 @@ Matrix3d frame(const Vector3d& x, const Vector3d& z) {
 Matrix3d with_z(const Vector3d& z) { return frame(z.unitOrthogonal(), z); }
 Matrix3d with_x(const Vector3d& x) { return frame(x, x.unitOrthogonal()); }
 
-class Writer {
+class ChronoWriter {
   public:
-    Writer(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
+    ChronoWriter(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
 
     void whole() {
         const auto left =
@@ -66,7 +66,7 @@ class Writer {
                 continue;  // written by its mirror image, or a spindle, which Chrono adds itself
             root["Bodies"].push_back({{"Name", name.stem},
                                       {"Mirrored", twice_ || name.side != 0},
-                                      {"Position", list(scene_.bodies[b].design.r)},
+                                      {"Position", coordinates(scene_.bodies[b].design.r)},
                                       {"Rotation", {1, 0, 0, 0}},
                                       {"Mass", 1},
                                       {"Moments of Inertia", {1, 1, 1}},
@@ -174,7 +174,7 @@ class Writer {
         json attached = body(on);
         root["Spindle"] = {{"Attachment Body", attached.is_array() ? attached[0] : attached},
                            {"Mass", 1},
-                           {"COM", list(drawn(left.body, left.centre_local))},
+                           {"COM", coordinates(drawn(left.body, left.centre_local))},
                            {"Inertia", {1, 1, 1}},
                            {"Radius", 0.1},
                            {"Width", 0.1}};
@@ -190,7 +190,7 @@ class Writer {
         const Eigen::Quaterniond q(A);
         json& one = entry(root, "Joints", name, i, j);
         one["Type"] = type;
-        one["Position"] = list(at);
+        one["Position"] = coordinates(at);
         one["Rotation"] = json::array({q.w(), q.x(), q.y(), q.z()});
         return one;
     }
@@ -230,8 +230,8 @@ class Writer {
                     if (std::abs((to - from).norm() - k.length) > 1e-12 * k.length)
                         return no_joint("its length is not the one that is drawn");
                     json& rod = entry(root, "Distance Constraints", one.name, k.i.body, k.j.body);
-                    rod["Point1"] = list(from);
-                    rod["Point2"] = list(to);
+                    rod["Point1"] = coordinates(from);
+                    rod["Point2"] = coordinates(to);
                 },
                 [&](const Angle&) { no_joint("it is driven, which is the vehicle's business"); },
                 [&](const auto&) { no_joint("Chrono's reader takes this kind for a lock"); }},
@@ -256,8 +256,8 @@ class Writer {
             return miss("element '" + elastic.name + "'",
                         "its law is no table, and no entry has it");
         json& one = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
-        one["Point1"] = list(drawn(spring.i));
-        one["Point2"] = list(drawn(spring.j));
+        one["Point1"] = coordinates(drawn(spring.i));
+        one["Point2"] = coordinates(drawn(spring.j));
         one["Free Length"] = spring.free_length;
         stops_of(one, spring);
         if (!curve) {
@@ -342,8 +342,8 @@ class Writer {
             if (!stiffness || !b.preload.isZero(0) || !b.undeformed.isZero(0))
                 return miss(what, "a torsion spring with a curve, a preload or a free angle");
             json& one = entry(root, "RSDAs", elastic.name, b.i.body, b.j.body);
-            one["Position"] = list(drawn(b.i.body, b.i.s_local));
-            one["Axis"] = list(A.col(2));
+            one["Position"] = coordinates(drawn(b.i.body, b.i.s_local));
+            one["Axis"] = coordinates(A.col(2));
             one["Free Angle"] = 0;
             one["Spring Coefficient"] = (*stiffness)(5, 5);
             return;
@@ -386,7 +386,7 @@ class Writer {
 
 Exported export_chrono(const Scene& scene, bool allow_missing, Notes notes) {
     Exported result{.text = {}, .notes = std::move(notes)};
-    Writer(scene, result).whole();
+    ChronoWriter(scene, result).whole();
     require_whole(result, scene, allow_missing);
     return result;
 }

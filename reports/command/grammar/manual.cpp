@@ -30,11 +30,12 @@ std::string list(const std::vector<OptionGrammar>& options) {
 }  // namespace
 
 std::string manual(const Grammar& all, const std::string& version) {
-    std::string page = ".TH ELASTOCHECK 1 \"\" \"" + all.name + " " + text(version) +
-                       "\" \"User Commands\"\n.SH NAME\n" + all.name +
-                       " \\- verification of suspension solvers by independent solutions\n.SH SYNOPSIS\n.B " + all.name +
-                       "\nCOMMAND [OPTION ...]\n.SH DESCRIPTION\n" + text(all.description) +
-                       "\n.SH OPTIONS\n" + list(all.options) + ".SH COMMANDS\n";
+    std::string page =
+        ".TH ELASTOCHECK 1 \"\" \"" + all.name + " " + text(version) +
+        "\" \"User Commands\"\n.SH NAME\n" + all.name +
+        " \\- verification of suspension solvers by independent solutions\n.SH SYNOPSIS\n.B " +
+        all.name + "\nCOMMAND [OPTION ...]\n.SH DESCRIPTION\n" + text(all.description) +
+        "\n.SH OPTIONS\n" + list(all.options) + ".SH COMMANDS\n";
     for (const auto& command : all.commands)
         page += ".SS " + text(all.name + " " + command.name) + "\n" + text(command.description) +
                 ".\n" + list(command.positionals) + list(command.options);

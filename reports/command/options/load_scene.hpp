@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "reports/command/grammar/command.hpp"
 
 namespace elastocheck::reports {
