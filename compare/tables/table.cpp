@@ -25,6 +25,15 @@ void both(Unit unit, const std::string& abscissa, const T& at_parameter, const T
     sink(abscissa_reading(abscissa), at_abscissa);
 }
 
+// A row of its first cells and of the last, which says why there are no others.
+std::vector<Cell> without_values(const Table& table, std::vector<Cell> row,
+                                 const std::string& why) {
+    while (row.size() + 1 < table.columns.size())
+        row.push_back(table.columns[row.size()].words ? Cell("") : Cell(nan));
+    row.emplace_back(why);
+    return row;
+}
+
 // Percentage; NaN where the whole is rounding, mm or deg.
 double percent(double part, double whole) {
     return std::abs(whole) < 1e-9 ? nan : 100 * part / whole;
@@ -243,30 +252,13 @@ Table study_table(const Study& study) {
             both(branch.unit, branch.abscissa, m.equal_parameter, m.equal_abscissa,
                  [&](const std::string& reading, const std::vector<ChannelStudy>& found) {
                      const OrderFit& Phi = m.constraint_order;
-                     if (found.empty())
-                         table.rows.push_back(
-                             {branch.branch,
-                              m.method,
-                              reading,
-                              "",
-                              "",
-                              "",
-                              nan,
-                              nan,
-                              "",
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              nan,
-                              Phi.order,
-                              Phi.order_error,
-                              m.not_studied.empty() ? m.no_abscissa : m.not_studied});
+                     if (found.empty()) {
+                         auto row =
+                             without_values(table, {branch.branch, m.method, reading},
+                                            m.not_studied.empty() ? m.no_abscissa : m.not_studied);
+                         row.end()[-3] = Phi.order, row.end()[-2] = Phi.order_error;
+                         table.rows.push_back(std::move(row));
+                     }
                      for (std::size_t c = 0; c < found.size(); ++c) {
                          const ChannelStudy& s = found[c];
                          table.rows.push_back({branch.branch,
@@ -361,13 +353,11 @@ Table gap_table(const std::vector<Channel>& main,
     for (const auto& branch : attribution)
         both(branch.unit, branch.abscissa, branch.equal_parameter, branch.equal_abscissa,
              [&](const std::string& reading, const std::vector<GapShare>& found) {
-                 if (found.empty()) {
-                     std::vector<Cell> row{branch.branch, reading, "", ""};
-                     row.resize(table.columns.size() - 1, nan);
-                     row.emplace_back(branch.not_attributed.empty() ? branch.no_abscissa
-                                                                    : branch.not_attributed);
-                     table.rows.push_back(std::move(row));
-                 }
+                 if (found.empty())
+                     table.rows.push_back(without_values(table, {branch.branch, reading},
+                                                         branch.not_attributed.empty()
+                                                             ? branch.no_abscissa
+                                                             : branch.not_attributed));
                  for (std::size_t c = 0; c < found.size(); ++c) {
                      const GapShare& s = found[c];
                      std::vector<Cell> row{branch.branch,
