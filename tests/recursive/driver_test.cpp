@@ -1,4 +1,4 @@
-// Branches with drivers other than loads: exact geometry and closed forms.
+// Driven branches and loss of stability, by every method of the recursion.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -51,9 +51,6 @@ Direction own_y(BodyId b) { return {b, Vector3d::UnitY()}; }
 Angle crank_angle() {
     return {{0, Vector3d::UnitX()}, {ground, Vector3d::UnitX()}, {ground, -Vector3d::UnitZ()}, 0};
 }
-Vector3d crank_pin(double angle) {
-    return crank_length * Vector3d(std::cos(angle), 0, -std::sin(angle));
-}
 
 // The rod's far end stays in the plane z = 0.
 constexpr double rod_length = 0.3;
@@ -83,7 +80,7 @@ double worst_slider(const EquilibriumPath& path) {
     return worst;
 }
 
-TEST(Driver, AngleTurnsASliderCrankThroughAFullTurnOnItsExactGeometry) {
+TEST(Driver, MethodsFollowASliderCrankWithTheOrderOfOneStep) {
     const Driven1 d = slider_crank(360);
     EXPECT_LE(worst_slider(run(d, adaptive(1e-12), 36)), 1e-12 * 0.4);
     // The error at a point is that of the method's last step: the order of one step.
@@ -123,38 +120,6 @@ TEST(Driver, PublishedFollowsTheSliderCrankAtFirstOrderInItsConstraintError) {
     EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1) << coarse << " " << fine;
 }
 
-// Crank 0.1, coupler 0.3, rocker 0.25, ground 0.32: a crank-rocker.
-TEST(Driver, AngleTurnsAFourBarThroughAFullTurnOnItsExactGeometry) {
-    constexpr double coupler = 0.3, rocker = 0.25, base = 0.32;
-    const Vector3d pivot(base, 0, 0);
-    // The circle about the pin meets that about the pivot, above their line (+z).
-    const auto meet = [&](const Vector3d& pin) -> Vector3d {
-        const Vector3d along = (pivot - pin).normalized();
-        const double distance = (pivot - pin).norm();
-        const double x =
-            (distance * distance + coupler * coupler - rocker * rocker) / (2 * distance);
-        const Vector3d up(-along.z(), 0, along.x());
-        return pin + x * along + std::sqrt(coupler * coupler - x * x) * up;
-    };
-    const Vector3d pin = crank_pin(0), end = meet(pin);
-    Scene scene;
-    scene.bodies = {body("crank", Vector3d::Zero()), body("coupler", pin), body("rocker", pivot)};
-    scene.joints = {
-        {"hinge", Revolute{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own_y(0), y_axis}},
-        {"pin", Revolute{{1, Vector3d::Zero()}, {0, pin}, own_y(1), own_y(0)}},
-        {"pivot", Revolute{{2, Vector3d::Zero()}, on_ground(pivot), own_y(2), y_axis}},
-        {"knee", InLine{{1, end - pin}, {2, end - pivot}, own_y(2)}},
-        {"motor", crank_angle(), true}};
-    scene.probes = {{"knee", {2, end - pivot}}};
-    const Driven1 d = driven(scene, {Motion{4}, 0, 1}, full_turn, 360);
-    double worst = 0;
-    for (const auto& point : run(d, adaptive(1e-12), 36).points)
-        worst = std::max(worst, (point.poses[2].r + point.poses[2].p * (end - pivot) -
-                                 meet(crank_pin(point.load)))
-                                    .norm());
-    EXPECT_LE(worst, 1e-12 * base);
-}
-
 // ---- Elastic scenes on a jack.
 
 Driven1 jacked(const Scene& scene, const Point& at, const Vector3d& drawn, double to, int steps) {
@@ -162,30 +127,6 @@ Driven1 jacked(const Scene& scene, const Point& at, const Vector3d& drawn, doubl
     with.joints.push_back(
         {"jack", InPlane{at, on_ground(drawn), {ground, Vector3d::UnitZ()}}, true});
     return driven(with, {Motion{static_cast<int>(with.joints.size()) - 1}, 0, 1}, to, steps);
-}
-
-TEST(Driver, TravelAndLoadLeadTheMcPhersonToTheSameStates) {
-    const Scene scene = support::scene("chrono_mcpherson");
-    const Model loaded = compile(scene);
-    for (const auto& branch : loaded.branches) {
-        const auto by_load = run({loaded, branch}, adaptive(1e-9), 4);
-        const Wheel& wheel = scene.wheels[0];
-        const Vector3d drawn =
-            scene.bodies[static_cast<std::size_t>(wheel.body)].design.r +
-            scene.bodies[static_cast<std::size_t>(wheel.body)].design.p * wheel.centre_local;
-        const auto centre = [&](const Equilibrium& state) -> Vector3d {
-            const Pose& pose = state.poses[static_cast<std::size_t>(loaded.wheels[0].body)];
-            return pose.r + pose.p * wheel.centre_local;
-        };
-        const double travel = centre(by_load.points.back()).z() - drawn.z();
-        const Driven1 d = jacked(scene, {wheel.body, wheel.centre_local}, drawn, travel, 300);
-        const auto by_travel = run(d, adaptive(1e-9), 4);
-        EXPECT_LE((centre(by_travel.points.back()) - centre(by_load.points.back())).norm(), 1e-9);
-        EXPECT_NEAR(by_travel.points.back().reactions.back().force.z(), branch.to,
-                    1e-9 * std::abs(branch.to) + 1e-3);
-        const auto left = residuals(d.model, d.branch, by_travel.points.back());
-        EXPECT_LE(std::max(left.force, left.moment), 1e-2);
-    }
 }
 
 TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
@@ -221,55 +162,6 @@ TEST(Driver, ADrivenArchPassesBothItsLimitPointsAndItsWorkIsItsEnergy) {
         EXPECT_LE(worst, exact ? 1e-5 : method.formal_order > 1 ? 0.1 : 5) << method.name;
         if (exact) {
             EXPECT_NEAR(work / (k * stretch * stretch), 1, 1e-8) << method.name;
-        }
-    }
-}
-
-// ---- Elements as drivers, closed forms: exact for every method, since nothing rotates.
-
-Scene carriage() {
-    Scene scene;
-    scene.bodies = {body("carriage", Vector3d::Zero())};
-    const Direction along{ground, Vector3d::UnitX()}, own{0, Vector3d::UnitX()};
-    scene.joints = {
-        {"guide", Translational{{0, Vector3d::Zero()}, on_ground({0, 0, 0}), own, along}}};
-    scene.probes = {{"carriage", {0, Vector3d::Zero()}}};
-    return scene;
-}
-
-TEST(Driver, FreeLengthMovesTwoSpringsInSeriesByTheShareOfItsRate) {
-    Scene scene = carriage();
-    const Point own{0, Vector3d::Zero()};
-    scene.elastics = {{"left", AxialSpring{on_ground({-1, 0, 0}), own, LinearRate{3e4}, 1}},
-                      {"right", AxialSpring{own, on_ground({1, 0, 0}), LinearRate{1e4}, 1}}};
-    for (const double start : {0.0, 0.02}) {
-        const Driven1 d = driven(scene, {FreeLength{0}, start, 2}, 0.05, 10);
-        for (const auto& method : methods) {
-            if (!steps_or_adapts(method)) continue;
-            for (const auto& point : run(d, method).points)
-                EXPECT_NEAR(point.poses[0].r.x(), 0.75 * (start + 2 * point.load), 1e-13)
-                    << method.name;
-        }
-    }
-}
-
-TEST(Driver, PreloadPullsABushingBackByItsRate) {
-    Scene scene = carriage();
-    LinearStiffness law;
-    law.K.diagonal() << 2e5, 1e5, 1e5, 10, 10, 10;
-    scene.elastics = {{"mount", Bushing{{ground, Vector3d::Zero()},
-                                        {0, Vector3d::Zero()},
-                                        law,
-                                        elastocheck::Vector6::Zero()}}};
-    elastocheck::Vector6 direction = elastocheck::Vector6::Zero();
-    direction[0] = 1;
-    for (const double start : {0.0, -400.0}) {
-        const Driven1 d = driven(scene, {Preload{0, direction}, start, 1}, 1000, 10);
-        for (const auto& method : methods) {
-            if (!steps_or_adapts(method)) continue;
-            for (const auto& point : run(d, method).points)
-                EXPECT_NEAR(point.poses[0].r.x(), -(start + point.load) / 2e5, 1e-13)
-                    << method.name;
         }
     }
 }

@@ -51,24 +51,6 @@ State<double> assembled(const Bushing& b, Random& random) {
     return state_of<double>({i, j});
 }
 
-// The energies of include/elastocheck/mechanism.hpp, written independently.
-double energy(const ElasticKind& kind, const State<double>& q) {
-    const auto place = [&](BodyId b, const Vector3d& s) -> Vector3d { return q[b].r + q[b].p * s; };
-    if (const auto* e = std::get_if<AxialSpring>(&kind)) {
-        const double stretch =
-            (place(e->j.body, e->j.s_local) - place(e->i.body, e->i.s_local)).norm() -
-            e->free_length;
-        return std::get<LinearRate>(e->law).k * stretch * stretch / 2;
-    }
-    const auto& b = std::get<Bushing>(kind);
-    const Eigen::Quaterniond A_i = q[b.i.body].p * b.i.A_local, A_j = q[b.j.body].p * b.j.A_local;
-    const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
-    Vector6<double> e;
-    e << A_i.conjugate() * (place(b.j.body, b.j.s_local) - place(b.i.body, b.i.s_local)),
-        turn.angle() * turn.axis();
-    return e.dot(std::get<LinearStiffness>(b.law).K * e) / 2 + b.preload.dot(e);
-}
-
 TEST(Stiffness, IsSymmetricAndPositiveSemidefiniteAnywhere) {
     Random random;
     for (int trial = 0; trial < 50; ++trial) {
@@ -151,44 +133,6 @@ TEST(Stiffness, IsTheDerivativeOfTheLawAtAnUnloadedPosition) {
                     (force_of(model, plus) - force_of(model, minus)) / (2 * h);
                 EXPECT_LE((difference - K.col(c)).cwiseAbs().maxCoeff(),
                           1e-7 * K.cwiseAbs().maxCoeff());
-            }
-        }
-    }
-}
-
-TEST(ElasticForce, IsTheGradientOfTheEnergyAtRandomPoses) {
-    Random random;
-    for (int trial = 0; trial < 30; ++trial) {
-        const std::vector<ElasticKind> kinds{
-            random_bushing(0, 1, random), random_bushing(ground, 1, random),
-            random_bushing(0, ground, random),
-            AxialSpring{{0, random.vector()}, {1, random.vector()}, LinearRate{3e4}, 0.3}};
-        for (const auto& kind : kinds) {
-            // Markers within 2.5 rad of each other: the rotation vector is singular at π.
-            State<double> q = random.state(2);
-            if (const auto* b = std::get_if<Bushing>(&kind)) {
-                const Eigen::Quaterniond target = random.rotation(2.5);
-                const BodyId free = b->j.body != ground ? b->j.body : b->i.body;
-                const bool j_free = free == b->j.body;
-                const Eigen::Quaterniond A_other =
-                    j_free ? q[b->i.body].p * b->i.A_local : q[b->j.body].p * b->j.A_local;
-                const Eigen::Quaterniond A_free =
-                    j_free ? A_other * target : A_other * target.conjugate();
-                q[free].p =
-                    (A_free * (j_free ? b->j.A_local : b->i.A_local).conjugate()).normalized();
-                q[free].A = q[free].p.toRotationMatrix();
-            }
-            const auto f = force_of(model_of(kind, 2), q);
-            for (int c = 0; c < 12; ++c) {
-                constexpr double h = 1e-5;
-                Vector<double> dq = Vector<double>::Zero(12);
-                dq[c] = h;
-                State<double> plus = q, minus = q;
-                advance(plus, dq);
-                advance(minus, (-dq).eval());
-                const double difference = (energy(kind, plus) - energy(kind, minus)) / (2 * h);
-                EXPECT_NEAR(difference, f[c], 1e-6 * f.cwiseAbs().maxCoeff())
-                    << "kind " << kind.index() << " coordinate " << c;
             }
         }
     }

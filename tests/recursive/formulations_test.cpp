@@ -1,4 +1,4 @@
-// Laws, formulations and followers against an independent implementation of include/elastocheck/mechanism.hpp.
+// Curves, angles and the stiffness of every formulation; forces are tested in tests/legs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,10 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 using Long = long double;
-using Matrix3L = Matrix3<Long>;
-using Vector3L = Vector3<Long>;
 
-// ---- Energy in long double.
+// ---- Curves in long double.
 
 Long f_of(const Curve& f, Long x) {
     std::size_t k = 0;
@@ -38,58 +36,6 @@ Long energy_of(const Curve& f, Long x) {
     }
     return x < 0 ? -sum : sum;
 }
-Long energy_of(const ScalarLaw& law, Long x) {
-    if (const auto* linear = std::get_if<LinearRate>(&law))
-        return static_cast<Long>(linear->k) * x * x / 2;
-    return energy_of(std::get<Curve>(law), x);
-}
-Long energy_of(const SpatialLaw& law, const Vector6<Long>& e) {
-    if (const auto* linear = std::get_if<LinearStiffness>(&law))
-        return e.dot(linear->K.cast<Long>() * e) / 2;
-    Long sum = 0;
-    for (int k = 0; k < 6; ++k)
-        sum += energy_of(std::get<PerAxis>(law).axis[static_cast<std::size_t>(k)], e[k]);
-    return sum;
-}
-
-Vector6<Long> measured(const Bushing& b, const State<Long>& q) {
-    const auto axes = [&](const Marker& m) -> Matrix3L {
-        return q[m.body].p.toRotationMatrix() * m.A_local.cast<Long>().toRotationMatrix();
-    };
-    const auto place = [&](const Marker& m) -> Vector3L {
-        return q[m.body].r + q[m.body].p.toRotationMatrix() * m.s_local.cast<Long>();
-    };
-    const Matrix3L A_i = axes(b.i), B = A_i.transpose() * axes(b.j);
-    const Eigen::AngleAxis<Long> turn(B);
-    Vector3L d = A_i.transpose() * (place(b.j) - place(b.i)), theta = Vector3L::Zero();
-    if (b.formulation.frame == Formulation::Frame::middle)
-        d = Eigen::AngleAxis<Long>(-turn.angle() / 2, turn.axis()).toRotationMatrix() * d;
-    switch (b.formulation.angles) {
-        case Formulation::Angles::rotation_vector: theta = turn.angle() * turn.axis(); break;
-        case Formulation::Angles::cardan:
-            theta = {std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)),
-                     std::atan2(-B(0, 1), B(0, 0))};
-            break;
-        case Formulation::Angles::projected:
-            theta = {std::atan2(-B(1, 2), B(2, 2)), std::atan2(B(0, 2), B(2, 2)),
-                     std::atan2(B(1, 0), B(0, 0))};
-            break;
-    }
-    Vector6<Long> e;
-    e << d, theta;
-    return e - b.undeformed.cast<Long>();
-}
-Long energy(const Bushing& b, const State<Long>& q) {
-    const Vector6<Long> e = measured(b, q);
-    return energy_of(b.law, e) + b.preload.cast<Long>().dot(e);
-}
-Long energy(const AxialSpring& s, const State<Long>& q) {
-    const auto place = [&](const Point& p) -> Vector3L {
-        return q[p.body].r + q[p.body].p.toRotationMatrix() * p.s_local.cast<Long>();
-    };
-    return energy_of(s.law, (place(s.j) - place(s.i)).norm() - static_cast<Long>(s.free_length));
-}
-
 // ---- Configurations.
 
 Bushing bushing(Random& random, const Formulation& formulation, bool curves) {
@@ -116,40 +62,6 @@ Model model_of(const ElasticKind& kind) {
     model.elastics.push_back({"element", kind});
     return model;
 }
-template <class Real>
-Vector<Real> force_of(const ElasticKind& kind, const State<Real>& q) {
-    const Model model = model_of(kind);
-    return elastic_force<Real>(model, inputs_as_drawn<Real>(model), q);
-}
-bool near_a_knot(const ElasticKind& kind, const State<double>& q) {
-    const Model model = model_of(kind);
-    const auto inputs = inputs_as_drawn<double>(model);
-    for (const auto& at : curves_of(model))
-        for (const double knot : at.curve->knots)
-            if (std::abs(deflection<double>(model, inputs, q, at) - knot) < 1e-2) return true;
-    return false;
-}
-
-// Largest difference between the force and finite differences (order h⁴) of the energy, relative to
-// the force.
-template <class Element>
-double gradient_error(const Element& element, const std::vector<Pose>& poses) {
-    const Vector<Long> f = force_of<Long>(element, state_of<Long>(poses));
-    const Long h = 1e-3L;
-    Long worst = 0;
-    for (int c = 0; c < 12; ++c) {
-        const auto at = [&](Long share) {
-            State<Long> q = state_of<Long>(poses);
-            advance(q, Vector<Long>(share * h * Vector<Long>::Unit(12, c)));
-            return energy(element, q);
-        };
-        const Long slope =
-            (45 * (at(1) - at(-1)) - 9 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60 * h);
-        worst = std::max(worst, std::abs(slope - f[c]));
-    }
-    return static_cast<double>(worst / f.cwiseAbs().maxCoeff());
-}
-
 TEST(Law, OfACurveIsItsPolynomialAndTheDerivativeOfIt) {
     Random random;
     const Curve f = random_curve(random, 1, 1e3);
@@ -181,159 +93,6 @@ TEST(Law, HasKinksWhereTheSlopeJumps) {
     EXPECT_EQ(kinks_of(stop(0.03, 3e5)), std::vector<double>{0.03});
     // x³ on one side of 0, zero on the other: C1, with continuous curvature. x² is C1 only.
     EXPECT_TRUE(kinks_of({{0, 1}, {{0, 0, 0, 0}, {0, 0, 1e5, 0}, {1e5, 2e5, 0, 0}}}).empty());
-}
-
-TEST(Formulation, WithAnEnergyHasTheForcesOfIt) {
-    Random random;
-    for (const Formulation& formulation : every_formulation()) {
-        double worst = 0;
-        int compared = 0;
-        for (const double angle : {0.0, 1e-9, 1e-3, 0.03, 0.3, 1.0, 1.4})
-            for (const bool curves : {false, true})
-                for (int trial = 0; trial < 4; ++trial) {
-                    const Bushing b = bushing(random, formulation, curves);
-                    const auto poses = somewhere(b, angle, random);
-                    if (near_a_knot(b, state_of<double>(poses))) continue;
-                    worst = std::max(worst, gradient_error(b, poses));
-                    ++compared;
-                }
-        EXPECT_GT(compared, 30);
-        if (has_energy(formulation))
-            EXPECT_LE(worst, 1e-11) << name_of(formulation);
-        else
-            EXPECT_GT(worst, 1e-3) << name_of(formulation) << ": and it is not to have one";
-    }
-}
-
-TEST(Formulation, OfASpringWithACurveHasTheForcesOfItsEnergy) {
-    Random random;
-    int compared = 0;
-    for (int trial = 0; trial < 50; ++trial) {
-        const AxialSpring s{{0, random.vector()},
-                            {1, random.vector()},
-                            random_curve(random, 1, 1e3),
-                            random(0.1, 2)};
-        const std::vector<Pose> poses{random.pose(), random.pose()};
-        if (near_a_knot(s, state_of<double>(poses)) ||
-            force_of<double>(s, state_of<double>(poses)).norm() < 10)
-            continue;
-        const auto q = state_of<double>(poses);
-        if ((q[0].r + q[0].lever(s.i.s_local) - q[1].r - q[1].lever(s.j.s_local)).norm() < 0.3)
-            continue;
-        EXPECT_LE(gradient_error(s, poses), 1e-10);
-        ++compared;
-    }
-    EXPECT_GT(compared, 20);
-}
-
-// (F on i, M on i, F on j, M on j) of non-conjugate forces, or without the moment of the offset, as
-// stated.
-TEST(Formulation, WithoutEnergyHasTheForcesAsStated) {
-    Random random;
-    for (const Formulation& formulation : every_formulation()) {
-        if (formulation.conjugate || formulation.frame != Formulation::Frame::on_i) continue;
-        const Bushing b = bushing(random, formulation, true);
-        const State<double> q = state_of<double>(somewhere(b, 0.8, random));
-        const Matrix3<double> A_i = q[0].A * b.i.A_local.toRotationMatrix();
-        const Vector6<double> e =
-            measured(b, state_of<Long>({{q[0].r, q[0].p}, {q[1].r, q[1].p}})).cast<double>();
-        const Vector6<double> stress = gradient<double>(b.law, e) + b.preload;
-        const Vector3d F = A_i * stress.head<3>(), M = A_i * stress.tail<3>();
-        const Vector3d p_j = q[1].r + q[1].lever(b.j.s_local),
-                       p_i = q[0].r + q[0].lever(b.i.s_local);
-        Vector<double> stated(12);
-        stated << -F, -((formulation.offset_moment ? p_j : p_i) - q[0].r).cross(F) - M, F,
-            (p_j - q[1].r).cross(F) + M;
-        EXPECT_LE((force_of<double>(b, q) - stated).norm(), 1e-12 * stated.norm())
-            << name_of(formulation);
-    }
-}
-
-TEST(Formulation, OfAnyKindTurnsWithTheBodiesAndBalancesButForTheOffset) {
-    Random random;
-    for (const Formulation& formulation : every_formulation())
-        for (int trial = 0; trial < 10; ++trial) {
-            const Bushing b = bushing(random, formulation, trial % 2 == 0);
-            const auto poses = somewhere(b, 1.2, random);
-            const State<double> q = state_of<double>(poses);
-            const Vector<double> f = force_of<double>(b, q);
-            const double size = f.cwiseAbs().maxCoeff();
-            // Rigid motion of both bodies.
-            const Eigen::Quaterniond R = random.rotation();
-            const Vector3d t = random.vector();
-            std::vector<Pose> moved = poses;
-            for (auto& pose : moved) pose = {R * pose.r + t, R * pose.p};
-            const Vector<double> turned = force_of<double>(b, state_of<double>(moved));
-            for (int c = 0; c < 12; c += 3)
-                EXPECT_LE((turned.segment<3>(c) - R * f.segment<3>(c)).norm(), 1e-11 * size)
-                    << name_of(formulation);
-            // Forces balance, and moments too, up to D × F where it is left out.
-            const Vector3d F = f.segment<3>(6);
-            const Vector3d D = q[1].r + q[1].lever(b.j.s_local) - q[0].r - q[0].lever(b.i.s_local);
-            Vector3d left =
-                f.segment<3>(3) + q[0].r.cross(f.segment<3>(0)) + f.segment<3>(9) + q[1].r.cross(F);
-            if (!formulation.offset_moment) left -= D.cross(F);
-            EXPECT_LE((f.segment<3>(0) + F).norm(), 1e-12 * size);
-            EXPECT_LE(left.norm(), 1e-11 * size) << name_of(formulation);
-        }
-}
-
-TEST(Formulation, OfAnyKindIsTheSameLawAtSmallDeformations) {
-    Random random;
-    Bushing b = bushing(random, {}, false);
-    b.preload.setZero();
-    b.undeformed.setZero();
-    const double size = 1e-6;
-    std::vector<Pose> poses = somewhere(b, size, random);
-    const State<double> q = state_of<double>(poses);
-    poses[1].r +=
-        q[0].r + q[0].lever(b.i.s_local) - q[1].r - q[1].lever(b.j.s_local) + size * random.unit();
-    const Vector<double> f = force_of<double>(b, state_of<double>(poses));
-    for (const Formulation& formulation : every_formulation()) {
-        b.formulation = formulation;
-        const Vector<double> other = force_of<double>(b, state_of<double>(poses));
-        EXPECT_LE((other - f).norm(), 10 * size * f.norm()) << name_of(formulation);
-        EXPECT_EQ((other - f).norm() > 0, !(formulation == Formulation{})) << name_of(formulation);
-    }
-}
-
-TEST(Formulation, OnJIsTheBushingTurnedRound) {
-    // The energy stated directly: d in the axes of j, the same rotation vector.
-    Random random;
-    for (const bool curves : {false, true})
-        for (int trial = 0; trial < 10; ++trial) {
-            Bushing b = bushing(random, {Formulation::Frame::on_j}, curves);
-            const auto poses = somewhere(b, 0.9, random);
-            const Bushing turned = markers_swapped(b);
-            ASSERT_EQ(turned.formulation.frame, Formulation::Frame::on_i);
-            if (near_a_knot(turned, state_of<double>(poses))) continue;
-            const auto straight = [&](const State<Long>& q) {
-                const auto axes = [&](const Marker& m) -> Matrix3L {
-                    return q[m.body].p.toRotationMatrix() *
-                           m.A_local.cast<Long>().toRotationMatrix();
-                };
-                const Vector3L D = q[1].r + q[1].p * b.j.s_local.cast<Long>() - q[0].r -
-                                   q[0].p * b.i.s_local.cast<Long>();
-                const Eigen::AngleAxis<Long> turn(Matrix3L(axes(b.i).transpose() * axes(b.j)));
-                Vector6<Long> e;
-                e << axes(b.j).transpose() * D, turn.angle() * turn.axis();
-                e -= b.undeformed.cast<Long>();
-                return energy_of(b.law, e) + b.preload.cast<Long>().dot(e);
-            };
-            const Vector<Long> f = force_of<Long>(turned, state_of<Long>(poses));
-            const Long h = 1e-3L;
-            for (int c = 0; c < 12; ++c) {
-                const auto at = [&](Long share) {
-                    State<Long> q = state_of<Long>(poses);
-                    advance(q, Vector<Long>(share * h * Vector<Long>::Unit(12, c)));
-                    return straight(q);
-                };
-                const Long slope =
-                    (45 * (at(1) - at(-1)) - 9 * (at(2) - at(-2)) + (at(3) - at(-3))) / (60 * h);
-                EXPECT_LE(static_cast<double>(std::abs(slope - f[c])),
-                          1e-10 * static_cast<double>(f.norm()));
-            }
-        }
 }
 
 TEST(Formulation, CardanAnglesMakeTheRotation) {

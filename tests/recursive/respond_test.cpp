@@ -1,4 +1,4 @@
-// Linear response against derivatives of solutions, closed forms and the paper's first step.
+// Linear response of the recursion by each method: the paper's first step, one matrix, idle modes.
 #include "recursive/linear_response.hpp"
 
 #include <fmt/format.h>
@@ -44,50 +44,6 @@ BodyId body_named(const Model& model, const std::string& name) {
         if (model.bodies[b].name == name) return static_cast<BodyId>(b);
     throw std::logic_error("no body " + name);
 }
-void expect_slope(const OneWay& way, const Disturbance& disturbance, double h,
-                  const std::string& where) {
-    support::expect_slope(one(way, end_of(way.model, way.branch), disturbance), way, disturbance, h,
-                          end_of, where);
-}
-
-TEST(Respond, IsTheSlopeOfTheOwnSolutionFarFromDesign) {
-    const struct {
-        const char *scene, *branch;
-        double to;
-    } all[] = {{"mcpherson_strut", "lateral", 1},
-               {"double_wishbone", "vertical", 1},
-               {"double_wishbone", "travel", -1},
-               {"front_axle", "vertical", 1},
-               {"semi_trailing_arm", "vertical", -1}};
-    for (const auto& [scene, branch, to] : all) {
-        const OneWay way = way_of(scene, branch, to);
-        for (int k = 0; k < 3; ++k)
-            expect_slope(way, at_wheel(way.model, Vector3d::Unit(k), Vector3d::Zero()), 400,
-                         fmt::format("{}, {}, force {}", scene, branch, k));
-        expect_slope(way, at_wheel(way.model, Vector3d::Zero(), Vector3d::UnitZ()), 100,
-                     fmt::format("{}, {}, moment", scene, branch));
-    }
-}
-
-TEST(Respond, IsTheSlopeOfTheOwnSolutionOverADrivenOffset) {
-    const char* all[][2] = {{"double_wishbone", "steering"},
-                            {"front_axle", "parallel"},
-                            {"semi_trailing_arm", "travel"}};
-    for (const auto& [scene, branch] : all) {
-        const OneWay way = way_of(scene, branch, 1);
-        for (std::size_t j = 0; j < way.model.joints.size(); ++j)
-            if (way.model.joints[j].driven >= 0)
-                expect_slope(way, Motion{static_cast<int>(j)}, 0.004,
-                             fmt::format("{}, {}", scene, way.model.joints[j].name));
-    }
-}
-
-TEST(Respond, FollowersAnswerAsTheyAreSolved) {
-    const OneWay way = way_of("follower", "up", 1);
-    expect_slope(way, UnitWrench{{0, {0.3, 0, 0}}, Vector3d(0.3, 0.2, 1), Vector3d(0.1, 0, 0)}, 100,
-                 "follower");
-}
-
 // The paper's first step is the response of K to the load, for any size of the load.
 TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
@@ -160,17 +116,6 @@ TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
                   std::holds_alternative<Linear>(method.kind) ? linear : consistent)
             << method.name;
     EXPECT_GT(apart(linear, consistent), 1e-3);
-}
-
-TEST(Respond, OnlyThePosesAndTheParameterOfAStateAreRead) {
-    const OneWay way = way_of("double_wishbone", "vertical", 1);
-    Equilibrium state = end_of(way.model, way.branch);
-    const std::vector<Disturbance> side{at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero())};
-    const auto first = linear_response(way.model, way.branch, state, side, rung("tangent"));
-    for (Wrench& reaction : state.reactions) reaction.force.setConstant(std::nan(""));
-    const auto second = linear_response(way.model, way.branch, state, side, rung("tangent"));
-    ASSERT_EQ(second.outcome, Outcome::converged) << second.detail;
-    EXPECT_EQ(stacked(first.increments[0]), stacked(second.increments[0]));
 }
 
 TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
@@ -261,28 +206,6 @@ TEST(Respond, JointsThatSayTheSameTwiceChangeNothing) {
     }
 }
 
-TEST(Respond, AnOffsetThatASecondJointHoldsIsSaidToContradict) {
-    Scene s = hinged(false);
-    const auto stand = [](const Vector3d& at) {
-        return InPlane{{0, at}, {ground, {0, 0, 0}}, {ground, Vector3d::UnitZ()}};
-    };
-    s.joints.push_back({"jack", stand({0.8, 0, 0})});
-    s.joints.push_back({"stop", stand({0.8, 0.1, 0})});
-    s.branches[0] = {"still",
-                     0,
-                     0.01,
-                     10,
-                     ParameterUnit::metre,
-                     {{Load{"none", DeadForce{{0, Vector3d::Zero()}}}, 0, 1}}};
-    const OneWay way = way_of(s, "still", 1);
-    const Equilibrium state{0, {way.model.bodies[0].design}, {}, 0};
-    const Disturbance up = Motion{1};
-    const Response response = linear_response(way.model, way.branch, state, {&up, 1});
-    EXPECT_EQ(response.outcome, Outcome::inconsistent_constraints);
-    EXPECT_NE(response.detail.find("moving 'jack' would open joints"), std::string::npos)
-        << response.detail;
-}
-
 TEST(Respond, AStateThatIsNoLongerStiffHasNoAnswer) {
     // A strut across under 1024 N, whose geometric stiffness -4096 N/m cancels the rate along:
     // exact in binary.
@@ -296,36 +219,6 @@ TEST(Respond, AStateThatIsNoLongerStiffHasNoAnswer) {
     EXPECT_NE(response.detail.find("no one response"), std::string::npos) << response.detail;
     EXPECT_NEAR(one(way, state, pull, rung("published"))[0] * 4096, 1, 1e-14)
         << "which knows of no pressure";
-}
-
-TEST(Respond, StatesThatAreNoNumbersAreSaidToBeNone) {
-    const OneWay way = way_of("double_wishbone", "vertical", 1);
-    Equilibrium state = end_of(way.model, way.branch);
-    state.poses[1].r.y() = std::numeric_limits<double>::quiet_NaN();
-    const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
-    for (const char* method : {"published", "series"})
-        EXPECT_EQ(linear_response(way.model, way.branch, state, {&side, 1}, rung(method)).outcome,
-                  Outcome::not_finite);
-}
-
-TEST(Respond, WhatIsNotOfTheModelIsRefused) {
-    const OneWay way = way_of("double_wishbone", "vertical", 1);
-    Equilibrium state = end_of(way.model, way.branch);
-    const auto ask = [&](const Disturbance& disturbance) {
-        return linear_response(way.model, way.branch, state, {&disturbance, 1});
-    };
-    EXPECT_THROW(ask(UnitWrench{{ground, Vector3d::Zero()}, Vector3d::UnitX()}),
-                 std::invalid_argument);
-    EXPECT_THROW(ask(UnitWrench{{99, Vector3d::Zero()}, Vector3d::UnitX()}), std::invalid_argument);
-    EXPECT_THROW(ask(Motion{-1}), std::invalid_argument);
-    EXPECT_THROW(ask(Motion{99}), std::invalid_argument);
-    for (std::size_t j = 0; j < way.model.joints.size(); ++j)
-        if (way.model.joints[j].driven < 0) {
-            EXPECT_THROW(ask(Motion{static_cast<int>(j)}), std::invalid_argument);
-        }
-    state.poses.pop_back();
-    EXPECT_THROW(ask(at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero())),
-                 std::invalid_argument);
 }
 
 }  // namespace

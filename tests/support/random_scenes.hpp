@@ -8,7 +8,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+
+#include "elastocheck/scene.hpp"
 
 namespace elastocheck::compare {
 
@@ -22,5 +25,9 @@ namespace elastocheck::compare {
 // or the offset of another joint, so that the reactions depend on the elastic elements.
 enum class Family { any, driven };
 std::string random_scene(std::uint64_t seed, Family family = Family::any);
+
+// The random scene of family `any`, read; none where it has more than three bodies or a beam, which
+// take longer to solve, or where the reader refuses it because its driver moves no output.
+std::optional<Scene> small_random_scene(std::uint64_t seed);
 
 }  // namespace elastocheck::compare

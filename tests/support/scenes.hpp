@@ -1,4 +1,4 @@
-// The shipped scenes, and the same scene told differently.
+// The scenes of models/scenes, a rich one built in code, and invariance transforms.
 #pragma once
 
 #include <string>
@@ -24,7 +24,12 @@ bool has_potential(const Scene& scene);
 // models/scenes/NAME.yaml, which is in m and N, with its numbers rewritten and read in mm and kN.
 Scene in_millimetres_and_kilonewtons(const std::string& name);
 
-// The same scene told differently: what must not matter to any solver.
+// A general axle corner: eight kinds of joints, bushings with full 6×6 rates and preload, preloaded
+// springs, a static load, a load of force and moment together, body axes different from ground
+// axes.
+Scene rich_scene();
+
+// Transforms that must not change the result of any solver.
 using compare::mirrored;
 using compare::moved;
 using compare::reversed;

@@ -1,7 +1,4 @@
-// Bushing formulations with an energy, with every law: the stated energy, its gradient and Hessian,
-// and the end of the branch at the end of a law.
-#include <numbers>
-
+// Bushing formulations with an energy, with every law: gradient and Hessian of the potential.
 #include "models/curve.hpp"
 #include "reference/energy/constraints/balance.hpp"
 #include "reference/energy/potential/laws.hpp"
@@ -11,7 +8,6 @@
 namespace elastocheck::reference::energy {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -37,8 +33,7 @@ SpatialLaw random_law(Random& random, bool curved) {
 
 struct Case {
     std::string name;
-    Bushing bushing;  // as requested, with its frame on j too
-    Model model;      // as compiled
+    Model model;  // as compiled
 };
 
 std::vector<Case> cases(Random& random) {
@@ -59,7 +54,7 @@ std::vector<Case> cases(Random& random) {
                     all.push_back(
                         {fmt::format("frame {} angles {} {} {}-{}", static_cast<int>(frame),
                                      static_cast<int>(measure), curved ? "curves" : "linear", i, j),
-                         b, model});
+                         model});
                 }
     return all;
 }
@@ -91,87 +86,9 @@ Places inside(Random& random, const Case& one, double size) {
     }
 }
 
-// ---- The laws of include/elastocheck/mechanism.hpp, implemented independently from the poses.
-
-double u(const ScalarLaw& law, double x) {
-    if (const auto* line = std::get_if<LinearRate>(&law)) return 0.5 * line->k * x * x;
-    // verified in laws_test.cpp: the integral of f from 0
-    return values(law, Vector1(0.0), Vector1(x)).change;
-}
-double u(const SpatialLaw& law, const Vector6& x) {
-    if (const auto* line = std::get_if<LinearStiffness>(&law)) return 0.5 * x.dot(line->K * x);
-    double sum = 0;
-    for (int k = 0; k < 6; ++k)
-        sum += u(std::get<PerAxis>(law).axis[static_cast<std::size_t>(k)], x[k]);
-    return sum;
-}
-
-Vector6 deformation(const Bushing& b, const std::vector<Pose>& poses) {
-    const auto at = [&](BodyId body) {
-        return body == ground ? Pose{} : poses[static_cast<std::size_t>(body)];
-    };
-    const auto place = [&](const Marker& m) -> Vector3d {
-        return at(m.body).r + at(m.body).p * m.s_local;
-    };
-    const Quaterniond A_i = at(b.i.body).p * b.i.A_local, A_j = at(b.j.body).p * b.j.A_local;
-    const Matrix3d B = (A_i.conjugate() * A_j).toRotationMatrix();
-    Vector3d theta;
-    switch (b.formulation.angles) {
-        case Angles::rotation_vector: {
-            const Eigen::AngleAxisd turn(B);
-            theta = turn.angle() * turn.axis();
-            break;
-        }
-        case Angles::cardan:
-            theta << std::atan2(-B(1, 2), B(2, 2)), std::asin(B(0, 2)),
-                std::atan2(-B(0, 1), B(0, 0));
-            break;
-        case Angles::projected:
-            theta << std::atan2(-B(1, 2), B(2, 2)), std::atan2(B(0, 2), B(2, 2)),
-                std::atan2(B(1, 0), B(0, 0));
-            break;
-    }
-    Quaterniond A_f = A_i;
-    if (b.formulation.frame == Frame::on_j) A_f = A_j;
-    if (b.formulation.frame == Frame::middle) A_f = A_i.slerp(0.5, A_j);
-    Vector6 e;
-    e << A_f.conjugate() * (place(b.j) - place(b.i)), theta;
-    return e;
-}
-
-// A frame on j has the angles of the bushing with exchanged markers, with opposite sign.
-double stated_energy(const Bushing& b, const std::vector<Pose>& poses) {
-    Vector6 e = deformation(b, poses);
-    if (b.formulation.frame == Frame::on_j) {
-        Bushing other = b;
-        std::swap(other.i, other.j);
-        e.tail<3>() = -deformation(other, poses).tail<3>();
-    }
-    return u(b.law, e - b.undeformed) + b.preload.dot(e);
-}
-
 Potential potential_at(const Case& one, Chart& chart, const VectorXd& x) {
     move_to(chart, x);
     return potential(one.model, nothing_prescribed(one.model), chart);
-}
-
-TEST(Formulations, EnergyIsTheOneStated) {
-    Random random;
-    double worst = 0;
-    for (int repeat = 0; repeat < 10; ++repeat) {
-        for (const auto& one : cases(random)) {
-            const auto [centre, x] = inside(random, one, 0.3);
-            Chart chart = chart_about(centre);
-            const double change = potential_at(one, chart, x).change;
-            const double before = stated_energy(one.bushing, centre),
-                         expected = stated_energy(one.bushing, poses(chart)) - before;
-            const double error =
-                std::abs(change - expected) / (1 + std::abs(before) + std::abs(expected));
-            EXPECT_LE(error, 1e-12) << one.name;
-            worst = std::max(worst, error);
-        }
-    }
-    EXPECT_LE(worst, 2e-13);
 }
 
 TEST(Formulations, GradientIsFirstOrderExact) {
@@ -232,90 +149,6 @@ TEST(Formulations, ChangesKeepTheirRelativeAccuracy) {
         }
     }
     EXPECT_LE(worst, 2e-14);
-}
-
-// Formulations differ to second order: for a small deformation ε, the energies of all nine differ
-// by ε³.
-TEST(Formulations, AllAreTheSameWhereTheDeformationIsSmall) {
-    Random random;
-    const SpatialLaw law = random_law(random, false);
-    const VectorXd x = random.many(12);
-    double spread[2];
-    for (const int half : {0, 1}) {
-        std::vector<double> energies;
-        for (const Frame frame : frames)
-            for (const Angles measure : measures) {
-                Bushing b{Marker{0}, Marker{1}, law};
-                b.formulation = {frame, measure};
-                Chart chart = chart_about({Pose{}, Pose{}});
-                move_to(chart, (half ? 0.5e-2 : 1e-2) * x);
-                energies.push_back(stated_energy(b, poses(chart)));
-            }
-        spread[half] = *std::ranges::max_element(energies) - *std::ranges::min_element(energies);
-        EXPECT_GT(spread[half], 1e-9 * energies[0]);
-    }
-    EXPECT_NEAR(std::log2(spread[0] / spread[1]), 3, 0.1);
-}
-
-// A body on one bushing, rotated about an axis by a moment until the law ends: no half turn, no
-// gimbal lock is passed.
-TEST(Formulations, WhereALawEndsTheBranchEnds) {
-    const double k = 500, pi = std::numbers::pi;
-    struct End {
-        Frame frame;
-        Angles angles;
-        int axis;
-        double angle;
-    };
-    for (const auto& [frame, measure, axis, end] :
-         {End{Frame::on_i, Angles::rotation_vector, 0, pi},
-          End{Frame::middle, Angles::rotation_vector, 1, pi},
-          End{Frame::on_i, Angles::cardan, 1, pi / 2},
-          End{Frame::middle, Angles::cardan, 1, pi / 2}, End{Frame::on_i, Angles::cardan, 2, pi},
-          End{Frame::on_i, Angles::projected, 1, pi / 2},
-          End{Frame::on_i, Angles::projected, 2, pi}}) {
-        Model model;
-        model.bodies = {{"body", {}}};
-        Bushing b{Marker{ground}, Marker{0}, LinearStiffness{}};
-        // Stiff across the axis: otherwise a dead moment would buckle the body about the other axes
-        // first.
-        stiffness_of(b).diagonal() << 1e5, 1e5, 1e5, 50 * k, 50 * k, 50 * k;
-        stiffness_of(b)(3 + axis, 3 + axis) = k;
-        b.formulation = {frame, measure};
-        model.elastics = {{"bushing", b}};
-        const Branch branch = load_branch("turn", {{"moment", DeadMoment{0, Vector3d::Unit(axis)}}},
-                                          1.2 * k * end, 12);
-        const auto path = solve(model, branch, sweep(branch));
-        const std::string what =
-            fmt::format("frame {} angles {} axis {}: {}", static_cast<int>(frame),
-                        static_cast<int>(measure), axis, path.detail);
-        EXPECT_EQ(path.outcome, Outcome::branch_lost) << what;
-        for (const auto& state : path.points) {
-            EXPECT_LT(state.load, k * end) << what;
-            const Quaterniond expected(Eigen::AngleAxisd(state.load / k, Vector3d::Unit(axis)));
-            EXPECT_LE(state.poses[0].p.angularDistance(expected), 1e-8) << what;
-        }
-        EXPECT_GE(path.points.size(), 10u) << what;
-    }
-}
-
-// F only along e₀: a bushing deformed in the design position settles where its force is zero.
-TEST(Formulations, ABushingSettlesToItsUndeformedOffset) {
-    for (const Frame frame : {Frame::on_i, Frame::middle}) {
-        Model model;
-        model.bodies = {{"body", {}}};
-        Bushing b{Marker{ground}, Marker{0}, LinearStiffness{}};
-        stiffness_of(b).diagonal() << 1e5, 2e5, 3e5, 500, 600, 700;
-        b.undeformed << 0.003, -0.002, 0.001, 0.02, 0.01, -0.03;
-        b.formulation.frame = frame;
-        model.elastics = {{"bushing", b}};
-        const Branch branch =
-            load_branch("push", {{"force", DeadForce{{0}, Vector3d::UnitX()}}}, 1, 1);
-        const double loads[] = {0};
-        const auto path = solve(model, branch, loads);
-        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        EXPECT_LE((deformation(b, path.points[0].poses) - b.undeformed).norm(), 1e-11);
-    }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <Eigen/QR>
 
 #include "reference/energy/constraints/balance.hpp"
+#include "reference/energy/linear_response.hpp"
 #include "reference/energy/minimise/cost.hpp"
 #include "support.hpp"
 
@@ -103,6 +104,11 @@ TEST(LargeScenes, AreNotAskedAndSayHowMuchItWouldTake) {
                                  "operations for 6000 coordinates, at most 1e+11"})
             EXPECT_NE(path.detail.find(part), std::string::npos) << path.detail;
         EXPECT_STREQ(name(path.outcome), "too large");
+        const Model model = compile(chain(1000, hinged));
+        const Equilibrium state{0, std::vector<Pose>(model.bodies.size()), {}, 0};
+        const Disturbance pull = UnitWrench{{999, Vector3d::Zero()}, Vector3d::UnitX()};
+        EXPECT_EQ(linear_response(model, model.branches[0], state, {&pull, 1}).outcome,
+                  Outcome::too_large);
     }
 }
 

@@ -7,7 +7,7 @@
 
 #include "models/branch.hpp"
 #include "reference/equilibrium/continuation/continuation.hpp"
-#include "tests/reference/equilibrium/driven_scenes.hpp"
+#include "tests/reference/equilibrium/scenes.hpp"
 
 namespace elastocheck::reference::equilibrium::test {
 namespace {
