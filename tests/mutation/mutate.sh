@@ -92,7 +92,7 @@ alarms() {
     echo Performance
 }
 tests='models/test_models recursive/test_recursive recursive/test_series recursive/test_series_and_reference
-    recursive/test_allocation reference/test_equilibrium reference/test_energy reference/test_references_respond
+    recursive/test_allocation reference/test_equilibrium reference/test_energy legs/test_legs
     compare/test_compare compare/test_characteristics compare/test_trade gate/test_judge gate/test_gate reports/test_reports'
 # Of what is no GoogleTest, the one that looks at the build tree itself.
 of_build_tree=Performance.ValgrindIsLookedForWhenItIsNeeded
