@@ -179,10 +179,7 @@ struct Elements : LegTest {
         return std::fmax(r.force, r.moment) / static_cast<double>(stated.cwiseAbs().maxCoeff());
     }
 };
-std::vector<Leg> judges() {
-    return {{Leg::equilibrium}, {Leg::energy}, {Leg::recursive, *recursive::find_method("series")}};
-}
-ELASTOCHECK_FOR(judges, Elements);
+ELASTOCHECK_FOR(exact_legs, Elements);
 
 // Rising cubics between knots at ±1.5 [m] or [rad] with other slopes outside, and a kink at 0.2.
 Curve curve(Random& random, double rate) {

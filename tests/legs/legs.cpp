@@ -27,6 +27,10 @@ std::vector<Leg> accurate_legs() {
             {Leg::recursive, {"adaptive", 3, rec::Adaptive{1e-12, 1e-12}}}};
 }
 
+std::vector<Leg> exact_legs() {
+    return {{Leg::equilibrium}, {Leg::energy}, {Leg::recursive, *rec::find_method("series")}};
+}
+
 std::vector<Leg> legs_by_every_method() {
     std::vector<Leg> all{{Leg::equilibrium}, {Leg::energy}};
     for (const auto& method : rec::methods) all.push_back({Leg::recursive, method});

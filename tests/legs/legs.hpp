@@ -44,6 +44,8 @@ void PrintTo(const Leg& leg, std::ostream* out);
 
 // Both references, the series, and adaptive steps with a tolerance of 1e-12.
 std::vector<Leg> accurate_legs();
+// Both references and the series.
+std::vector<Leg> exact_legs();
 // Both references and the recursive leg by each of its methods.
 std::vector<Leg> legs_by_every_method();
 

@@ -227,10 +227,7 @@ struct Residual : LegTest {
     // The energy leg computes its own multipliers and does not read the reactions.
     bool reads_reactions() const { return leg().kind != Leg::energy; }
 };
-std::vector<Leg> judges() {
-    return {{Leg::equilibrium}, {Leg::energy}, {Leg::recursive, *recursive::find_method("series")}};
-}
-ELASTOCHECK_FOR(judges, Residual);
+ELASTOCHECK_FOR(exact_legs, Residual);
 
 TEST_P(Residual, OfAnEquilibriumIsRounding) {
     const Residuals r = judged([](Equilibrium&) {});
@@ -273,6 +270,7 @@ TEST_P(Residual, ShowsEveryWrongReaction) {
 // Two joints between one body and ground can exchange a moment without an imbalance; a ball joint
 // and the axis of a hinge cannot carry it.
 TEST_P(Residual, ShowsAWrenchThatTheJointCannotTransmit) {
+    if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     if (!reads_reactions()) GTEST_SKIP();
     Scene s = hinged_bar(0.5 * X, Y, 100);
     s.joints.push_back({"ball", Spherical{{0, 0.2 * Y}, {ground, 0.2 * Y}}});
@@ -291,6 +289,7 @@ TEST_P(Residual, ShowsAWrenchThatTheJointCannotTransmit) {
 }
 
 TEST_P(Residual, ReadsAQuaternionWithEitherSignAndNoneOffTheUnitSphere) {
+    if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     EXPECT_NEAR(judged([](Equilibrium& s) { s.poses[1].p.coeffs() *= 1.001; }).direction, 1e-3,
                 2e-6);
     const Residuals r = judged([](Equilibrium& s) {
@@ -300,6 +299,7 @@ TEST_P(Residual, ReadsAQuaternionWithEitherSignAndNoneOffTheUnitSphere) {
 }
 
 TEST_P(Residual, NeverPassesAStateThatIsNotFiniteOrNotOfTheModel) {
+    if (leg().kind == Leg::recursive) GTEST_SKIP() << "the recursion does not judge this";
     EXPECT_TRUE(finite(judged([](Equilibrium&) {})));
     for (const double bad : {std::nan(""), double(INFINITY)}) {
         EXPECT_FALSE(finite(judged([&](Equilibrium& s) { s.load = bad; })));

@@ -26,10 +26,7 @@ struct LinearResponse : LegTest {
         support::expect_slope(one(side, end_of(side), d), side, d, h, end, where);
     }
 };
-std::vector<Leg> legs_with_a_response() {
-    return {{Leg::equilibrium}, {Leg::energy}, {Leg::recursive, *recursive::find_method("series")}};
-}
-ELASTOCHECK_FOR(legs_with_a_response, LinearResponse);
+ELASTOCHECK_FOR(exact_legs, LinearResponse);
 
 OneWay way_of(const char* scene, const char* branch, double to) {
     return support::way_of(support::scene(scene), branch, to);

@@ -228,25 +228,5 @@ TEST_P(Stability, AStretchThatNothingAnnouncesIsSeen) {
     }
 }
 
-// A parallelogram is flat at half a turn, where it may continue in either of two configurations.
-TEST_P(Stability, AMechanismEndsWhereItsMotionDivides) {
-    Scene s;
-    const Vector3d a = 0.04 * Y, d = 0.1 * X;
-    s.bodies = {{"crank", {}}, {"coupler", {a}}, {"rocker", {d}}};
-    s.joints = {{"crank", Revolute{{0}, {ground}, {0, Z}, ground_z}},
-                {"crank pin", Revolute{{1}, {0, a}, {1, Z}, {0, Z}}},
-                {"rocker", Revolute{{2}, {ground, d}, {2, Z}, ground_z}},
-                {"rocker pin", InLine{{1, d}, {2, a}, {2, Z}}},
-                {"drive", Angle{{0, Y}, ground_y, {ground, -X}, 0}, true}};
-    s.probes = {{"pin", {2, a}}};
-    s.branches = {motion_branch(4, M_PI, ParameterUnit::radian)};
-    for (const int steps : {1, 5, 20, 101}) {
-        const auto path = solve(leg(), side_of(s), steps);
-        EXPECT_NE(path.outcome, Outcome::converged) << steps;
-        EXPECT_NEAR(static_cast<double>(path.points.size()), 1 + std::floor(steps / 2.), 1)
-            << path.detail;
-    }
-}
-
 }  // namespace
 }  // namespace elastocheck::legs

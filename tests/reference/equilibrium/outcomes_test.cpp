@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/branch.hpp"
 #include "reference/equilibrium/statement/system.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
 
@@ -101,6 +102,32 @@ TEST(EquilibriumOutcome, AToleranceBelowRoundOffIsNotMetQuietly) {
     const std::vector<double> loads = {0, 500, 1000};
     const auto path = solve(model, model.branches[0], loads, options);
     EXPECT_EQ(path.outcome, Outcome::iteration_limit) << path.detail;
+}
+
+// A parallelogram is flat at half a turn, where it may continue in either of two configurations.
+TEST(EquilibriumOutcome, AMechanismEndsWhereItsMotionDivides) {
+    const Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), pin(0.04, 0, 0), far(0.1, 0, 0);
+    const Quaterniond quarter(Eigen::AngleAxisd(M_PI / 2, z));
+    Scene s;
+    s.bodies = {{"crank", {{0, 0, 0}, quarter}},
+                {"coupler", {{0, 0.04, 0}, Quaterniond::Identity()}},
+                {"rocker", {far, quarter}}};
+    s.joints = {{"crank pivot", Revolute{{0}, {ground}, {0, z}, {ground, z}}},
+                {"crank pin", Revolute{{1}, {0, pin}, {1, z}, {0, z}}},
+                {"rocker pivot", Revolute{{2}, {ground, far}, {2, z}, {ground, z}}},
+                {"rocker pin", InLine{{1, far}, {2, pin}, {2, z}}},
+                {"drive", Angle{{0, x}, {ground, y}, {ground, -x}, 0}, true}};
+    s.branches = {branch_of("turn", {{Motion{4}, 0, 1}}, M_PI, 1, ParameterUnit::radian)};
+    s.probes = {{"rocker", {2, pin}}};
+    const Model whole = compile(s), driven = on_branch(whole, whole.branches[0]);
+    for (const int steps : {1, 5, 20, 101}) {
+        std::vector<double> points;
+        for (int n = 0; n <= steps; ++n) points.push_back(M_PI * n / steps);
+        const auto path = solve(driven, driven.branches[0], points);
+        EXPECT_EQ(path.outcome, Outcome::singular) << steps << ": " << path.detail;
+        EXPECT_NEAR(static_cast<double>(path.points.size()), 1 + std::floor(steps / 2.), 1)
+            << path.detail;
+    }
 }
 
 // Warm-started points take hardly more than one iteration each.
