@@ -135,9 +135,10 @@ std::vector<Equilibrium> joined_by_hand(const std::vector<BranchSide>& ways,
     return points;
 }
 
-TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
+// How many branches have two sides.
+int expect_rows_in_the_order_of_the_branch(const std::vector<std::string>& scenes) {
     int both_ways = 0;
-    for (const auto& scene : support::scene_names()) {
+    for (const auto& scene : scenes) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
             const auto ways = sides_of(model, branch, 5);
@@ -151,18 +152,28 @@ TEST(Rows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
                 const auto points = joined_by_hand(ways, solver);
                 const auto found = streamed(model, ways, solver);
                 EXPECT_TRUE(found.path.points.empty()) << where;
-                ASSERT_EQ(found.rows.size(), points.size()) << where;
+                EXPECT_EQ(found.rows.size(), points.size()) << where;
+                if (found.rows.size() != points.size()) continue;
                 for (std::size_t k = 0; k < points.size(); ++k)
                     EXPECT_TRUE(same(found.rows[k], model, points[k])) << where << ", row " << k;
                 expect_same(walk(ways, solver).points, points, where);
                 if (found.path.outcome != Outcome::converged) continue;
                 const auto a = asked_for(ways, 1);
-                ASSERT_EQ(a.size(), points.size()) << where;
-                for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(points[k].load, a[k]) << where;
+                EXPECT_EQ(a.size(), points.size()) << where;
+                for (std::size_t k = 0; k < std::min(a.size(), points.size()); ++k)
+                    EXPECT_EQ(points[k].load, a[k]) << where;
             }
         }
     }
-    EXPECT_GT(both_ways, 20);
+    return both_ways;
+}
+
+TEST(Rows, AreThePointsInTheOrderOfTheBranch) {
+    EXPECT_GE(expect_rows_in_the_order_of_the_branch({"mcpherson", "chrono_mcpherson_travel"}), 1);
+}
+
+TEST(NightlyRows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
+    EXPECT_GT(expect_rows_in_the_order_of_the_branch(support::scene_names()), 20);
 }
 
 // Indices of the requested points among all: by sides, from a = 0 outwards.

@@ -226,7 +226,9 @@ TEST_P(Family, DoesNotSeeHowItIsTold) {
     expect_same_turned(energy, Told(support::moved(some, R, t), Leg::energy), R, t, known);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Family, testing::ValuesIn(support::family_names()),
+INSTANTIATE_TEST_SUITE_P(Sample, Family, testing::Values("double_wishbone", "front_axle"),
+                         [](const auto& family) { return family.param; });
+INSTANTIATE_TEST_SUITE_P(Nightly, Family, testing::ValuesIn(support::family_names()),
                          [](const auto& family) { return family.param; });
 
 // ---- Both sides of an axle.

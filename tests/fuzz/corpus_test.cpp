@@ -55,11 +55,11 @@ TEST_P(Fuzz, EveryInputOfTheCorpusHasADocumentedAnswer) {
     }
 }
 
-TEST_P(Fuzz, NoneOfSomeThousandMutationsHasAnother) {
+TEST_P(Fuzz, NoneOfAThousandMutationsHasAnother) {
     Dice dice{20'130};
     std::set<std::string> different;
     const auto inputs = corpus(GetParam());
-    const int each = 60 + 3000 / static_cast<int>(inputs.size());
+    const int each = 20 + 1000 / static_cast<int>(inputs.size());
     for (const auto& [name, input] : inputs)
         for (int k = 0; k < each && !HasFailure(); ++k) {
             std::string one = mutated(GetParam(), input, dice);
@@ -67,7 +67,7 @@ TEST_P(Fuzz, NoneOfSomeThousandMutationsHasAnother) {
             run(GetParam(), one, name + ", mutation " + std::to_string(k));
             different.insert(std::move(one));
         }
-    EXPECT_GT(different.size(), 1000u);
+    EXPECT_GT(different.size(), 400u);
     std::printf("%zu different inputs\n", different.size());
 }
 
