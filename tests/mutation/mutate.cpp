@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <future>
+#include <map>
 #include <mutex>
 #include <regex>
 #include <stdexcept>
@@ -35,6 +36,10 @@ struct Paths {
     std::string faults() const { return root + "/tests/mutation/faults.txt"; }
     std::string results() const { return root + "/tests/mutation/results.json"; }
     std::string work() const { return build + "/../mutation"; }
+    std::string sound() const { return work() + "/sound"; }  // the build without a fault
+    std::string stamp() const {
+        return work() + "/stamp";
+    }  // older than what a fault's build wrote
     std::string seeded() const { return work() + "/seeded.json"; }  // what is in the checkout now
 };
 
@@ -76,10 +81,14 @@ std::string output_of(const std::string& command) {
     return text;
 }
 
+std::string head(const Paths& paths) {
+    return output_of("git -C '" + paths.root + "' rev-parse --short HEAD 2>/dev/null");
+}
+
 // Of the sources as they are: "6df94b7", and "+" where they differ from it.
 std::string commit(const Paths& paths) {
     const std::string git = "git -C '" + paths.root + "' ";
-    return output_of(git + "rev-parse --short HEAD 2>/dev/null") +
+    return head(paths) +
            (output_of(git + "status --porcelain -- . ':!tests/mutation' 2>/dev/null").empty()
                 ? ""
                 : "+");
@@ -117,7 +126,9 @@ void put_back(const Paths& paths) {
     fs::remove(paths.seeded());
 }
 
-void seed(const Paths& paths, const Fault& fault) {
+// Returns when the files that it changed were written last.
+std::map<std::string, fs::file_time_type> seed(const Paths& paths, const Fault& fault) {
+    std::map<std::string, fs::file_time_type> times;
     ordered_json changes;
     std::vector<std::pair<Place, std::string>> edits;
     for (const Edit& edit : fault.edits) edits.emplace_back(locate(paths.root, edit), edit.make);
@@ -133,8 +144,11 @@ void seed(const Paths& paths, const Fault& fault) {
         change["seeded"] = text;
     }
     write_file(paths.seeded(), changes.dump());
-    for (const auto& [file, texts] : changes.items())
+    for (const auto& [file, texts] : changes.items()) {
+        times[file] = fs::last_write_time(file);
         write_file(file, texts.at("seeded").get<std::string>());
+    }
+    return times;
 }
 
 // ---- Building and running.
@@ -197,6 +211,30 @@ std::string copy_of_program(const Paths& paths, const Trial& trial) {
     return copy;
 }
 
+// The build is copied before the first fault, and what a fault's build wrote is replaced by the
+// copies after it, times included: no fault waits for the repair of what another one changed.
+void copy_build(const Paths& paths, const std::vector<Trial>& trials) {
+    std::string targets;
+    for (const Trial& trial : trials) {
+        const std::string& target = trial.fault.target;
+        targets += " '" + (target.empty() ? trial.program() : target) + "'";
+    }
+    fmt::print("mutate: building the suites of {} faults\n", trials.size());
+    std::fflush(stdout);
+    if (run(fmt::format("cmake --build '{}' --target{} >'{}/build.log' 2>&1", paths.build, targets,
+                        paths.work())) != 0)
+        throw std::runtime_error("the suites do not build without a fault: " + paths.work() +
+                                 "/build.log");
+    run(fmt::format("rm -rf '{0}' && cp -a '{1}' '{0}'", paths.sound(), paths.build));
+}
+
+void restore_build(const Paths& paths) {
+    run(
+        fmt::format("cd '{}' && find . -type f -newer '{}' | while read -r file; do "
+                    "cp -p '{}'/\"$file\" \"$file\" 2>/dev/null || rm -f \"$file\"; done",
+                    paths.build, paths.stamp(), paths.sound()));
+}
+
 Rang run_program(const Trial& trial, const std::string& program, const std::string& filter) {
     const std::string log = trial.folder + "/test.log";
     const int code = run(fmt::format(
@@ -233,9 +271,8 @@ int run_faults(const Paths& paths, const std::vector<Fault>& all,
                           stamp(paths.root, fault),
                           paths.work() + "/" + fault.name,
                           {}});
-    // Faults of one file follow each other: what depends on it is then compiled once for each, not
-    // once more without a fault.
-    std::ranges::stable_sort(trials, {}, &Trial::file);
+    if (trials.empty()) return 0;
+    copy_build(paths, trials);
 
     std::mutex mutex;
     std::size_t done = 0, bad = 0;
@@ -258,10 +295,17 @@ int run_faults(const Paths& paths, const std::vector<Fault>& all,
         write_results(paths, all, results);
     };
     std::vector<std::future<void>> running;
+    fmt::print("mutate: the sources hold faults until this ends: neither edit nor commit\n");
+    const std::string head_before = head(paths);
     for (Trial& trial : trials) {
+        if (head(paths) != head_before)
+            throw std::runtime_error(
+                "a commit was made while a fault was in the sources; it may "
+                "contain the fault");
         trial.begin = std::chrono::steady_clock::now();
         fs::create_directories(trial.folder);
-        seed(paths, trial.fault);
+        write_file(paths.stamp(), "");
+        const auto times = seed(paths, trial.fault);
         const bool is_built = builds(paths, trial);
         // What is run while the fault is in the build: ctest, and suites that run the command.
         std::string program;
@@ -274,7 +318,10 @@ int run_faults(const Paths& paths, const std::vector<Fault>& all,
             finish(trial, run_suite(trial, program));
             fs::remove(program);
         }
+        // The build first: killed between the two, the next run makes the sources newer than it.
+        restore_build(paths);
         put_back(paths);
+        for (const auto& [file, time] : times) fs::last_write_time(file, time);
         if (!is_built) {
             const std::lock_guard lock(mutex);
             ++bad;
