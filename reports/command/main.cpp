@@ -26,7 +26,6 @@
 #include "reports/files/provenance.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/json/json_cursor.hpp"
-#include "reports/page/gnuplot.hpp"
 
 namespace {
 
@@ -119,8 +118,6 @@ int main(int argc, char** argv) {
     } catch (const ResultError& error) {
         return fail(bad_input, error.what());
     } catch (const MeasurementError& error) {
-        return fail(bad_input, error.what());
-    } catch (const PlotError& error) {
         return fail(bad_input, error.what());
         // loops of links, inaccessible folders
     } catch (const std::filesystem::filesystem_error& error) {

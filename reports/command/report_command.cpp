@@ -30,7 +30,6 @@
 #include "reports/files/terminal.hpp"
 #include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
-#include "reports/page/gnuplot.hpp"
 #include "reports/page/report/report.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
@@ -59,7 +58,6 @@ struct Request {
     std::string alarms;                    // JSON, results of `./dev mutate`
     std::string stress;                    // JSON, results of `elastocheck stress`
     std::string tolerance = "0.01mm,0.001deg,1%";
-    std::string figures = "svg";
     bool archive = false;
     bool as_json = false;  // write the answers as a document to standard output
     bool open = false;     // open the finished page in a browser
@@ -240,7 +238,6 @@ int report(const Request& request, const std::string& reproduce) {
         throw std::invalid_argument("--open: not with --archive, which has no page");
     const std::string opener = request.open ? browser() : "";
     Staging::check(request.folder);
-    run_gnuplot(".", {"--version"});
     (void)compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
@@ -273,9 +270,8 @@ int report(const Request& request, const std::string& reproduce) {
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
-    const auto answers = write_report(
-        result, file, request.folder,
-        {.pdf = request.figures == "pdf", .archive = request.archive, .progress = progress});
+    const auto answers = write_report(result, file, request.folder,
+                                      {.archive = request.archive, .progress = progress});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
@@ -327,9 +323,7 @@ Command report_command() {
         {"--case", TextList{&request->cases, TextList::Form::separate},
          "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated"}};
     add_candidate_options(options, request->candidate);
-    options.insert(options.end(), {{"--figures", Text{&request->figures, one_of({"svg", "pdf"})},
-                                    "svg (default), or pdf: PDF files beside the SVG"},
-                                   {"--archive", Flag{&request->archive},
+    options.insert(options.end(), {{"--archive", Flag{&request->archive},
                                     "only what belongs in version control: README.md, numbers.csv, "
                                     "figures/*.svg, without times"},
                                    json_option(request->as_json),

@@ -33,6 +33,6 @@ struct NameVersion { const char *name, *version; };
 inline constexpr NameVersion libraries[] = {
     {"Eigen", "@EIGEN@"}, {"Ceres", "@CERES@"}, {"NLopt", "@NLOPT@"}, {"yaml-cpp", "@YAML@"}, {"fmt", "@FMT@"}};
 inline constexpr NameVersion round_nothing[] = {
-    {"CLI11", "@CLI11@"}, {"nlohmann-json", "@JSON@"}, {"pugixml", "@PUGIXML@"}};
+    {"CLI11", "@CLI11@"}, {"nlohmann-json", "@JSON@"}};
 }
 ]])

@@ -49,7 +49,6 @@ std::string render(std::string_view name, const json& data, Escape escape) {
         switch (escape) {
             case Escape::html: return for_html(text);
             case Escape::markdown: return for_markdown(text);
-            case Escape::gnuplot: return for_gnuplot(text);
             case Escape::nothing: break;
         }
         return text;

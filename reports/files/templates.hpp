@@ -9,7 +9,7 @@
 namespace elastocheck::reports {
 
 // Escaping of {{value}}; {{{value}}} is not escaped.
-enum class Escape { html, markdown, gnuplot, nothing };
+enum class Escape { html, markdown, nothing };
 
 // Renders reports/page/templates/NAME.mustache. Other templates are available as partials,
 // {{>html/table}}. Throws std::logic_error for a missing or invalid template.

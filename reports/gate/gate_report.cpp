@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <pugixml.hpp>
-#include <sstream>
 
 #include "reports/document/document.hpp"
 #include "reports/files/templates.hpp"
@@ -171,80 +169,72 @@ std::string lines(const std::vector<std::string>& all, std::size_t most) {
     return text;
 }
 
-void add_message(pugi::xml_node test, const char* kind, std::string_view message,
-                 const std::string& text) {
-    auto node = test.append_child(kind);
-    node.append_attribute("message") = for_xml(beginning(message, line_length)).c_str();
-    node.text() = for_xml(text).c_str();
+// An XML attribute ` name="value"`.
+std::string attribute(const char* name, std::string_view value) {
+    return fmt::format(" {}=\"{}\"", name, for_xml(beginning(value, line_length)));
 }
 
-void add_test(pugi::xml_node suite, const Test& test, std::size_t most_lines) {
-    auto node = suite.append_child("testcase");
-    node.append_attribute("classname") = for_xml(beginning(test.scene->file, line_length)).c_str();
-    node.append_attribute("name") = for_xml(beginning(test.name, line_length)).c_str();
+std::string message(const char* kind, std::string_view summary, const std::string& text) {
+    return fmt::format("   <{0}{1}>{2}</{0}>\n", kind, attribute("message", summary),
+                       for_xml(text));
+}
+
+std::string testcase(const Test& test, std::size_t most_lines) {
     std::vector<std::string> all;
     for (const auto& change : test.scene->changed) all.push_back("changed: " + story(change));
     const std::string changed = all.empty() ? "" : lines(all, most_lines);
     const std::vector<std::string>& reasons = test.scene->verdict.reasons;
+    std::string messages;
     if (test.error)
-        add_message(node, "error", reasons.front(),
-                    headline(*test.scene) + "\n" + lines(reasons, most_lines) + changed);
-    if (test.failed.empty()) return;
-    std::vector<std::string> stories;
-    for (const auto& worst : worst_of_each_channel(test.scene, test.failed))
-        stories.push_back(told(worst));
-    add_message(node, "failure", stories.front(), lines(stories, most_lines) + changed);
+        messages += message("error", reasons.front(),
+                            headline(*test.scene) + "\n" + lines(reasons, most_lines) + changed);
+    if (!test.failed.empty()) {
+        std::vector<std::string> stories;
+        for (const auto& worst : worst_of_each_channel(test.scene, test.failed))
+            stories.push_back(told(worst));
+        messages += message("failure", stories.front(), lines(stories, most_lines) + changed);
+    }
+    return fmt::format("  <testcase{}{}>\n{}  </testcase>\n",
+                       attribute("classname", test.scene->file), attribute("name", test.name),
+                       messages);
 }
 
 // The first `most` tests, with up to `most_lines` numbers each.
 std::string junit_of(const std::vector<Test>& tests, std::size_t most, std::size_t most_lines) {
-    pugi::xml_document document;
-    auto declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    auto root = document.append_child("testsuites");
-    root.append_attribute("name") = "elastocheck gate";
     struct Suite {
-        pugi::xml_node node;
+        const GatedScene* scene;
         int tests = 0, failures = 0, errors = 0;
+        std::string cases{};
     };
-    std::map<const GatedScene*, Suite> suites;
+    std::vector<Suite> suites;
     for (std::size_t k = 0; k < std::min(most, tests.size()); ++k) {
         const Test& test = tests[k];
-        auto [place, is_new] = suites.try_emplace(test.scene);
-        Suite& suite = place->second;
-        if (is_new) {
-            suite.node = root.append_child("testsuite");
-            suite.node.append_attribute("name") =
-                for_xml(beginning(test.scene->file, line_length)).c_str();
-        }
-        add_test(suite.node, test, most_lines);
-        ++suite.tests;
-        suite.failures += !test.failed.empty();
-        suite.errors += test.error;
+        auto suite = std::ranges::find(suites, test.scene, &Suite::scene);
+        if (suite == suites.end()) suite = suites.insert(suite, {test.scene});
+        suite->cases += testcase(test, most_lines);
+        ++suite->tests;
+        suite->failures += !test.failed.empty();
+        suite->errors += test.error;
     }
-    for (auto& [scene, suite] : suites) {
-        suite.node.append_attribute("tests") = suite.tests;
-        suite.node.append_attribute("failures") = suite.failures;
-        suite.node.append_attribute("errors") = suite.errors;
-    }
+    std::string xml =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<testsuites name=\"elastocheck gate\">\n";
+    for (const auto& suite : suites)
+        xml += fmt::format(
+            " <testsuite{} tests=\"{}\" failures=\"{}\" errors=\"{}\">\n{} </testsuite>\n",
+            attribute("name", suite.scene->file), suite.tests, suite.failures, suite.errors,
+            suite.cases);
     if (tests.size() > most) {
         const auto left =
             std::ranges::count_if(tests.begin() + static_cast<std::ptrdiff_t>(most), tests.end(),
                                   [](const Test& t) { return !t.passed(); });
-        auto suite = root.append_child("testsuite");
-        suite.append_attribute("name") = "left out";
-        suite.append_attribute("tests") = 0;
-        suite.append_child("system-out").text() = fmt::format(
-                                                      "{} more tests, {} of them failed, are left "
-                                                      "out to keep this file small; elastocheck "
-                                                      "gate --json has them all",
-                                                      tests.size() - most, left)
-                                                      .c_str();
+        xml += fmt::format(
+            " <testsuite name=\"left out\" tests=\"0\">\n  <system-out>{} more tests, {} of them "
+            "failed, are left out to keep this file small; elastocheck gate --json has them "
+            "all</system-out>\n </testsuite>\n",
+            tests.size() - most, left);
     }
-    std::ostringstream out;
-    document.save(out, " ");
-    return out.str();
+    return xml + "</testsuites>\n";
 }
 
 std::string annotation(const GatedScene& scene, const std::string& title, const std::string& text) {

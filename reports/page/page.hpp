@@ -74,15 +74,13 @@ struct Figure {
     std::string title{};        // short, above the plot
     std::string description{};  // alternative text
     std::string x{}, y{};       // axes with units
-    bool log_x = false, log_y = false, equal_axes = false, reversed_x = false, reversed_y = false;
-    bool key = true;
+    bool log_x = false, log_y = false;
     double y_low = std::numeric_limits<double>::quiet_NaN(), y_high = y_low;  // NaN: from the data
-    double x_tick = 0, y_tick = 0;  // distance of ticks; 0: automatic
-    double width = 1, height = 1;   // relative to the default size
+    double height = 1;  // relative to the default height
     std::vector<Series> series{};
     std::vector<Band> bands{};
     std::vector<std::pair<double, std::string>> y_ticks{};  // instead of numbers
-    // a drawing without axes; `width` and similar fields are unused then
+    // a drawing without axes; the fields of axes are unused then
     std::optional<Sheet> sheet{};
     std::vector<Word> words{};
 };

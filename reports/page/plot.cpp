@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "reports/files/files.hpp"
-#include "reports/files/templates.hpp"
-#include "reports/page/gnuplot.hpp"
 #include "reports/text/escape.hpp"
 #include "reports/text/labels.hpp"
 
@@ -15,121 +14,357 @@ namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
-using json = nlohmann::ordered_json;
 
 // [px] of a figure, such that text stays readable on a phone
 constexpr int width = 440, height = 290;
+constexpr double letter = 11, line_pitch = 19, sample = 22;  // of the legend
 
-const char* style_of(Series::Style style) {
-    switch (style) {
-        case Series::Style::line: return "lines linewidth 1.8";
-        case Series::Style::wide: return "lines linewidth 4";
-        case Series::Style::dashed: return "lines linewidth 1.6 dashtype (6,4)";
-        case Series::Style::thin: return "lines linewidth 1.2";
-        case Series::Style::points: return "points linewidth 1.4 pointsize 0.75";
-        case Series::Style::line_points: return "linespoints linewidth 1.4 pointsize 0.7";
-        case Series::Style::rings: return "points linewidth 1.5 pointsize 1.3";
-        case Series::Style::bars: return "boxxyerror fillstyle solid 1 noborder";
-        case Series::Style::heavy: return "lines linewidth 3.2";
-        case Series::Style::hair: return "lines linewidth 0.9";
-        case Series::Style::face:
-            return "filledcurves closed fillstyle transparent solid 0.18 noborder";
+// ---- Axes
+
+struct Tick {
+    double at;  // coordinate on the axis: the value, or its decimal logarithm
+    std::string text, exponent;
+};
+
+struct Axis {
+    bool logarithmic = false;
+    double low = 0, high = 1;    // coordinates at the ends
+    double start = 0, stop = 1;  // [px] of the ends
+    std::vector<Tick> ticks{};
+
+    // [px] of a value; NaN for a value without a place, such as 0 on a logarithmic axis.
+    double operator()(double value) const {
+        if (logarithmic) value = value > 0 ? std::log10(value) : NAN;
+        return start + (value - low) / (high - low) * (stop - start);
     }
-    return "lines";
+};
+
+std::string signed_text(double value) {
+    const std::string text = fmt::format("{:g}", value);
+    return text.starts_with('-') ? "−" + text.substr(1) : text;
 }
 
-json range_of(double low, double high) {
-    const auto end = [](double value) {
-        return std::isfinite(value) ? fmt::format("{:.9g}", value) : "*";
-    };
-    return fmt::format("{}:{}", end(low), end(high));
+// The smallest of 1, 2, 5 times a power of ten that is at least `least`.
+double round_step(double least) {
+    const double power = std::pow(10, std::floor(std::log10(least)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * power >= least * (1 - 1e-9)) return factor * power;
+    return 10 * power;
 }
 
-// Tick distance of a logarithmic axis in decades, for at most about seven ticks without overlap.
-std::string decades(const Figure& figure, std::size_t axis, double low, double high) {
-    double least = std::isfinite(low) ? low : INFINITY, most = std::isfinite(high) ? high : 0;
+struct Range {
+    double low = INFINITY, high = -INFINITY;
+    void take(double value) {
+        if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
+    }
+};
+
+// The axis from `data` (coordinates) with round ticks, at most `most` intervals; automatic ends lie
+// on ticks. NaN: automatic end.
+Axis ticked(bool logarithmic, Range data, double low, double high, double most) {
+    if (std::isfinite(low)) data.low = low;
+    if (std::isfinite(high)) data.high = high;
+    if (!(data.low <= data.high)) data = {0, 1};
+    if (data.high - data.low <= 1e-9 * std::max(std::abs(data.low), std::abs(data.high))) {
+        const double beside = data.low == 0 || logarithmic ? 1 : 0.1 * std::abs(data.low);
+        data.low -= beside, data.high += beside;
+    }
+    double step = round_step((data.high - data.low) / most);
+    if (logarithmic) step = std::max(1.0, std::ceil((data.high - data.low) / most));
+    constexpr double slack = 1e-6;  // of a step
+    Axis axis{.logarithmic = logarithmic};
+    axis.low = std::isfinite(low) ? low : step * std::floor(data.low / step + slack);
+    axis.high = std::isfinite(high) ? high : step * std::ceil(data.high / step - slack);
+    for (double k = std::ceil(axis.low / step - slack); k <= axis.high / step + slack; ++k) {
+        const double at = k * step + 0.0;  // no negative zero
+        axis.ticks.push_back(logarithmic ? Tick{at, "10", signed_text(at)}
+                                         : Tick{at, signed_text(at), ""});
+    }
+    return axis;
+}
+
+double widest(const Axis& axis) {
+    double most = 0;
+    for (const auto& tick : axis.ticks)
+        most = std::max(most, text_width(tick.text, letter) + text_width(tick.exponent, 8.8));
+    return most;
+}
+
+Range coordinates(const Figure& figure, std::size_t column, bool logarithmic) {
+    Range range;
     for (const auto& series : figure.series)
         for (const auto& row : series.rows)
-            if (row.size() > axis && row[axis] > 0 && std::isfinite(row[axis]))
-                least = std::min(least, row[axis]), most = std::max(most, row[axis]);
-    const double span =
-        most > least ? std::ceil(std::log10(most)) - std::floor(std::log10(least)) : 1;
-    return fmt::format("{:g}", std::pow(10, std::clamp(std::ceil(span / 7), 1.0, 6.0)));
+            if (series.style == Series::Style::bars)
+                range.take(row[2 + 2 * column]), range.take(row[3 + 2 * column]);
+            else if (row.size() > column)
+                range.take(logarithmic ? std::log10(row[column]) : row[column]);
+    return range;
 }
 
-json script_data(const Figure& figure, const std::string& name) {
-    json series = json::array(), bands = json::array(), ticks = json::array();
-    const bool labelled = !figure.bands.empty();
-    for (std::size_t k = 0; k < figure.series.size(); ++k) {
-        const Series& s = figure.series[k];
-        const bool points = s.style == Series::Style::points || s.style == Series::Style::rings ||
-                            s.style == Series::Style::line_points;
-        constexpr int symbols[] = {7, 5, 9, 11, 13, 6, 7, 4, 6, 8};
-        series.push_back({{"index", k},
-                          {"title", s.title},
-                          {"style", style_of(s.style)},
-                          {"symbol", points ? json(symbols[s.mark % 10]) : json(nullptr)},
-                          {"colour", palette[s.colour].light},
-                          {"bars", s.style == Series::Style::bars},
-                          {"last", k + 1 == figure.series.size() && !labelled}});
+// ---- Series
+
+double line_width(Series::Style style) {
+    switch (style) {
+        case Series::Style::wide: return 4;
+        case Series::Style::heavy: return 3.2;
+        case Series::Style::line: return 1.8;
+        case Series::Style::dashed: return 1.6;
+        case Series::Style::rings: return 1.5;
+        case Series::Style::points:
+        case Series::Style::line_points: return 1.4;
+        case Series::Style::thin: return 1.2;
+        case Series::Style::hair: return 0.9;
+        case Series::Style::bars:
+        case Series::Style::face: return 0;
     }
-    // The legend under an equal-axes plot has one line per entry.
-    const auto entries =
-        std::ranges::count_if(figure.series, [](const Series& s) { return !s.title.empty(); });
+    return 0;
+}
+
+double marker_radius(Series::Style style) {  // [px]; 0: without markers
+    return style == Series::Style::points        ? 3.1
+           : style == Series::Style::line_points ? 2.9
+           : style == Series::Style::rings       ? 5.4
+                                                 : 0;
+}
+
+// Path data of a marker of this radius.
+enum class Shape { circle, square, up, down, diamond };
+std::string marker(Shape shape, Spot p, double r) {
+    switch (shape) {
+        case Shape::circle:
+            return fmt::format("M{0},{1}a{2},{2} 0 1 0 {3},0a{2},{2} 0 1 0 -{3},0", px(p.x - r),
+                               px(p.y), px(r), px(2 * r));
+        case Shape::square:
+            return fmt::format("M{0},{1}h{2}v{2}h-{2}Z", px(p.x - r), px(p.y - r), px(2 * r));
+        case Shape::up:
+        case Shape::down: {
+            const double up = shape == Shape::up ? 1 : -1;
+            return Svg::polyline({{p.x, p.y - up * 1.3 * r},
+                                  {p.x - 1.3 * r, p.y + up * 0.7 * r},
+                                  {p.x + 1.3 * r, p.y + up * 0.7 * r}},
+                                 true);
+        }
+        case Shape::diamond:
+            return Svg::polyline({{p.x, p.y - 1.4 * r},
+                                  {p.x + 1.4 * r, p.y},
+                                  {p.x, p.y + 1.4 * r},
+                                  {p.x - 1.4 * r, p.y}},
+                                 true);
+    }
+    return {};
+}
+
+struct Marker {
+    Shape shape;
+    bool filled;
+};
+constexpr Marker markers[] = {{Shape::circle, true}, {Shape::square, true},  {Shape::up, true},
+                              {Shape::down, true},   {Shape::diamond, true}, {Shape::circle, false},
+                              {Shape::circle, true}, {Shape::square, false}, {Shape::circle, false},
+                              {Shape::up, false}};
+
+std::string rectangle(double left, double top, double right, double bottom) {
+    return fmt::format("M{},{}H{}V{}H{}Z", px(left), px(top), px(right), px(bottom), px(left));
+}
+
+// Path data of the polyline where top <= y <= bottom.
+std::string clipped(const std::vector<Spot>& points, double top, double bottom) {
+    std::string path;
+    std::vector<Spot> piece;
+    const auto flush = [&] { path += Svg::polyline(piece), piece.clear(); };
+    for (std::size_t k = 1; k < points.size(); ++k) {
+        const Spot &a = points[k - 1], &b = points[k];
+        double from = 0, to = 1;
+        if (a.y != b.y) {
+            const double enter = (top - a.y) / (b.y - a.y), leave = (bottom - a.y) / (b.y - a.y);
+            from = std::max(from, std::min(enter, leave)),
+            to = std::min(to, std::max(enter, leave));
+        } else if (a.y < top || a.y > bottom) {
+            to = -1;
+        }
+        if (from > to || from > 0) flush();
+        if (from > to) continue;
+        const auto between = [&](double t) {
+            return Spot{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+        };
+        if (piece.empty()) piece.push_back(between(from));
+        piece.push_back(between(to));
+        if (to < 1) flush();
+    }
+    flush();
+    return path;
+}
+
+// A series with `at` from data to pixels, clipped at `top` and `bottom` [px].
+template <class At>
+void draw_series(Svg& svg, const Series& series, At&& at, double top, double bottom) {
+    using Style = Series::Style;
+    constexpr double slack = 0.05;  // [px] of rounding
+    const double radius = marker_radius(series.style);
+    const Marker& mark = markers[static_cast<std::size_t>(series.mark) % std::size(markers)];
+    std::string lines, marks;
+    std::vector<Spot> piece;
+    const auto flush = [&] {
+        lines += series.style == Style::face ? Svg::polyline(piece, true)
+                                             : clipped(piece, top - slack, bottom + slack);
+        piece.clear();
+    };
+    for (const auto& row : series.rows) {
+        const std::optional<Spot> p = row.size() < 2 ? std::nullopt : at(row[0], row[1]);
+        if (!p) {
+            flush();
+        } else if (series.style == Style::bars) {
+            const auto low = at(row[2], row[4]), high = at(row[3], row[5]);
+            if (low && high)
+                marks +=
+                    rectangle(low->x, std::max(high->y, top), high->x, std::min(low->y, bottom));
+        } else {
+            piece.push_back(*p);
+            if (radius > 0 && p->y >= top - slack && p->y <= bottom + slack)
+                marks += marker(mark.shape, *p, radius);
+        }
+    }
+    flush();
+    if (series.style == Style::face)
+        svg.area(lines, series.colour, 0.18);
+    else if (series.style != Style::points && series.style != Style::rings)
+        svg.stroke(lines, series.colour, line_width(series.style),
+                   series.style == Style::dashed ? " stroke-dasharray=\"6,4\"" : "");
+    if (series.style == Style::bars || mark.filled)
+        svg.area(marks, series.colour);
+    else
+        svg.stroke(marks, series.colour, line_width(series.style));
+}
+
+// ---- Legend
+
+struct Entry {
+    const Series* series = nullptr;  // or of a band
+    const Band* band = nullptr;
+    std::string_view text{};
+    double x = 0;
+    int line = 0;
+};
+
+// Legend entries on lines of this width.
+std::vector<Entry> legend(const Figure& figure, double lines_width) {
+    std::vector<Entry> entries;
+    for (const auto& series : figure.series)
+        if (!series.title.empty()) entries.push_back({.series = &series, .text = series.title});
+    for (const auto& band : figure.bands) entries.push_back({.band = &band, .text = band.label});
+    double x = 0;
+    int line = 0;
+    for (auto& entry : entries) {
+        const double need = sample + 8 + text_width(entry.text, letter);
+        if (x > 0 && x + need > lines_width) x = 0, ++line;
+        entry.x = x, entry.line = line;
+        x += need + 14;
+    }
+    return entries;
+}
+
+void draw_entry(Svg& svg, const Entry& entry, Spot at) {
+    if (entry.band != nullptr) {
+        svg.area(rectangle(at.x, at.y - 5, at.x + sample, at.y + 5), entry.band->colour, 0.25);
+    } else if (entry.series->style == Series::Style::bars) {
+        svg.area(rectangle(at.x, at.y - 4, at.x + sample, at.y + 4), entry.series->colour);
+    } else {
+        Series one = *entry.series;
+        one.rows = {{0, 0}, {sample, 0}};
+        const Series line = one;
+        const auto place = [&](double x, double y) {
+            return std::optional(Spot{at.x + x, at.y + y});
+        };
+        if (marker_radius(one.style) > 0) {
+            one.rows = {{sample / 2, 0}};
+            if (one.style == Series::Style::line_points)
+                svg.stroke(Svg::polyline({*place(0, 0), *place(sample, 0)}), one.colour,
+                           line_width(one.style));
+        }
+        draw_series(svg, one, place, at.y - 10, at.y + 10);
+    }
+    svg.text({at.x + sample + 8, at.y + 3.6}, entry.text, ink, "start");
+}
+
+// ---- Figures
+
+Svg draw_plot(const Figure& figure) {
+    Svg svg{width, static_cast<int>(std::lround(height * figure.height))};
+    const double right = width - 23, bottom = svg.height - 52.8;
+    const auto end = [&](double value) { return figure.log_y ? std::log10(value) : value; };
+    const auto vertical = [&](double top) {
+        Axis axis = ticked(figure.log_y, coordinates(figure, 1, figure.log_y), end(figure.y_low),
+                           end(figure.y_high), figure.log_y ? 7 : (bottom - top) / 20);
+        if (!figure.y_ticks.empty()) axis.ticks.clear();
+        for (const auto& [at, text] : figure.y_ticks) axis.ticks.push_back({at, text, ""});
+        axis.start = bottom, axis.stop = top;
+        return axis;
+    };
+    const auto left_of = [&](const Axis& axis) {
+        return std::min(width / 2.0, (figure.y.empty() ? 8 : 28) + widest(axis) + 8);
+    };
+    double left = left_of(vertical(35.5));
+    const auto entries = legend(figure, right - left);
+    const int lines = entries.empty() ? 0 : entries.back().line + 1;
+    const double top = 16.5 + line_pitch * lines;
+    const Axis y = vertical(top);
+    left = left_of(y);
+    Axis x;
+    for (double most = figure.log_x ? 7 : (right - left) / 42;; --most) {
+        x = ticked(figure.log_x, coordinates(figure, 0, figure.log_x), NAN, NAN, most);
+        if (most < 3 || widest(x) + 8 < (right - left) / static_cast<double>(x.ticks.size() - 1))
+            break;
+    }
+    x.start = left, x.stop = right;
+    const auto on = [](const Axis& axis, double at) {
+        return axis.start + (at - axis.low) / (axis.high - axis.low) * (axis.stop - axis.start);
+    };
+
     for (const auto& band : figure.bands)
-        bands.push_back({{"low", fmt::format("{:.9g}", band.low)},
-                         {"high", fmt::format("{:.9g}", band.high)},
-                         {"label", band.label},
-                         {"last", &band == &figure.bands.back()},
-                         {"colour", palette[band.colour].light}});
-    json words = json::array(), sheet = nullptr;
+        svg.area(rectangle(left, std::clamp(y(band.high), top, bottom), right,
+                           std::clamp(y(band.low), top, bottom)),
+                 band.colour, 0.12);
+    std::string grid;
+    for (const auto& tick : y.ticks)
+        grid += fmt::format("M{},{}H{}", px(left), px(on(y, tick.at)), px(right));
+    for (const auto& tick : x.ticks)
+        grid += fmt::format("M{},{}V{}", px(on(x, tick.at)), px(bottom), px(top));
+    svg.stroke(grid, faint, 0.8);
+    for (const auto& tick : y.ticks)
+        svg.text({left - 7.7, on(y, tick.at) + 3.6}, tick.text, slate, "end", "", tick.exponent);
+    for (const auto& tick : x.ticks)
+        svg.text({on(x, tick.at), bottom + 20}, tick.text, slate, "middle", "", tick.exponent);
+    if (!figure.y.empty())
+        svg.text(
+            {0, 0}, figure.y, slate, "middle",
+            fmt::format(" transform=\"translate(17.6,{}) rotate(270)\"", px((top + bottom) / 2)));
+    svg.text({(left + right) / 2, svg.height - 8.0}, figure.x, slate, "middle");
+    for (const auto& entry : entries)
+        draw_entry(svg, entry, {left + entry.x, 17.7 + line_pitch * entry.line});
+    for (const auto& series : figure.series)
+        draw_series(
+            svg, series,
+            [&](double a, double b) {
+                const Spot p{x(a), y(b)};
+                return std::isfinite(p.x) && std::isfinite(p.y) ? std::optional(p) : std::nullopt;
+            },
+            top, bottom);
+    svg.stroke(fmt::format("M{},{}V{}H{}", px(left), px(top), px(bottom), px(right)), slate, 0.8);
+    return svg;
+}
+
+Svg draw_sheet(const Figure& figure) {
+    const Sheet& sheet = *figure.sheet;
+    Svg svg{sheet.width, sheet.height};
+    const auto at = [&](double x, double y) {
+        const Spot p{(x - sheet.x) * sheet.scale, sheet.height - (y - sheet.y) * sheet.scale};
+        return std::isfinite(p.x) && std::isfinite(p.y) ? std::optional(p) : std::nullopt;
+    };
+    for (const auto& series : figure.series) draw_series(svg, series, at, 0, sheet.height);
     for (const auto& word : figure.words)
-        words.push_back({{"x", fmt::format("{:.9g}", word.x)},
-                         {"y", fmt::format("{:.9g}", word.y)},
-                         {"text", word.text},
-                         {"colour", palette[word.colour].light}});
-    if (const auto& s = figure.sheet)
-        sheet = {{"x", range_of(s->x, s->x + s->width / s->scale)},
-                 {"y", range_of(s->y, s->y + s->height / s->scale)}};
-    const double wide = figure.sheet ? figure.sheet->width : width * figure.width,
-                 high = figure.sheet ? figure.sheet->height : height * figure.height;
-    double widest = 0;  // width of the words beside the axis [px], which gnuplot underestimates
-    for (const auto& [at, text] : figure.y_ticks) {
-        std::string plain;  // gnuplot interprets a tick label as a format
-        for (const char c : text) plain += c == '%' ? "%%" : std::string(1, c);
-        ticks.push_back({{"at", fmt::format("{:g}", at)}, {"text", plain}});
-        widest = std::max(widest, text_width(text, 11));
-    }
-    return {
-        {"name", name},
-        {"title", figure.title},
-        {"width", std::lround(wide)},
-        {"height", std::lround(high)},
-        {"width_in", fmt::format("{:.2f}", wide / 96)},
-        {"height_in", fmt::format("{:.2f}", high / 96)},
-        {"sheet", sheet},
-        {"words", words},
-        {"x", figure.x},
-        {"y", figure.y},
-        {"log_x", figure.log_x},
-        {"log_y", figure.log_y},
-        {"x_decades", decades(figure, 0, NAN, NAN)},
-        {"y_decades", decades(figure, 1, figure.y_low, figure.y_high)},
-        {"equal_axes", figure.equal_axes},
-        {"key_lines", std::max(6L, static_cast<long>(entries) + 1)},
-        {"reversed_x", figure.reversed_x},
-        {"reversed_y", figure.reversed_y},
-        {"y_range", range_of(figure.y_low, figure.y_high)},
-        {"x_tick", figure.x_tick > 0 ? json(fmt::format("{:g}", figure.x_tick)) : json(nullptr)},
-        {"y_tick", figure.y_tick > 0 ? json(fmt::format("{:g}", figure.y_tick)) : json(nullptr)},
-        {"ticks", ticks},
-        {"left", ticks.empty() ? json(nullptr)
-                               : json(fmt::format("{:.4f}", std::min(0.5, (widest + 16) / wide)))},
-        {"series", series},
-        {"bands", bands},
-        {"ink", palette[ink].light},
-        {"slate", palette[slate].light},
-        {"faint", palette[faint].light}};
+        if (const auto p = at(word.x, word.y))
+            svg.text({p->x, p->y + 3.5}, word.text, word.colour, "start", " font-size=\"10\"");
+    return svg;
 }
 
 // One block per series, separated by two blank lines; one blank line at a gap.
@@ -154,34 +389,20 @@ std::string figure_data(const Figure& figure) {
 
 }  // namespace
 
-std::vector<NamedContent> sources(const Plot& plot) {
-    return {{plot.name + ".csv", figure_data(*plot.figure)},
-            {plot.name + ".gp",
-             render("figure.gp", script_data(*plot.figure, plot.name), Escape::gnuplot)}};
-}
+Svg draw(const Figure& figure) { return figure.sheet ? draw_sheet(figure) : draw_plot(figure); }
+
+NamedContent data_file(const Plot& plot) { return {plot.name + ".csv", figure_data(*plot.figure)}; }
 
 std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder,
-                               const PlotOptions& options) {
-    const fs::path figures = folder / "figures";
-    std::vector<std::string> scripts;
-    for (const auto& plot : plots) {
-        for (const auto& [file, content] : sources(plot)) fill(figures / file, content);
-        scripts.push_back("figures/" + plot.name + ".gp");
-    }
-    if (scripts.empty()) return {};
-    run_gnuplot(folder, scripts);  // one process: each script resets all settings first
-    if (options.pdf) {
-        scripts.insert(scripts.begin(), {"-e", "pdf=1"});
-        run_gnuplot(folder, scripts);
-    }
+                               bool with_data) {
     std::vector<Illustration> pictures;
-    for (const auto& [figure, name] : plots) {
-        const fs::path svg = figures / (name + ".svg");
-        pictures.push_back(illustrate(read_whole(svg), fmt::format("f{}", pictures.size() + 1),
-                                      figure->title, figure->description));
-        fill(svg, pictures.back().alone);
-        if (!options.keep_source)
-            for (const char* other : {".csv", ".gp"}) fs::remove(figures / (name + other));
+    for (const auto& plot : plots) {
+        pictures.push_back(illustrate(draw(*plot.figure), fmt::format("f{}", pictures.size() + 1),
+                                      plot.figure->title, plot.figure->description));
+        fill(folder / "figures" / (plot.name + ".svg"), pictures.back().alone);
+        if (!with_data) continue;
+        const auto [file, content] = data_file(plot);
+        fill(folder / "figures" / file, content);
     }
     return pictures;
 }

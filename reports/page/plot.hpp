@@ -1,4 +1,4 @@
-// Figures by gnuplot, with script and data kept beside each.
+// Draws figures (line plots, bar charts, drawings) as SVG files with their data.
 #pragma once
 
 #include <filesystem>
@@ -16,17 +16,16 @@ struct Plot {
     std::string name;  // of its files, without extension
 };
 
-struct PlotOptions {
-    bool pdf = false;         // PDF files too
-    bool keep_source = true;  // scripts and data
-};
+// The figure as SVG: axes with round ticks, a legend above, series; or the sheet of a drawing.
+Svg draw(const Figure& figure);
 
-// Script and data of a figure: NAME.csv, NAME.gp.
-std::vector<NamedContent> sources(const Plot& plot);
+// NAME.csv: the columns series, x, y (bars also x low, x high, y low, y high); one block per series,
+// separated by two blank lines, with one blank line at a gap.
+NamedContent data_file(const Plot& plot);
 
-// Writes figures/NAME.svg with NAME.gp and NAME.csv into `folder`; one picture per plot. The k-th
-// picture's ids begin with "fk", counted from 1. Throws PlotError, FileError.
+// Writes figures/NAME.svg, and NAME.csv if `with_data`, into `folder`; one picture per plot. The k-th
+// picture's ids begin with "fk", counted from 1. Throws FileError.
 std::vector<Illustration> draw(const std::vector<Plot>& plots, const std::filesystem::path& folder,
-                               const PlotOptions& options);
+                               bool with_data = true);
 
 }  // namespace elastocheck::reports

@@ -1,14 +1,17 @@
-// Converts gnuplot's SVG for light and dark pages, stand-alone or inline, with alternative text.
+// Writes SVG figures for light and dark pages, stand-alone or inline, with alternative text.
 #pragma once
 
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "reports/page/page.hpp"
+#include "reports/text/labels.hpp"
 
 namespace elastocheck::reports {
 
 // Colour-blind-safe palette with variants for dark background, in the order of Colour in page.hpp.
-// Scripts use the light variants.
 struct Tint {
     std::string_view light, dark;  // "#rrggbb"
 };
@@ -25,15 +28,36 @@ inline constexpr std::array<Tint, 10> palette{{
     {"#d9dee4", "#38404a"},  // faint
 }};
 
-struct Illustration {
-    std::string alone;    // a file with its own style sheet and background
-    std::string inlined;  // for a page that styles .e-s0 ... .e-k9 and .e-paper
+// Elements of an SVG image in drawing order. Coordinates are pixels from the upper left corner, y
+// down, written with one decimal in every locale. Colours are classes of the style sheet: e-s0 ...
+// e-s9 stroke, e-f0 ... e-f9 fill.
+struct Svg {
+    int width = 0, height = 0;  // [px]
+    std::string elements{};
+
+    // Path data of a polyline, without repeated points; "" for fewer than two points.
+    static std::string polyline(const std::vector<Spot>& points, bool closed = false);
+
+    // `path`: SVG path data; `attributes`: more attributes of the element, with a leading space.
+    void stroke(const std::string& path, Colour colour, double line_width,
+                std::string_view attributes = "");
+    void area(const std::string& path, Colour colour, double opacity = 1);
+    // `anchor`: start, middle or end; `at` is on the baseline; `exponent` is set as a superscript.
+    void text(Spot at, std::string_view text, Colour colour, std::string_view anchor,
+              std::string_view attributes = "", std::string_view exponent = "");
 };
 
-// Removes unused parts, turns palette colours into classes (e-s stroke, e-f fill, e-k both through
-// currentColor), prefixes every id with `id`, and adds title and description. Throws PlotError when
-// `svg` is not a complete SVG.
-Illustration illustrate(const std::string& svg, const std::string& id, const std::string& title,
+struct Illustration {
+    std::string alone;    // a file with its own style sheet and background
+    std::string inlined;  // for a page that styles .e-s0 ... .e-f9 and .e-paper
+};
+
+// The image with a title and a description (SVG title and desc, referenced by aria-labelledby),
+// whose ids begin with `id`.
+Illustration illustrate(const Svg& svg, const std::string& id, const std::string& title,
                         const std::string& description);
+
+// A coordinate [px] with at most one decimal.
+std::string px(double value);
 
 }  // namespace elastocheck::reports

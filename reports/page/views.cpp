@@ -447,7 +447,6 @@ std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& vie
         draw_names(board, s);
         Figure figure{.id = view.id, .title = view.title};
         figure.sheet = Sheet{x, y, scale, frame.width, static_cast<int>(height)};
-        figure.key = false;
         figure.series = std::move(board.series);
         figure.words = std::move(board.words);
         figures.push_back(std::move(figure));

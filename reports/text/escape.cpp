@@ -132,13 +132,6 @@ std::string for_markdown(std::string_view text) {
     });
 }
 
-std::string for_gnuplot(std::string_view text) {
-    return translated(text, [](const Character& c) -> std::string {
-        if (!c.plain()) return " ";
-        return c.code == '\'' ? "’" : std::string(c.bytes);
-    });
-}
-
 std::string for_csv(std::string_view text) {
     // `begins`: start of a cell, also after a semicolon, which some programs use as separator
     bool quoted = false, begins = !is_number(text);
@@ -154,7 +147,13 @@ std::string for_csv(std::string_view text) {
 
 std::string for_xml(std::string_view text) {
     return translated(text, [](const Character& c) -> std::string {
-        return c.plain() || c.code == '\n' ? std::string(c.bytes) : "?";
+        switch (c.code) {
+            case '&': return "&amp;";
+            case '<': return "&lt;";
+            case '>': return "&gt;";
+            case '"': return "&quot;";
+            default: return c.plain() || c.code == '\n' ? std::string(c.bytes) : "?";
+        }
     });
 }
 

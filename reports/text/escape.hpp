@@ -23,17 +23,12 @@ std::string for_html(std::string_view text);
 // break.
 std::string for_markdown(std::string_view text);
 
-// A gnuplot script: between single quotes, or in a comment. An apostrophe becomes a typographic
-// one: gnuplot 5.4 takes a doubled one at the beginning of a text, or after another one, for the
-// end of the text.
-std::string for_gnuplot(std::string_view text);
-
 // A field of a CSV file (RFC 4180), quoted where necessary; on one line. A text that a spreadsheet
 // would evaluate (=, +, -, @ at the beginning of a cell, also after a semicolon) gets an apostrophe
 // before it; numbers are unchanged.
 std::string for_csv(std::string_view text);
 
-// Only characters allowed in XML 1.0; the XML writer escapes the markup.
+// XML 1.0 (SVG, JUnit), as text or in a double-quoted attribute.
 std::string for_xml(std::string_view text);
 
 // A message of a GitHub workflow command, or one of its properties (file=..., title=...).

@@ -6,9 +6,9 @@
 
 #include <array>
 #include <limits>
-#include <pugixml.hpp>
 
 #include "tests/support/command.hpp"
+#include "tests/support/folder.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -20,6 +20,11 @@ std::size_t count(const std::string& text, const std::string& part) {
     std::size_t found = 0;
     for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
     return found;
+}
+
+bool well_formed(const std::string& xml) {
+    const support::Folder folder;
+    return support::says("xmllint --noout " + folder.write("junit.xml", xml)).code == 0;
 }
 
 compare::Offence offence(double is) {
@@ -97,29 +102,16 @@ TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
 
 TEST(GateReport, JUnitTellsFailuresFromErrorsAndKeepsTheStoryInTheText) {
     const std::string xml = junit({passed(), failed(), unjudged()});
-    pugi::xml_document document;
-    ASSERT_TRUE(document.load_string(xml.c_str())) << xml;
-    const auto suites = document.child("testsuites");
-    const auto suite = [&](const char* file) {
-        return suites.find_child_by_attribute("name", file);
-    };
-    EXPECT_EQ(suite("scenes/good.yaml").attribute("tests").as_int(), 2);
-    EXPECT_EQ(suite("scenes/good.yaml").attribute("failures").as_int(), 0);
-    EXPECT_EQ(suite("scenes/bad.yaml").attribute("failures").as_int(), 1);
-    EXPECT_EQ(suite("scenes/bad.yaml").attribute("errors").as_int(), 0);
-    EXPECT_EQ(suite("scenes/new.yaml").attribute("errors").as_int(), 1);
-    EXPECT_EQ(suite("scenes/new.yaml").attribute("tests").as_int(), 1);
-    const auto failure =
-        suite("scenes/bad.yaml").find_child_by_attribute("name", "branch jounce").child("failure");
-    EXPECT_TRUE(contains(failure.text().get(), "accepted 1 deg, measured 3.5 deg"));
-    EXPECT_TRUE(contains(failure.text().get(), "; 2 numbers of it in all\n"))
-        << failure.text().get();
-    const auto error = suite("scenes/new.yaml").child("testcase").child("error");
-    EXPECT_STREQ(error.attribute("message").value(), "there is no baseline");
-    EXPECT_TRUE(contains(error.text().get(), "<nothing>"));
-    for (const auto& of_suite : suites)
-        EXPECT_EQ(of_suite.attribute("tests").as_int(),
-                  std::distance(of_suite.begin(), of_suite.end()));
+    EXPECT_TRUE(well_formed(xml)) << xml;
+    for (const char* part :
+         {"<testsuite name=\"scenes/good.yaml\" tests=\"2\" failures=\"0\" errors=\"0\">",
+          "<testsuite name=\"scenes/bad.yaml\" tests=\"2\" failures=\"1\" errors=\"0\">",
+          "<testsuite name=\"scenes/new.yaml\" tests=\"1\" failures=\"0\" errors=\"1\">",
+          "<testcase classname=\"scenes/bad.yaml\" name=\"branch jounce\">\n   <failure message=",
+          "accepted 1 deg, measured 3.5 deg", "; 2 numbers of it in all\n",
+          "<error message=\"there is no baseline\">", "&lt;nothing&gt;"})
+        EXPECT_TRUE(contains(xml, part)) << part << " in\n" << xml;
+    EXPECT_EQ(count(xml, "<testcase"), 5u);
 }
 
 TEST(GateReport, TheFieldsOfTheSceneThatChangedAreNamedEverywhere) {
@@ -186,8 +178,7 @@ TEST(GateReport, JUnitStaysSmallWhateverFailsAndSaysWhatIsLeftOut) {
         const auto all = wrong(scenes, branches, numbers, length);
         const std::string xml = junit(all);
         EXPECT_LT(xml.size(), most_junit) << scenes << " scenes";
-        pugi::xml_document document;
-        ASSERT_TRUE(document.load_string(xml.c_str()));
+        EXPECT_TRUE(well_formed(xml));
         const std::size_t shown = count(xml, "<testcase"), tests = 2 + scenes * (1 + branches);
         const std::string left = fmt::format("{} more tests, ", tests - shown);
         EXPECT_GT(shown, 1u);

@@ -70,31 +70,8 @@ TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
     for (const auto& [name, text] : a) EXPECT_EQ(text, b.at(name)) << name;
     for (const char* name : {"report.html", "report.md", "result.json", "curves.csv", "forces.csv",
                              "files.txt", "figures/chrono-mcpherson-toe-jounce-and-rebound.svg",
-                             "figures/chrono-mcpherson-toe-jounce-and-rebound.gp",
                              "figures/chrono-mcpherson-toe-jounce-and-rebound.csv"})
         EXPECT_TRUE(a.contains(name)) << name;
-}
-
-TEST(Report, AFigureCanBePlottedAgainFromItsScript) {
-    const Folder folder;
-    write_report(small_result("x"), "result.json", folder.path / "r");
-    int scripts = 0;
-    for (const auto& entry : fs::directory_iterator(folder.path / "r" / "figures")) {
-        if (entry.path().extension() != ".gp") continue;
-        ++scripts;
-        fs::path svg = entry.path(), pdf = entry.path();
-        fs::remove(svg.replace_extension(".svg"));
-        const std::string script = "figures/" + entry.path().filename().string();
-        const std::string there = "cd " + (folder.path / "r").string() + " && ";
-        // In the C locale gnuplot warns about the degree sign, but draws.
-        const auto said = support::says(there + "LC_ALL=C.UTF-8 gnuplot " + script);
-        EXPECT_EQ(said.code, 0) << said.err;
-        EXPECT_TRUE(said.err.empty()) << said.err;
-        EXPECT_TRUE(contains(text_of(svg), "<svg"));
-        EXPECT_EQ(support::says(there + "gnuplot -e pdf=1 " + script).code, 0);
-        EXPECT_TRUE(text_of(pdf.replace_extension(".pdf")).starts_with("%PDF"));
-    }
-    EXPECT_GE(scripts, 2);
 }
 
 TEST(Report, EveryFigureIsWellFormed) {
@@ -124,22 +101,19 @@ TEST(Report, NamesAreTextWhateverTheyContain) {
     EXPECT_FALSE(fs::exists(folder.path / "r" / "hacked"));
 }
 
-// A line end in a name would end the string or comment that contains it.
-TEST(Report, NothingInAFigureRunsWhateverItsWordsAre) {
+TEST(Report, AFigureIsWellFormedWhateverItsWordsAre) {
     const Folder folder;
     for (const std::string evil :
-         {"x\nsystem 'touch hacked'\n", "`touch hacked`", "'.system('touch hacked').'", "x\\",
-          "\"; system \"touch hacked\"", "x\r\nsystem('touch hacked')",
-          "x\u2028system('touch hacked')", "@x\n!touch hacked", "100 %s %d %n %"}) {
+         {"x\ny", "a<b>&\"'", "]]><script>", "x\u2028y", "100 %", "\x01"}) {
         Figure figure{.id = "f", .title = evil, .description = evil, .x = evil, .y = evil};
         figure.series.push_back({evil, Series::Style::line, ink, 0, {{0, 0}, {1, 1}}});
         figure.bands.push_back({0, 1, evil});
         figure.y_ticks = {{0.5, evil}};
-        EXPECT_EQ(draw({{&figure, "f"}}, folder.path, {}).size(), 1u) << evil;
-        int files = 0;
-        for (const auto& entry : fs::recursive_directory_iterator(folder.path))
-            files += !entry.is_directory();
-        EXPECT_EQ(files, 3) << evil;  // the script, its data, the picture
+        EXPECT_EQ(draw({{&figure, "f"}}, folder.path).size(), 1u) << evil;
+        const auto said =
+            support::says("xmllint --noout " + (folder.path / "figures" / "f.svg").string());
+        EXPECT_EQ(said.code, 0) << evil << said.err;
+        EXPECT_FALSE(contains(text_of(folder.path / "figures" / "f.svg"), "<script")) << evil;
     }
     // A document with such a name is rejected earlier.
     json result = small_result("x");
@@ -313,14 +287,8 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
     const Folder folder;
     const auto good = folder.write("result.json", small_result("good").dump());
     const std::string out = (folder.path / "out").string();
-    EXPECT_EQ(
-        support::says(command + " report --from " + good + " -o " + out + " --figures pdf").code,
-        0);
+    EXPECT_EQ(support::says(command + " report --from " + good + " -o " + out).code, 0);
     EXPECT_TRUE(fs::exists(folder.path / "out" / "report.html"));
-    bool pdf = false;
-    for (const auto& [name, text] : contents_of(out))
-        pdf = pdf || (name.ends_with(".pdf") && text.starts_with("%PDF"));
-    EXPECT_TRUE(pdf);
     json bad = small_result("bad");
     bad["scenes"][0]["branches"][0].erase("legs");
     const auto missing = support::says(command + " report --from " +
@@ -367,26 +335,13 @@ TEST(ReportCommand, SaysWhatItNeeds) {
           Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
           Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
           Case{scene + " --tolerance 1inch -o out", "'inch' is not a unit of it"},
-          Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"},
-          Case{scene + " --figures png -o out", "--figures"}}) {
+          Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"}}) {
         const auto said =
             support::says("cd " + folder.path.string() + " && " + command + " report " + arguments);
         EXPECT_EQ(said.code, 2) << arguments;
         EXPECT_TRUE(contains(said.err, why)) << arguments << ": " << said.err;
         EXPECT_FALSE(fs::exists(folder.path / "out"));
     }
-}
-
-TEST(ReportCommand, WithoutGnuplotItSaysSoAndWritesNothing) {
-    const Folder folder;
-    const auto document = folder.write("result.json", small_result("x").dump());
-    const auto said =
-        support::says("PATH=" + folder.path.string() + " " + command + " report --from " +
-                      document + " -o " + (folder.path / "out").string());
-    EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "gnuplot cannot be run (No such file or directory)"))
-        << said.err;
-    EXPECT_FALSE(fs::exists(folder.path / "out"));
 }
 
 TEST(ReportCommand, SolvesAndDrawsAScene) {

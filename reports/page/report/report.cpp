@@ -403,8 +403,7 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
 std::vector<NamedContent> report_texts(const json& result, const std::string& file) {
     Draft report = draft({&result, "", &file});
     std::vector<NamedContent> files;
-    for (const auto& plot : report.plots)
-        std::ranges::move(sources(plot), std::back_inserter(files));
+    for (const auto& plot : report.plots) files.push_back(data_file(plot));
     report.page.pictures.resize(report.plots.size());
     for (const bool archive : {true, false})
         std::ranges::move(texts(report, result, file, archive).files, std::back_inserter(files));
@@ -416,8 +415,7 @@ std::vector<Answer> write_report(const json& result, const std::string& file,
     Staging staging(folder);
     Draft report = draft({&result, "", &file});
     if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
-    report.page.pictures =
-        draw(report.plots, staging.path(), {.pdf = options.pdf, .keep_source = !options.archive});
+    report.page.pictures = draw(report.plots, staging.path(), !options.archive);
     const Texts made = texts(std::move(report), result, file, options.archive);
     for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
     staging.publish();
