@@ -6,6 +6,7 @@
 #include <charconv>
 #include <set>
 
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "reports/json/json.hpp"
+#include "reports/json/json_cursor.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -25,96 +25,26 @@ bool is_known(const std::string& unit) {
            std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
 }
 
-// A field of the file with its path for messages.
-struct Field {
-    const json& value;
-    std::string path;
-};
-
-[[noreturn]] void refuse(const Field& field, const std::string& what) {
-    throw BaselineError(fmt::format("{}: {}", field.path.empty() ? "the file" : field.path, what));
-}
-
-// Requires exactly these fields of an object, and optionally `more`.
-void expect_fields(const Field& in, std::initializer_list<const char*> names,
-                   std::string_view more = "") {
-    if (!in.value.is_object()) refuse(in, "is not an object");
-    for (const char* name : names)
-        if (!in.value.contains(name)) refuse(in, fmt::format("'{}' is missing", name));
-    for (const auto& [name, unused] : in.value.items()) {
-        if (name == more) continue;
-        if (std::ranges::find(names, name) == names.end())
-            refuse(in, fmt::format("'{}' is not known", name));
-    }
-}
-
-Field at(const Field& in, const char* name) {
-    return {in.value.at(name), in.path.empty() ? name : in.path + "." + name};
-}
-
-const json& array(const Field& field) {
-    if (!field.value.is_array()) refuse(field, "is not a list");
-    return field.value;
-}
-
-std::string text(const Field& field) {
-    if (!field.value.is_string()) refuse(field, "is not a text");
-    auto text = field.value.get<std::string>();
-    if (const std::string wrong = flaw(text); !wrong.empty())
-        refuse(field, "is not a line of text: " + wrong);
-    return text;
-}
-
-// A text of several lines.
-std::string paragraphs(const Field& field) {
-    if (!field.value.is_string()) refuse(field, "is not a text");
-    auto text = field.value.get<std::string>();
-    std::string one_line = text;
-    std::ranges::replace(one_line, '\n', ' ');
-    if (const std::string wrong = flaw(one_line); !wrong.empty())
-        refuse(field, "is not text: " + wrong);
-    return text;
-}
-
-double number(const Field& field) {
-    if (field.value.is_null()) return std::numeric_limits<double>::quiet_NaN();
-    if (!field.value.is_number()) refuse(field, "is not a number");
-    return field.value.get<double>();
-}
-
-std::vector<double> numbers(const Field& field) {
-    std::vector<double> values;
-    for (const auto& value : array(field)) values.push_back(number({value, field.path}));
-    return values;
-}
-
 // The element of `kinds` with this name.
 template <class Kinds>
 auto named(const Field& field, const Kinds& kinds) {
-    const std::string word = text(field);
+    const std::string word = field.text();
     for (const auto kind : kinds)
         if (word == name(kind)) return kind;
-    refuse(field, fmt::format("'{}' is not known", word));
+    field.fail(fmt::format("'{}' is not known", word));
 }
 
-Provenance provenance_of(const Field& field) {
-    expect_fields(field,
-                  {"elastocheck", "commit", "dirty", "compiler", "flags", "cpu", "libraries"});
+Provenance provenance_of(const Field& in) {
+    in.only_keys({"elastocheck", "commit", "dirty", "compiler", "flags", "cpu", "libraries"});
     Provenance p;
-    p.version = text(at(field, "elastocheck"));
-    p.commit = text(at(field, "commit"));
-    if (!field.value.at("dirty").is_boolean()) refuse(at(field, "dirty"), "is not true or false");
-    p.dirty = field.value.at("dirty").get<bool>();
-    p.compiler = text(at(field, "compiler"));
-    p.flags = text(at(field, "flags"));
-    p.cpu = text(at(field, "cpu"));
-    const Field libraries = at(field, "libraries");
-    if (!libraries.value.is_object()) refuse(libraries, "is not an object");
-    for (const auto& [name, version] : libraries.value.items()) {
-        if (const std::string wrong = flaw(name); !wrong.empty())
-            refuse(libraries, "a name: " + wrong);
-        p.libraries.push_back({name, text({version, libraries.path + "." + name})});
-    }
+    p.version = in["elastocheck"].text();
+    p.commit = in["commit"].text();
+    p.dirty = in["dirty"].truth();
+    p.compiler = in["compiler"].text();
+    p.flags = in["flags"].text();
+    p.cpu = in["cpu"].text();
+    for (const auto& [name, version] : in["libraries"].entries())
+        p.libraries.push_back({name, version.text()});
     return p;
 }
 
@@ -124,44 +54,40 @@ json tolerances_json(const compare::Tolerances& tolerances) {
     return result;
 }
 
-std::map<ToleranceClass, compare::Tolerances> tolerances_of(const Field& field) {
+std::map<ToleranceClass, compare::Tolerances> tolerances_of(const Field& in) {
     std::map<ToleranceClass, compare::Tolerances> result;
-    expect_fields(field, {name(ToleranceClass::same_build), name(ToleranceClass::cross_build),
-                          name(ToleranceClass::physical)});
+    in.only_keys({name(ToleranceClass::same_build), name(ToleranceClass::cross_build),
+                  name(ToleranceClass::physical)});
     for (const auto kind : compare::tolerance_classes) {
-        const Field of_class = at(field, name(kind));
-        if (!of_class.value.is_object()) refuse(of_class, "is not an object");
         compare::Tolerances& tolerances = result[kind];  // also if it has no entries
-        for (const auto& [key, value] : of_class.value.items()) {
-            const Field tolerance{value, of_class.path + "." + key};
-            expect_fields(tolerance, {"atol", "rtol"});
-            tolerances[key] = {number(at(tolerance, "atol")), number(at(tolerance, "rtol"))};
+        for (const auto& [key, tolerance] : in[name(kind)].entries()) {
+            tolerance.only_keys({"atol", "rtol"});
+            tolerances[key] = {tolerance["atol"].number(), tolerance["rtol"].number()};
         }
     }
     return result;
 }
 
-Series series_of(const Field& field) {
-    expect_fields(field, {"branch", "of", "channel", "unit", "values"});
-    Series s{text(at(field, "branch")), named(at(field, "of"), compare::quantities),
-             text(at(field, "channel")), text(at(field, "unit")), numbers(at(field, "values"))};
-    if (!is_known(s.unit)) refuse(at(field, "unit"), fmt::format("'{}' is not known", s.unit));
+Series series_of(const Field& in) {
+    in.only_keys({"branch", "of", "channel", "unit", "values"});
+    Series s{in["branch"].text(), named(in["of"], compare::quantities), in["channel"].text(),
+             in["unit"].text(), in["values"].numbers()};
+    if (!is_known(s.unit)) in["unit"].fail(fmt::format("'{}' is not known", s.unit));
     return s;
 }
 
-compare::Limit limit_of(const Field& field) {
-    expect_fields(field, {"of", "channel", "max"});
+compare::Limit limit_of(const Field& in) {
+    in.only_keys({"of", "channel", "max"});
     constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
                                     Quantity::deviation_at_equal_abscissa};
-    return {named(at(field, "of"), deviations), text(at(field, "channel")),
-            number(at(field, "max"))};
+    return {named(in["of"], deviations), in["channel"].text(), in["max"].number()};
 }
 
 // ["points.tie_rod_inner.z", -0.055, "m"]
-Number number_of(const Field& field) {
-    if (array(field).size() != 3) refuse(field, "is not [path, value, unit]");
-    const auto entry = [&](std::size_t k) { return Field{field.value[k], field.path}; };
-    return {text(entry(0)), number(entry(1)), text(entry(2))};
+Number number_of(const Field& in) {
+    const auto parts = in.items();
+    if (parts.size() != 3) in.fail("is not [path, value, unit]");
+    return {parts[0].text(), parts[1].number(), parts[2].text()};
 }
 
 // [\n  one,\n  two\n ]
@@ -171,51 +97,44 @@ std::string one_a_line(const std::vector<json>& entries) {
     return "[" + lines + (entries.empty() ? "]" : "\n ]");
 }
 
-BaselineFile parse(const json& whole) {
-    const Field top{whole, ""};
-    if (!whole.is_object() || !whole.contains("schema"))
-        refuse(top, "has no schema: it is not a baseline");
-    if (const std::string schema = text(at(top, "schema")); schema != baseline_schema)
-        refuse(at(top, "schema"),
-               fmt::format("'{}' cannot be read by this version, which needs '{}'; accept anew",
-                           schema, baseline_schema));
-    expect_fields(
-        top,
+BaselineFile parse(const Field& top) {
+    if (!top.value->is_object() || !top.value->contains("schema"))
+        top.fail("has no schema: it is not a baseline");
+    if (const std::string schema = top["schema"].text(); schema != baseline_schema)
+        top["schema"].fail(
+            fmt::format("'{}' cannot be read by this version, which needs '{}'; accept anew",
+                        schema, baseline_schema));
+    top.only_keys(
         {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"},
         "numbers");
     BaselineFile file;
-    const Field scene = at(top, "scene");
-    expect_fields(scene, {"file", "name", "input_hash"});
-    file.scene_file = text(at(scene, "file"));
-    file.baseline.accepted.scene = text(at(scene, "name"));
-    file.input_hash = text(at(scene, "input_hash"));
-    if (whole.contains("numbers")) {
+    const Field scene = top["scene"];
+    scene.only_keys({"file", "name", "input_hash"});
+    file.scene_file = scene["file"].text();
+    file.baseline.accepted.scene = scene["name"].text();
+    file.input_hash = scene["input_hash"].text();
+    if (top.value->contains("numbers")) {
         file.numbers.emplace();
-        for (const auto& entry : array(at(top, "numbers")))
-            file.numbers->push_back(
-                number_of({entry, fmt::format("numbers[{}]", file.numbers->size())}));
+        for (const auto& entry : top["numbers"].items()) file.numbers->push_back(number_of(entry));
     }
-    expect_fields(at(top, "accepted"), {"reason"});
-    file.baseline.reason = paragraphs(at(at(top, "accepted"), "reason"));
-    file.provenance = provenance_of(at(top, "provenance"));
-    file.baseline.tolerances = tolerances_of(at(top, "tolerances"));
-    for (const auto& limit : array(at(top, "limits")))
-        file.baseline.limits.push_back(limit_of({limit, "limits"}));
+    top["accepted"].only_keys({"reason"});
+    file.baseline.reason = top["accepted"]["reason"].lines();
+    file.provenance = provenance_of(top["provenance"]);
+    file.baseline.tolerances = tolerances_of(top["tolerances"]);
+    for (const auto& limit : top["limits"].items()) file.baseline.limits.push_back(limit_of(limit));
     std::set<std::string> branches;
-    for (const auto& entry : array(at(top, "branches"))) {
-        const Field branch{entry, "branches"};
-        expect_fields(branch, {"name", "unit", "parameter"});
+    for (const auto& branch : top["branches"].items()) {
+        branch.only_keys({"name", "unit", "parameter"});
         file.baseline.accepted.branches.push_back(
-            {text(at(branch, "name")), text(at(branch, "unit")), numbers(at(branch, "parameter"))});
+            {branch["name"].text(), branch["unit"].text(), branch["parameter"].numbers()});
         if (!branches.insert(file.baseline.accepted.branches.back().name).second)
-            refuse(branch, "a branch is there twice");
+            branch.fail("the branch is given twice");
     }
     std::set<std::tuple<std::string, Quantity, std::string>> seen;
-    for (const auto& entry : array(at(top, "series"))) {
-        const Field field{entry, fmt::format("series[{}]", seen.size())};
-        file.baseline.accepted.series.push_back(series_of(field));
+    for (const auto& entry : top["series"].items()) {
+        file.baseline.accepted.series.push_back(series_of(entry));
         const Series& s = file.baseline.accepted.series.back();
-        if (!seen.emplace(s.branch, s.quantity, s.channel).second) refuse(field, "is there twice");
+        if (!seen.emplace(s.branch, s.quantity, s.channel).second) entry.fail("is given twice");
     }
     return file;
 }
@@ -272,15 +191,13 @@ std::string baseline_text(const BaselineFile& file) {
 }
 
 BaselineFile parse_baseline(std::string_view text, const std::string& file_name) {
+    if (text.empty()) throw BaselineError(file_name + ": the file is empty");
     try {
-        if (text.empty()) throw BaselineError("the file is empty");
-        return parse(parse_json(text));
-    } catch (const BaselineError& error) {
-        throw BaselineError(fmt::format("{}: {}", file_name, error.what()));
+        const json whole = parse_json(text);
+        return parse({&whole, "", &file_name});
+    } catch (const ResultError& error) {
+        throw BaselineError(error.what());
     } catch (const JsonError& error) {
-        throw BaselineError(
-            fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
-    } catch (const json::exception& error) {
         throw BaselineError(
             fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
     }

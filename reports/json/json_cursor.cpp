@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,14 @@ namespace elastocheck::reports {
 
 void Field::fail(const std::string& what) const {
     throw ResultError(fmt::format("{}: {}{}{}", *file, path, path.empty() ? "" : ": ", what));
+}
+
+void Field::only_keys(std::initializer_list<std::string_view> required,
+                      std::string_view optional) const {
+    for (const auto key : required) (void)(*this)[key];
+    for (const auto& [key, entry] : value->items())
+        if (key != optional && std::ranges::find(required, key) == required.end())
+            fail(fmt::format("'{}' is not known", key));
 }
 
 std::optional<Field> Field::find(std::string_view key) const {
@@ -66,9 +75,17 @@ bool Field::truth() const {
 }
 
 std::string Field::text() const {
+    std::string text = lines();
+    if (text.find('\n') != text.npos) fail("expected one line of text: " + flaw(text));
+    return text;
+}
+
+std::string Field::lines() const {
     if (!value->is_string()) fail(fmt::format("expected text, found {}", value->type_name()));
     auto text = value->get<std::string>();
-    if (const std::string wrong = flaw(text); !wrong.empty())
+    std::string one_line = text;
+    std::ranges::replace(one_line, '\n', ' ');
+    if (const std::string wrong = flaw(one_line); !wrong.empty())
         fail("expected one line of text: " + wrong);
     return text;
 }

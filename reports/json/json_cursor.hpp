@@ -1,4 +1,5 @@
-// Typed access to result.json with the path of each value for error messages.
+// Typed access to a JSON document (result.json, a baseline) with the path of each value for error
+// messages.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +11,7 @@
 
 namespace elastocheck::reports {
 
-// A result document cannot be used. what() reads "FILE: scenes[0].branches[1].legs: missing".
+// A JSON document cannot be used. what() reads "FILE: scenes[0].branches[1].legs: missing".
 struct ResultError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -23,6 +24,9 @@ struct Field {
 
     [[noreturn]] void fail(const std::string& what) const;
 
+    // Fails unless this is an object with all of `required` and no other field but `optional`.
+    void only_keys(std::initializer_list<std::string_view> required,
+                   std::string_view optional = "") const;
     Field operator[](std::string_view key) const;                // must be there
     std::optional<Field> find(std::string_view key) const;       // empty when absent or null
     std::vector<std::pair<std::string, Field>> entries() const;  // of an object
@@ -31,7 +35,8 @@ struct Field {
     double number() const;  // NaN for null
     int whole() const;
     bool truth() const;
-    std::string text() const;  // one line without control characters (escape.hpp: flaw)
+    std::string text() const;   // one line without control characters (escape.hpp: flaw)
+    std::string lines() const;  // the same with line ends
     std::vector<double> numbers() const;
     std::vector<std::string> texts() const;
 };

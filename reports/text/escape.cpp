@@ -6,46 +6,17 @@
 #include <charconv>
 #include <system_error>
 
+#include "models/reader/document/characters.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
-// One UTF-8 character, or an invalid byte.
-struct Character {
-    std::string_view bytes;
-    char32_t code = 0;
-    bool valid = false;
+using reader::Character, reader::first_character;
 
-    bool control() const {
-        return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0x2028 || code == 0x2029;
-    }
-    bool turns_writing() const {
-        return code == 0x061C || code == 0x200E || code == 0x200F ||
-               (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
-    }
-    // Starts a spreadsheet formula at the beginning of a cell; the last four are the full-width
-    // forms.
-    bool begins_formula() const {
-        return code == '=' || code == '+' || code == '-' || code == '@' || code == 0xFF1D ||
-               code == 0xFF0B || code == 0xFF0D || code == 0xFF20;
-    }
-    bool plain() const { return valid && !control() && !turns_writing(); }
-};
-
-// RFC 3629: no overlong forms, no surrogates, nothing above U+10FFFF.
-Character first_of(std::string_view text) {
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-    const Character broken{text.substr(0, 1), byte(0), false};
-    if (byte(0) < 0x80) return {text.substr(0, 1), byte(0), true};
-    const std::size_t length = byte(0) >= 0xF0 ? 4 : byte(0) >= 0xE0 ? 3 : byte(0) >= 0xC2 ? 2 : 0;
-    if (length == 0 || byte(0) > 0xF4 || text.size() < length) return broken;
-    char32_t code = byte(0) & (0xFFU >> (length + 1));
-    for (std::size_t k = 1; k < length; ++k) {
-        if ((byte(k) & 0xC0U) != 0x80U) return broken;
-        code = code << 6U | (byte(k) & 0x3FU);
-    }
-    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-    if (overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF) return broken;
-    return {text.substr(0, length), code, true};
+// Starts a spreadsheet formula at the beginning of a cell; the last four are the full-width forms.
+bool begins_formula(char32_t code) {
+    return code == '=' || code == '+' || code == '-' || code == '@' || code == 0xFF1D ||
+           code == 0xFF0B || code == 0xFF0D || code == 0xFF20;
 }
 
 // Replaces every character by the result of `put`.
@@ -54,7 +25,7 @@ std::string translated(std::string_view text, Put&& put) {
     std::string result;
     result.reserve(text.size());
     while (!text.empty()) {
-        const Character c = first_of(text);
+        const Character c = first_character(text);
         result += put(c);
         text.remove_prefix(c.bytes.size());
     }
@@ -74,7 +45,7 @@ constexpr std::string_view stand_in = "\uFFFD";  // for characters that cannot b
 
 std::string flaw(std::string_view text) {
     while (!text.empty()) {
-        const Character c = first_of(text);
+        const Character c = first_character(text);
         const auto code = static_cast<unsigned>(c.code);
         if (!c.valid) return fmt::format("byte {:#04x} is not UTF-8", code);
         if (c.control()) return fmt::format("it has the control character U+{:04X}", code);
@@ -138,7 +109,7 @@ std::string for_csv(std::string_view text) {
     std::string field = translated(text, [&](const Character& c) -> std::string {
         if (!c.plain()) return " ";
         quoted = quoted || c.code == ',' || c.code == '"' || c.code == ';';
-        const bool formula = begins && c.begins_formula();
+        const bool formula = begins && begins_formula(c.code);
         begins = c.code == ';' || c.code == ',' || (begins && (c.code == ' ' || c.code == '"'));
         return (formula ? "'" : "") + (c.code == '"' ? std::string(R"("")") : std::string(c.bytes));
     });

@@ -9,11 +9,14 @@
 #include <optional>
 #include <span>
 
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
 
 namespace elastocheck::importer::adm {
 namespace {
+
+using reader::is_blank, reader::trimmed;
 
 // All keywords of a dataset, to resolve abbreviations.
 constexpr std::string_view keywords[] = {
@@ -30,19 +33,9 @@ constexpr std::string_view keywords[] = {
     "SPLINE",  "SPRINGDAMPER", "STRING",   "SURFACE",     "TFSISO",     "TIRE",
     "UCON",    "UNITS",        "VARIABLE", "VFORCE",      "VTORQUE",    "WHEEL"};
 
-// NUL counts as a blank: some writers pad their text with it.
-bool is_space(char c) {
-    return c == ' ' || c == '\0' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
-}
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name(char c) { return is_letter(c) || is_digit(c); }
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-    return text;
-}
 
 // Words that an abbreviation can mean: the exact match alone, else all that begin with it.
 std::vector<std::string_view> meant(std::string_view beginning,
@@ -82,7 +75,7 @@ struct Reading {
         std::size_t n = 0;
         while (n < line.size() && is_letter(line[n])) ++n;
         std::size_t slash = n;
-        while (slash < line.size() && is_space(line[slash])) ++slash;
+        while (slash < line.size() && is_blank(line[slash])) ++slash;
         if (n == 0 || slash == line.size() || line[slash] != '/')
             fail(
                 fmt::format("expected a statement KEYWORD/..., a line that begins with a comma, or "
@@ -244,11 +237,11 @@ struct Scanner {
 
     [[noreturn]] void fail(const std::string& what) const { adm::fail(file, statement, what); }
     void skip_blanks() {
-        while (!text.empty() && (is_space(text.front()) || text.front() == '\n'))
+        while (!text.empty() && (is_blank(text.front()) || text.front() == '\n'))
             text.remove_prefix(1);
     }
     void skip_separators() {
-        while (!text.empty() && (is_space(text.front()) || text.front() == '\n' ||
+        while (!text.empty() && (is_blank(text.front()) || text.front() == '\n' ||
                                  text.front() == ',' || text.front() == '\\'))
             text.remove_prefix(1);
     }
@@ -258,7 +251,7 @@ struct Scanner {
         if (n < rest.size() && is_letter(rest[n]))
             while (n < rest.size() && is_name(rest[n])) ++n;
         std::size_t k = n;
-        while (k < rest.size() && is_space(rest[k])) ++k;
+        while (k < rest.size() && is_blank(rest[k])) ++k;
         assigns = n > 0 && k < rest.size() && rest[k] == '=';
         return rest.substr(0, n);
     }
@@ -270,7 +263,7 @@ struct Scanner {
     // expression.
     bool is_argument(std::string_view rest) const {
         while (!rest.empty() &&
-               (is_space(rest.front()) || rest.front() == ',' || rest.front() == '\n'))
+               (is_blank(rest.front()) || rest.front() == ',' || rest.front() == '\n'))
             rest.remove_prefix(1);
         bool assigns = false;
         const std::string_view name = word(rest, assigns);
@@ -318,7 +311,7 @@ struct Scanner {
             // After a comma and/or a new line the following text is a value if it is a number.
             std::string_view rest = text;
             if (rest.front() == ',') rest.remove_prefix(1);
-            while (!rest.empty() && (is_space(rest.front()) || rest.front() == '\n'))
+            while (!rest.empty() && (is_blank(rest.front()) || rest.front() == '\n'))
                 rest.remove_prefix(1);
             double ignored = 0;
             bool degrees = false;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {

@@ -8,6 +8,7 @@
 #include "models/curve.hpp"
 #include "models/overloaded.hpp"
 #include "models/reader/definitions/definitions.hpp"
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::reader {
@@ -22,12 +23,6 @@ bool is_letter(char c) {
 
 bool is_word(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, is_letter);
-}
-
-std::string_view trimmed(std::string_view text) {
-    while (text.starts_with(' ')) text.remove_prefix(1);
-    while (text.ends_with(' ')) text.remove_suffix(1);
-    return text;
 }
 
 // Whether any name in the sections of the scene contains the mirrored word.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
@@ -20,10 +21,6 @@ namespace elastocheck::reader {
 namespace {
 
 int line_of(const YAML::Mark& mark) { return std::max(mark.line, 0) + 1; }
-
-// Length of the UTF-8 sequence at the beginning of `text`, 0 if there is none (RFC 3629, table of
-// well-formed sequences).
-std::size_t utf8_length(std::string_view text);
 
 // Collects the parser's events into a tree of values.
 class TreeBuilder final : public YAML::EventHandler {
@@ -125,18 +122,12 @@ class TreeBuilder final : public YAML::EventHandler {
     // (\N, \_) into bytes that are not UTF-8.
     void refuse_unprintable(const YAML::Mark& mark, const std::string& whole) const {
         std::string_view text = whole;
-        for (std::size_t length = 0; !text.empty(); text.remove_prefix(length)) {
-            length = utf8_length(text);
-            if (length == 0)
-                fail_at(mark, "an escape that is no UTF-8; write the character itself");
-            const std::string_view c = text.substr(0, length);
-            const bool control = static_cast<unsigned char>(c[0]) < 0x20 || c == "\x7F" ||
-                                 (c >= "\xC2\x80" && c <= "\xC2\x9F") || c == "\u2028" ||
-                                 c == "\u2029";
-            const bool turns = c == "\u061C" || c == "\u200E" || c == "\u200F" ||
-                               (c >= "\u202A" && c <= "\u202E") || (c >= "\u2066" && c <= "\u2069");
-            if (control) fail_at(mark, quote(whole) + " is not one line of plain text");
-            if (turns) fail_at(mark, "a character that turns the direction of writing");
+        while (!text.empty()) {
+            const Character c = first_character(text);
+            if (!c.valid) fail_at(mark, "an escape that is no UTF-8; write the character itself");
+            if (c.control()) fail_at(mark, quote(whole) + " is not one line of plain text");
+            if (c.turns_writing()) fail_at(mark, "a character that turns the direction of writing");
+            text.remove_prefix(c.bytes.size());
         }
     }
 
@@ -157,29 +148,6 @@ class TreeBuilder final : public YAML::EventHandler {
     std::vector<Open> open;
 };
 
-// Length of the UTF-8 sequence at the beginning of `text`,
-// 0 if there is none (RFC 3629, table of well-formed sequences).
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
-    };
-    const auto continues = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
-    const unsigned lead = byte(0), second = byte(1);
-    if (lead < 0x80) return 1;
-    if (lead >= 0xC2 && lead <= 0xDF) return continues(1) ? 2 : 0;
-    if (lead >= 0xE0 && lead <= 0xEF) {
-        const bool overlong = lead == 0xE0 && second < 0xA0,
-                   surrogate = lead == 0xED && second > 0x9F;
-        return continues(1) && continues(2) && !overlong && !surrogate ? 3 : 0;
-    }
-    if (lead >= 0xF0 && lead <= 0xF4) {
-        const bool overlong = lead == 0xF0 && second < 0x90,
-                   too_large = lead == 0xF4 && second > 0x8F;
-        return continues(1) && continues(2) && continues(3) && !overlong && !too_large ? 4 : 0;
-    }
-    return 0;
-}
-
 // yaml-cpp treats some control characters as the end of the text, and reports need valid UTF-8.
 void refuse_binary(std::string_view text, const std::string& file) {
     int line = 1;
@@ -189,11 +157,11 @@ void refuse_binary(std::string_view text, const std::string& file) {
         if ((c < 0x20 && c != '\n' && c != '\r' && c != '\t') || c == 0x7F)
             fail(file, line, "",
                  fmt::format("control character {:#04x}; a scene is plain text", c));
-        const std::size_t length = utf8_length(text.substr(at));
-        if (length == 0)
+        const Character character = first_character(text.substr(at));
+        if (!character.valid)
             fail(file, line, "",
                  fmt::format("byte {:#04x} is not UTF-8; a scene is plain text", c));
-        at += length;
+        at += character.bytes.size();
     }
 }
 
@@ -202,15 +170,6 @@ void refuse_binary(std::string_view text, const std::string& file) {
 std::string place_in(const Value& list, std::size_t k) {
     const bool is_vector = list.items.size() == 3 && list.items[0].kind != Value::Kind::list;
     return is_vector ? std::string(1, "xyz"[k]) : std::to_string(k + 1);
-}
-
-bool is_utf8(std::string_view text) {
-    while (!text.empty()) {
-        const std::size_t length = utf8_length(text);
-        if (length == 0) return false;
-        text.remove_prefix(length);
-    }
-    return true;
 }
 
 Value parse_yaml(std::string_view text, const std::string& file) {

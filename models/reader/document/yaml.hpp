@@ -23,8 +23,6 @@ struct Value {
 // UTF-8, more than 1 MiB. Throws SceneError.
 Value parse_yaml(std::string_view text, const std::string& file);
 
-bool is_utf8(std::string_view text);
-
 // Name of a list entry in paths, "y" or "4": vectors have x, y, z, all other lists positions from
 // 1.
 std::string place_in(const Value& list, std::size_t k);

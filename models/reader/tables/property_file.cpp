@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
 
@@ -14,14 +15,6 @@ namespace elastocheck::reader {
 namespace {
 
 constexpr std::size_t most_rows = 100'000;
-
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\0'; }
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-    return text;
-}
 
 std::string capitals(std::string_view text) {
     std::string result(text);

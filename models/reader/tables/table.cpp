@@ -9,9 +9,11 @@
 #include <string_view>
 #include <system_error>
 
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
+#include "models/reader/tables/csv.hpp"
 #include "models/reader/tables/property_file.hpp"
 
 namespace elastocheck::reader {
@@ -49,13 +51,6 @@ std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
 // ---- CSV: two comma-separated numbers per line. Empty lines and lines that start with # are
 // ignored; the first other line may be a header.
 
-std::string_view trimmed(std::string_view text) {
-    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 bool begins_with_number(std::string_view text) {
     if (text.starts_with('+')) text.remove_prefix(1);
     double ignored = 0;
@@ -65,23 +60,14 @@ bool begins_with_number(std::string_view text) {
 
 // Parses CSV to a list as in a scene, with the line numbers of the CSV file.
 Value rows_of(std::string_view text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     Value table{.kind = Value::Kind::list};
     bool is_first = true;
-    for (int line = 1; !text.empty(); ++line) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view rest = trimmed(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
-        if (rest.empty() || rest.starts_with('#')) continue;
-        Value row{.kind = Value::Kind::list, .line = line};
-        for (bool more = true; more;) {
-            const std::size_t comma = rest.find(',');
-            more = comma != std::string_view::npos;
-            const std::string cell(trimmed(rest.substr(0, comma)));
-            row.items.push_back({.kind = Value::Kind::scalar, .text = cell, .line = line});
-            if (more) rest.remove_prefix(comma + 1);
-        }
+    for (CsvLines lines(text); lines.next();) {
+        if (lines.whole().starts_with('#')) continue;
+        Value row{.kind = Value::Kind::list, .line = lines.number()};
+        for (const auto cell : lines.cells())
+            row.items.push_back(
+                {.kind = Value::Kind::scalar, .text = std::string(cell), .line = lines.number()});
         const auto is_number = [](const Value& cell) { return begins_with_number(cell.text); };
         if (!std::exchange(is_first, false) || std::ranges::any_of(row.items, is_number))
             table.items.push_back(std::move(row));

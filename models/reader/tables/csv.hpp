@@ -1,0 +1,29 @@
+// Lines and cells of a CSV text.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace elastocheck::reader {
+
+// Reads a CSV text line by line. A byte-order mark and lines without content are skipped.
+class CsvLines {
+  public:
+    static constexpr std::size_t most_cells = 10'000;
+
+    explicit CsvLines(std::string_view text);
+
+    // Advances to the next line with content; false at the end.
+    bool next();
+
+    int number() const { return number_; }            // of the line, from 1
+    std::string_view whole() const { return line_; }  // the line, trimmed
+    std::vector<std::string_view> cells() const;      // trimmed, without the quotes around one; at
+                                                      // most `most_cells` + 1 of them
+
+  private:
+    std::string_view rest_, line_;
+    int number_ = 0;
+};
+
+}  // namespace elastocheck::reader
