@@ -12,11 +12,7 @@
 
 namespace elastocheck::reports {
 
-std::string ChannelInfo::label() const {
-    std::string text = name;
-    std::ranges::replace(text, '_', ' ');
-    return text;
-}
+std::string ChannelInfo::label() const { return as_words(name); }
 
 std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label(), unit); }
 
@@ -198,13 +194,6 @@ Table page_table(std::string caption, const compare::Table& table,
         }
     }
     return page;
-}
-
-std::string enumerated(const std::vector<std::string>& words) {
-    std::string text;
-    for (std::size_t k = 0; k < words.size(); ++k)
-        text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
-    return text;
 }
 
 std::string configuration(const Field& chosen) {

@@ -9,6 +9,7 @@
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/page.hpp"
 #include "reports/tables/render.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 
@@ -66,9 +67,6 @@ double largest(const std::vector<double>& values);  // largest absolute value; N
 
 // Columns of a study's table as a table of the page, without empty columns.
 Table page_table(std::string caption, const compare::Table& table, const std::vector<Shown>& shown);
-
-// "a", "a and b", "a, b and c"
-std::string enumerated(const std::vector<std::string>& words);
 
 // "tangent, 60 steps"; "adaptive, tolerance 0.1 mm"; "equilibrium solution". For a point or a
 // recommendation.

@@ -9,6 +9,7 @@
 
 #include "reports/text/labels.hpp"
 #include "reports/text/symbols.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -359,9 +360,7 @@ void draw_names(Board& board, const Suspension& s) {
     for (const auto& p : s.points) {
         if (!p.hardpoint || std::ranges::find(names, p.name) != names.end()) continue;
         names.push_back(p.name);
-        std::string shown = p.name;
-        std::ranges::replace(shown, '_', ' ');
-        labels.push_back({board.on(p.at), text_width(shown, letter), line_height});
+        labels.push_back({board.on(p.at), text_width(as_words(p.name), letter), line_height});
     }
     const auto placed = place_labels(labels, board.paper);
     for (std::size_t k = 0; k < labels.size(); ++k) {
@@ -371,10 +370,9 @@ void draw_names(Board& board, const Suspension& s) {
                         std::clamp(labels[k].at.y, box.bottom, box.top)};
         if (std::hypot(near.x - labels[k].at.x, near.y - labels[k].at.y) > 15)
             board.stroke({labels[k].at, near}, Series::Style::hair, slate, false);
-        std::string shown = names[k];
-        std::ranges::replace(shown, '_', ' ');
         board.words.push_back({board.x + box.left / board.scale,
-                               board.y + (box.bottom + box.top) / 2 / board.scale, shown, ink});
+                               board.y + (box.bottom + box.top) / 2 / board.scale,
+                               as_words(names[k]), ink});
     }
 }
 

@@ -11,6 +11,7 @@
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/text/numbers.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -20,11 +21,6 @@ using compare::CandidateReading;
 using compare::CandidateWorst;
 using compare::Grade;
 using compare::Unit;
-
-std::string spaced(std::string name) {
-    std::ranges::replace(name, '_', ' ');
-    return name;
-}
 
 std::string tolerance_of(const CandidateJudgement& j) {
     return words(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
@@ -48,7 +44,7 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
         text += fmt::format(
             "{}{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size,
             w.extent > 0 ? fmt::format(", {} of its extent", percent(w.max / w.extent)) : "",
-            spaced(w.channel), w.branch,
+            as_words(w.channel), w.branch,
             parameter ? compare::parameter_reading(symbol(branch.unit))
                       : compare::abscissa_reading(by));
     }

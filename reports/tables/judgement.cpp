@@ -6,8 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "reports/page/common.hpp"
 #include "reports/text/numbers.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -19,11 +19,6 @@ using compare::Worst;
 
 constexpr double nothing = 1e-9;        // [mm], [deg]: smaller deviations are rounding
 constexpr double nothing_of_it = 1e-6;  // share of an extent: likewise
-
-std::string spaced(std::string name) {
-    std::ranges::replace(name, '_', ' ');
-    return name;
-}
 
 std::string subject(const Assessment& j) {
     if (j.method.empty() || j.method == "published") return "the linear recursion as published";
@@ -57,7 +52,7 @@ std::string other_of(const Assessment& j) {
     if (!worst || !(worst->max >= nothing_of_it * worst->extent || std::isnan(worst->max)))
         return "";
     return fmt::format("{}, {} of its extent ({}, branch {}{})", size(*worst, worst->limit),
-                       percent(worst->max / worst->extent), spaced(worst->channel), worst->branch,
+                       percent(worst->max / worst->extent), as_words(worst->channel), worst->branch,
                        crosswise ? ", at equal position" : "");
 }
 
@@ -74,7 +69,7 @@ std::string worst_of(const Assessment& j) {
         const auto& worst = crosswise ? *across : *at;
         if (!worst || (worst->max < nothing && worst->max <= limit)) continue;
         parts.push_back(fmt::format("{} ({}, branch {}{})", size(*worst, limit),
-                                    spaced(worst->channel), worst->branch,
+                                    as_words(worst->channel), worst->branch,
                                     crosswise ? ", at equal position" : ""));
     }
     if (auto other = other_of(j); !other.empty()) parts.push_back(std::move(other));

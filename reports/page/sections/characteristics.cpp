@@ -30,8 +30,7 @@ Table figures_table(const compare::Table& at_design) {
                             {"published recursion off by"},
                             {"what it is", true}}};
     for (std::size_t r = 0; r < at_design.rows.size(); ++r) {
-        std::string name = words(at_design, r, "output");
-        std::ranges::replace(name, '_', ' ');
+        const std::string name = as_words(words(at_design, r, "output"));
         const std::string& undefined = words(at_design, r, "undefined");
         table.rows.push_back(
             {name, undefined.empty() ? number(reports::number(at_design, r, "value"), 4) : "none",

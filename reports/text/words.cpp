@@ -1,0 +1,19 @@
+#include "reports/text/words.hpp"
+
+#include <algorithm>
+
+namespace elastocheck::reports {
+
+std::string enumerated(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t k = 0; k < words.size(); ++k)
+        text += (k == 0 ? "" : k + 1 == words.size() ? " and " : ", ") + words[k];
+    return text;
+}
+
+std::string as_words(std::string name) {
+    std::ranges::replace(name, '_', ' ');
+    return name;
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,15 @@
+// Words of sentences and headings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace elastocheck::reports {
+
+// "a", "a and b", "a, b and c"
+std::string enumerated(const std::vector<std::string>& words);
+
+// A name as words: "wheel centre" of "wheel_centre".
+std::string as_words(std::string name);
+
+}  // namespace elastocheck::reports
