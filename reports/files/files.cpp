@@ -2,11 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -71,12 +72,6 @@ bool write_and_close(int out, std::string_view content) {
     return flush_and_close(out, write_all(out, content));
 }
 
-// Whether the open file still has a name.
-bool is_there(int open) {
-    struct stat entry {};
-    return ::fstat(open, &entry) == 0 && entry.st_nlink > 0;
-}
-
 }  // namespace
 
 void check_may_write(const fs::path& file, const FileKind& kind) {
@@ -98,46 +93,34 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
 
 namespace {
 
-// Temporary name of a file, ".NAME.elastocheck-PID-N.tmp", which no other program uses.
-std::string temporary_prefix(const fs::path& file) {
-    return fmt::format(".{}.elastocheck-", file.filename().string());
-}
-bool is_temporary_name(std::string_view name, std::string_view prefix) {
-    constexpr std::string_view suffix = ".tmp", digits = "0123456789";
-    if (!name.starts_with(prefix) || !name.ends_with(suffix)) return false;
-    name.remove_prefix(prefix.size());
-    name.remove_suffix(suffix.size());
-    const auto dash = name.find('-');
-    const auto is_number = [&](std::string_view part) {
-        return !part.empty() && part.find_first_not_of(digits) == part.npos;
-    };
-    return dash != name.npos && is_number(name.substr(0, dash)) && is_number(name.substr(dash + 1));
+std::string temporary_prefix(const fs::path& path) {
+    return fmt::format(".{}.elastocheck-", path.filename().string());
 }
 
-// Removes temporary files of killed runs beside the file. A running owner holds a lock on its file.
-void remove_abandoned(const fs::path& file) {
-    const std::string prefix = temporary_prefix(file);
-    std::error_code failed;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
-    for (auto at = fs::directory_iterator(folder, failed); !failed && at != fs::end(at);
-         at.increment(failed)) {
-        const std::string name = at->path().filename().string();
-        if (!is_temporary_name(name, prefix)) continue;
-        const int left = ::open(at->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-        if (left < 0) continue;
-        struct stat entry {};
-        // Checks the inode: the owner may have renamed the file and created another one of this
-        // name since it was opened.
-        struct stat now {};
-        if (::fstat(left, &entry) == 0 && S_ISREG(entry.st_mode) &&
-            ::flock(left, LOCK_EX | LOCK_NB) == 0 && ::lstat(at->path().c_str(), &now) == 0 &&
-            now.st_ino == entry.st_ino && now.st_dev == entry.st_dev)
-            ::unlink(at->path().c_str());
-        ::close(left);
-    }
+bool is_running(pid_t process) {
+    return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }
 
 }  // namespace
+
+fs::path temporary_beside(const fs::path& path) {
+    const std::string prefix = temporary_prefix(path);
+    std::error_code failed;
+    for (auto at =
+             fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", failed);
+         !failed && at != fs::end(at); at.increment(failed)) {
+        const std::string name = at->path().filename().string();
+        if (!name.starts_with(prefix)) continue;
+        pid_t process = 0;
+        const char* const last = name.data() + name.size();
+        const auto [end, error] = std::from_chars(name.data() + prefix.size(), last, process);
+        std::error_code ignored;
+        if (error == std::errc{} && end == last && !is_running(process))
+            fs::remove_all(at->path(), ignored);
+    }
+    fs::path temporary = path;
+    return temporary.replace_filename(fmt::format("{}{}", prefix, ::getpid()));
+}
 
 FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
     std::error_code failed;
@@ -146,19 +129,10 @@ FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(st
         throw FileError(
             fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
-    remove_abandoned(file_);
-    temporary_ = file_;
+    temporary_ = temporary_beside(file_);
     const auto lock = no_cleanup_now();
-    for (int k = 0; out_ < 0; ++k) {
-        temporary_.replace_filename(
-            fmt::format("{}{}-{}.tmp", temporary_prefix(file_), ::getpid(), k));
-        out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (out_ < 0 && errno != EEXIST) cannot(file_, "written");
-        // Another run may have removed it as abandoned before it was locked.
-        if (out_ >= 0 &&
-            (::flock(out_, LOCK_EX | LOCK_NB) == 0 ? !is_there(out_) : errno == EWOULDBLOCK))
-            ::close(std::exchange(out_, -1));
-    }
+    out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (out_ < 0) cannot(file_, "written");
     cleanup_.emplace([path = temporary_](int) { ::unlink(path.c_str()); });
 }
 
@@ -187,29 +161,14 @@ void FileToBe::add(std::string_view content) {
 
 void FileToBe::finish() {
     write_waiting();
-    // the lock is kept until the file is renamed
-    const int lock = ::fcntl(out_, F_DUPFD_CLOEXEC, 0);
-    bool good = lock >= 0 && flush_and_close(std::exchange(out_, -1), true);
-    int error = errno;
-    if (good) {
-        // A file that appeared meanwhile is replaced only if it was made by this program as well.
-        good = ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, file_.c_str(),
-                           RENAME_NOREPLACE) == 0;
-        // EINVAL: not supported by the file system
-        if (!good && (errno == EEXIST || errno == EINVAL)) {
-            try {
-                check_may_write(file_, *kind_);
-            } catch (const FileError&) {
-                ::close(lock);
-                ::unlink(temporary_.c_str());
-                throw;
-            }
-            good = ::rename(temporary_.c_str(), file_.c_str()) == 0;
-        }
-        error = errno;
+    if (!flush_and_close(std::exchange(out_, -1), true)) give_up(errno);
+    try {
+        check_may_write(file_, *kind_);  // again: a file may have appeared meanwhile
+    } catch (const FileError&) {
+        ::unlink(temporary_.c_str());
+        throw;
     }
-    if (lock >= 0) ::close(lock);
-    if (!good) give_up(error);
+    if (::rename(temporary_.c_str(), file_.c_str()) != 0) give_up(errno);
 }
 
 void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {

@@ -34,6 +34,10 @@ inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 // no device, no link, no folder, no file of another program.
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
+// Temporary name ".NAME.elastocheck-PROCESS" beside a file or folder that is being written. Removes
+// those that killed runs left there.
+std::filesystem::path temporary_beside(const std::filesystem::path& path);
+
 // A file that is written in pieces under a temporary name beside its own, and renamed when it is
 // complete. An unfinished file is removed by its owner, also when a signal ends the program; if the
 // owner was killed, by the next run that writes this file. Throws FileError; an older file of that

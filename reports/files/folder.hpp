@@ -1,8 +1,7 @@
 // Atomic replacement of a folder of files: at any moment it is the old one or the new one.
 //
-// The `manifest` of a folder lists each file with a hash of its content. A folder is replaced only
-// if every file is on its manifest with unchanged content, and every subfolder contains such a
-// file. So no file of another program and no edited file is deleted.
+// The `manifest` of a folder lists its files. A folder is replaced only if every file in it is on
+// its manifest, so that no file of another program is deleted.
 #pragma once
 
 #include <filesystem>
@@ -14,15 +13,14 @@
 namespace elastocheck::reports {
 
 inline constexpr const char* manifest = "files.txt";
-// its first line; then "HASH  PATH"
+// its first line; then a path on each line
 inline constexpr const char* manifest_head = "elastocheck files 1";
 
 // Staging folder: the new folder while it is written, beside the one that it replaces. It is
 // removed unless published, also when a signal ends the program.
 class Staging {
   public:
-    // Throws FileError when `folder` is a file, or holds a file that is not certainly made by this
-    // program.
+    // Throws FileError when `folder` is a file, or holds a file that is not on its manifest.
     explicit Staging(const std::filesystem::path& folder);
     static void check(const std::filesystem::path& folder);  // the check alone
     ~Staging();
@@ -37,7 +35,6 @@ class Staging {
 
   private:
     std::filesystem::path target_, staging_;
-    int lock_ = -1;  // on the staging folder, held for the lifetime of its owner
     std::optional<CleanupOnSignal> cleanup_;
 };
 

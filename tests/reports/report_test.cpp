@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "reports/files/folder.hpp"
-#include "reports/files/provenance.hpp"
 #include "reports/files/templates.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/plot.hpp"
@@ -210,9 +209,9 @@ TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
     EXPECT_EQ(text_of(file), "mine");
 }
 
-TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
+TEST(Report, ReplacesOnlyFilesOfItsManifest) {
     const Folder folder;
-    // A foreign list of files is not accepted, even if it lists all files.
+    // A list of files made by another program does not count.
     const fs::path theirs = folder.path / "theirs";
     fs::create_directory(theirs);
     std::ofstream(theirs / "files.txt") << "thesis.tex\nfiles.txt\n";
@@ -220,13 +219,7 @@ TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     Contents before = contents_of(theirs);
     EXPECT_TRUE(contains(refusal(theirs), "files.txt: is no part of a report")) << refusal(theirs);
     EXPECT_EQ(contents_of(theirs), before);
-    // Nor is a manifest with the right first line and name, but another content.
-    std::ofstream(theirs / "files.txt") << "elastocheck files 1\n"
-                                        << input_hash("draft") << "  thesis.tex\n";
-    EXPECT_TRUE(contains(refusal(theirs), "thesis.tex: was changed since elastocheck wrote it"))
-        << refusal(theirs);
-    EXPECT_TRUE(fs::exists(theirs / "thesis.tex"));
-    // A result.json beside it is not accepted either.
+    // Nor does a result.json beside it.
     const fs::path result = folder.path / "result";
     fs::create_directory(result);
     std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/3\"}";
@@ -234,30 +227,17 @@ TEST(Report, DeletesOnlyWhatItCanProveToBeItsOwn) {
     before = contents_of(result);
     EXPECT_TRUE(contains(refusal(result), "curves.csv: is no part of a report"));
     EXPECT_EQ(contents_of(result), before);
-    // An edited file in a report of this program, or a link in its place.
+    // A link in the place of a file.
     write_report(small_result("old"), "result.json", folder.path / "r");
-    std::ofstream(folder.path / "r" / "report.md", std::ios::app) << "my remark\n";
-    EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: was changed since"))
-        << refusal(folder.path / "r");
     fs::remove(folder.path / "r" / "report.md");
     fs::create_symlink(theirs / "thesis.tex", folder.path / "r" / "report.md");
-    EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: was changed since"));
+    EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: is no part of a report"));
     fs::remove(folder.path / "r" / "report.md");
     EXPECT_EQ(refusal(folder.path / "r"), "written");
-}
-
-TEST(Report, WhatAKilledRunLeftIsRemovedAndWhatOnlyLooksLikeItIsNot) {
-    const Folder folder;
-    const fs::path marked = folder.path / ".r.elastocheck-aaaaaa",
-                   unlike = folder.path / ".r.elastocheck-notes";
-    fs::create_directories(marked / "figures");
-    std::ofstream(marked / ".elastocheck-staging").flush();
-    std::ofstream(marked / "figures" / "half.svg") << "<svg";
-    fs::create_directories(unlike);
-    std::ofstream(unlike / "notes.txt") << "mine";
-    EXPECT_EQ(refusal(folder.path / "r"), "written");
-    EXPECT_FALSE(fs::exists(marked));
-    EXPECT_EQ(text_of(unlike / "notes.txt"), "mine");
+    // A manifest of older versions, with a hash before each name.
+    std::ofstream(folder.path / "r" / "files.txt") << "elastocheck files 1\n"
+                                                      "0123456789abcdef  report.html\n";
+    EXPECT_TRUE(contains(refusal(folder.path / "r"), "curves.csv: is no part of a report"));
 }
 
 TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
