@@ -67,16 +67,16 @@ Command certify_command() {
     std::vector<std::string> known{"equilibrium", "energy"};
     for (const auto& method : recursive::methods) known.emplace_back(method.name);
     return {"certify",
-            "Prove by interval arithmetic that what a solver found are equilibria, and alone",
+            "Prove by interval arithmetic that computed states are equilibria and locally unique",
             {scene_option(request->scene),
              set_option(request->settings),
              {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
-              "whose points: equilibrium, energy, series (default: these three), or a method of "
-              "the recursion"},
+              "solver of the points: equilibrium, energy, series (default: these three), or a "
+              "method of the recursion"},
              {"--tolerance", Text{&request->tolerance},
-              "accuracy that is to be proved (default: 1e-6mm,1e-6deg)"},
+              "accuracy to be proved (default: 1e-6mm,1e-6deg)"},
              {"--points", Integer{&request->points, 1, most_steps},
-              "of each way of a branch, besides its start (default: 20)"},
+              "points of each direction of a branch, besides its start (default: 20)"},
              output_option(request->folder, "folder for result.json and certify.csv"),
              json_option(request->as_json)},
             [request](const std::string& line) { return certify(*request, line); }};

@@ -67,20 +67,19 @@ int equilibria(const Request& request, const Delivery& delivery) {
 Command equilibria_command() {
     const auto request = std::make_shared<Request>();
     constexpr double any = std::numeric_limits<double>::infinity();
-    return {
-        "equilibria",
-        "All equilibria that can be found at one load, each proved, and what they mean",
-        {scene_option(request->scene),
-         {"--at", RealNumber{&request->at, -any, any},
-          "value of the branch's parameter, in the unit that reports show: N, N·m, mm, deg", true},
-         {"--branch", Text{&request->branch}, "name of the branch (default: the first)"},
-         {"--turned", RealNumber{&request->turned, 0, 180},
-          "list none with a body turned by more [deg] (default: 90)"},
-         set_option(request->settings),
-         json_option(request->as_json)},
-        [request](const std::string& line) {
-            return equilibria(*request, {.as_json = request->as_json, .command = line});
-        }};
+    return {"equilibria",
+            "Search all equilibria at one load, prove each, and describe them",
+            {scene_option(request->scene),
+             {"--at", RealNumber{&request->at, -any, any},
+              "value of the branch parameter in N, N·m, mm or deg", true},
+             {"--branch", Text{&request->branch}, "name of the branch (default: the first)"},
+             {"--turned", RealNumber{&request->turned, 0, 180},
+              "leave out equilibria with a body rotated by more [deg] (default: 90)"},
+             set_option(request->settings),
+             json_option(request->as_json)},
+            [request](const std::string& line) {
+                return equilibria(*request, {.as_json = request->as_json, .command = line});
+            }};
 }
 
 }  // namespace elastocheck::reports

@@ -235,7 +235,7 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
             // A baseline made in the same run would always agree.
             if (says_yes("CI"))
                 if (const std::string why = not_committed(task.baseline); !why.empty())
-                    scene.verdict.reasons.push_back(fmt::format("nobody can have reviewed {}: {}",
+                    scene.verdict.reasons.push_back(fmt::format("the baseline {} is unreviewed: {}",
                                                                 task.baseline.string(), why));
         } else {
             compile(read_scene(task.scene,
@@ -285,8 +285,7 @@ int accept_scene(const Task& task, const GateOptions& options) {
                                             name(s.quantity), s.channel));
     if (now.series.empty()) worthless.emplace_back("nothing was measured");
     if (!worthless.empty()) {
-        print_error("elastocheck: {}: nothing is accepted: {}\n", scene.file,
-                    fmt::join(worthless, "; "));
+        print_error("elastocheck: {}: not accepted: {}\n", scene.file, fmt::join(worthless, "; "));
         return could_not_judge;
     }
     is.baseline.reason = options.reason;
@@ -332,15 +331,12 @@ int accept_scene(const Task& task, const GateOptions& options) {
 int accept(const GateOptions& options) {
     if (says_yes("CI"))
         throw std::invalid_argument(
-            "--accept: not where CI is set: a baseline is accepted by a person, and reviewed");
+            "--accept: not in CI (variable CI is set): a person accepts a baseline");
     if (blank(options.reason))
-        throw std::invalid_argument("--accept: needs --reason, in words for whoever reviews it");
-    if (!options.from.empty())
-        throw std::invalid_argument("--accept: only what was measured here, not --from");
-    if (options.as_json)
-        throw std::invalid_argument("--accept: not with --json: what changes is for a person");
-    if (!options.settings.empty())
-        throw std::invalid_argument("--accept: only the scene as its file says, not with --set");
+        throw std::invalid_argument("--accept: needs --reason, a text for the reviewer");
+    if (!options.from.empty()) throw std::invalid_argument("--accept: not with --from");
+    if (options.as_json) throw std::invalid_argument("--accept: not with --json");
+    if (!options.settings.empty()) throw std::invalid_argument("--accept: not with --set");
     int code = fine;
     const auto all = tasks(options);
     for (const auto& task : all) {
@@ -353,11 +349,10 @@ int accept(const GateOptions& options) {
 int gate(const GateOptions& options) {
     check(options.candidate, options.settings);
     if (options.candidate.wanted() && options.accept)
-        throw std::invalid_argument(
-            "--candidate: not with --accept: nothing of a candidate is kept");
+        throw std::invalid_argument("--candidate: not with --accept");
     if (!options.candidate.files.empty() && options.scenes.size() != 1)
         throw std::invalid_argument(
-            "--candidate: a file is of one scene; name it, or give --candidate-command");
+            "--candidate: a file belongs to one scene; give the SCENE, or --candidate-command");
     if (options.accept) return accept(options);
     const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
@@ -405,14 +400,15 @@ Command gate_command() {
         {"--class", Text{&options->kind, one_of(kinds)},
          "tolerances: same-build, cross-build or physical (default: by how the builds differ)"},
         {"--from", Text{&options->from, a_file("*.json")},
-         "judge this measurement (a file like a baseline); nothing is solved"}};
+         "judge this measurement (a file like a baseline) without solving"}};
     add_candidate_options(list, options->candidate);
     list.push_back(json_option(options->as_json));
     list.push_back(
-        {"--accept", Flag{&options->accept}, "print what changed, then make it the baseline"});
-    list.push_back({"--reason", Text{&options->reason}, "why, in words; with --accept"});
-    return {"gate", "Judge scenes by their accepted baselines, for CI", std::move(list),
-            [options](const std::string&) { return gate(*options); }};
+        {"--accept", Flag{&options->accept}, "print the changes and write the new baseline"});
+    list.push_back(
+        {"--reason", Text{&options->reason}, "reason of the change, required with --accept"});
+    return {"gate", "Regression test of scenes against their accepted baselines, for CI",
+            std::move(list), [options](const std::string&) { return gate(*options); }};
 }
 
 }  // namespace elastocheck::reports

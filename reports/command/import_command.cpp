@@ -249,44 +249,44 @@ Command import_command() {
     const auto request = std::make_shared<ImportRequest>();
     return {
         "import",
-        "Make a scene of another program's model: ADAMS .adm, Chrono::Vehicle .json, hardpoints "
+        "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
+        "hardpoints "
         ".sub",
         {{"FILE", TextList{&request->files, TextList::Form::separate, a_file("*")},
           "the model (.adm, .json, .sub)", true},
-         {"-o,--output", Text{&request->output, a_file("*.yaml")},
-          "write the scene to this file instead"},
+         {"-o,--output", Text{&request->output, a_file("*.yaml")}, "write the scene to this file"},
          {"--wheel", Text{&request->wheel},
-          "the part that carries the wheel, or a marker at its centre: name or id (.adm)"},
+          "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
          {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
-          "dynamics: leave out whole what acts against motion alone, friction too"},
+          "dynamics: leave out dampers and friction"},
          {"--axes",
           Text{&request->axes, one_of({importer::axes_of_tables[0], importer::axes_of_tables[1],
                                        importer::axes_of_tables[2], importer::axes_of_tables[3]})},
           "axes of a table of hardpoints (.sub), turned to ISO 8855: x-rearward,y-right (default)"},
          {"--allow-missing", Flag{&request->allow_missing},
-          "warn of what a scene cannot represent, instead of refusing the file"},
-         {"--table", Flag{&request->table}, "of any number of files: only what becomes of each"},
+          "warn about what a scene cannot represent instead of rejecting the file"},
+         {"--table", Flag{&request->table}, "print the outcome of each of several files only"},
          json_option(request->as_json)},
         [request](const std::string&) { return import(*request); }};
 }
 
 Command export_command() {
     const auto request = std::make_shared<ExportRequest>();
-    return {
-        "export",
-        "Write a scene as another program's model, trimmed: ADAMS, Chrono",
-        {scene_option(request->scene),
-         {"--format", Text{&request->format, one_of({"adm", "chrono"})},
-          "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)"},
-         {"-o,--output", Text{&request->output, a_file("*.adm *.json")},
-          "write it to this file instead"},
-         {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
-          "adams or chrono, as the format: convert the bushings to that program's formulation, and "
-          "say by how much the outputs move"},
-         {"--allow-missing", Flag{&request->allow_missing},
-          "warn of what the other program has no element for, instead of refusing the scene"},
-         set_option(request->settings)},
-        [request](const std::string&) { return export_scene(*request); }};
+    return {"export",
+            "Export the trimmed scene as a model of ADAMS or Chrono",
+            {scene_option(request->scene),
+             {"--format", Text{&request->format, one_of({"adm", "chrono"})},
+              "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)"},
+             {"-o,--output", Text{&request->output, a_file("*.adm *.json")},
+              "write the model to this file"},
+             {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
+              "adams or chrono, as the format: convert the bushings to that program's formulation "
+              "and report the change of the outputs"},
+             {"--allow-missing", Flag{&request->allow_missing},
+              "warn about elements that the other program does not have instead of rejecting the "
+              "scene"},
+             set_option(request->settings)},
+            [request](const std::string&) { return export_scene(*request); }};
 }
 
 }  // namespace elastocheck::reports

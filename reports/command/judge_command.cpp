@@ -32,7 +32,7 @@ struct Request {
 int judge(const Request& request, const Delivery& delivery) {
     if (!request.candidate.wanted())
         throw std::invalid_argument(
-            "judge: nobody to judge; give --candidate FILE or --candidate-command");
+            "judge: no candidate; give --candidate FILE or --candidate-command");
     const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::forces_too);
     const bool asked = request.tolerance != Request{}.tolerance;
     check(request.candidate, request.settings);
@@ -87,13 +87,13 @@ Command judge_command() {
     options.insert(
         options.end(),
         {{"--steps", Integer{&request->steps, 1, most_steps},
-          "that the command is asked for per branch (default: as the scene says)"},
+          "steps per branch passed to the command (default: of the scene)"},
          {"--tolerance", Text{&request->tolerance},
-          "accuracy asked for: mm, deg, N, Nm, and % of the extent of forces, moments and rates "
+          "required accuracy: mm, deg, N, Nm, and % of the extent of forces, moments and rates "
           "(default: 0.01mm,0.001deg,1%)"},
          output_option(request->folder, "folder for result.json and curves.csv"),
          json_option(request->as_json)});
-    return {"judge", "Judge another solver's results by the references: pass or fail",
+    return {"judge", "Judge the results of another solver by the references: pass or fail",
             std::move(options), [request](const std::string& line) {
                 return judge(
                     *request,

@@ -46,16 +46,15 @@ int print_text(const std::string& text) {
 }
 
 Program program(const std::function<std::string(const std::string&)>& place) {
-    return {.name = "elastocheck",
-            .description =
-                "Can I trust my suspension solver? One scene, solved three ways that share nothing "
-                "but the "
-                "scene:\n"
-                "the linear recursive formula of Kang's paper, the full equilibrium equations, and "
-                "an energy "
-                "minimisation.",
-            .version = version_text(provenance()),
-            .footer = footer(place)};
+    return {
+        .name = "elastocheck",
+        .description =
+            "Verification of a suspension solver: one scene, solved by three independent methods:\n"
+            "the linear recursive formula of Kang's paper, the full equilibrium equations, and "
+            "an energy "
+            "minimisation.",
+        .version = version_text(provenance()),
+        .footer = footer(place)};
 }
 
 // The commands of the registry, and the two that print their description.
@@ -126,7 +125,7 @@ int main(int argc, char** argv) {
     } catch (const std::invalid_argument& error) {
         return fail(bad_input, error.what());
     } catch (const std::bad_alloc&) {
-        return fail(bad_input, "more memory was asked for than there is; take fewer steps");
+        return fail(bad_input, "not enough memory; use fewer steps");
     } catch (const std::exception& error) {
         return fail(bug, error.what());
     }

@@ -66,7 +66,7 @@ int new_scene(const std::string& name, bool as_json) {
     }
     const std::vector<std::string> names = templates();
     if (!name.empty())
-        throw std::invalid_argument(fmt::format("new: no template is called {}{}",
+        throw std::invalid_argument(fmt::format("new: there is no template {}{}",
                                                 reader::quote(name),
                                                 reader::did_you_mean(name, names, "there are")));
     if (as_json) {
@@ -88,8 +88,8 @@ Command new_command() {
     };
     const auto request = std::make_shared<Request>();
     return {"new",
-            "Print a scene to start from; without a name, which there are",
-            {{"NAME", Text{&request->name, such_as(templates())}, "of the scene to print"},
+            "Print a template scene; without a name, list the templates",
+            {{"NAME", Text{&request->name, such_as(templates())}, "name of the template"},
              json_option(request->as_json)},
             [request](const std::string&) { return new_scene(request->name, request->as_json); }};
 }

@@ -245,15 +245,12 @@ int report(const Request& request, const std::string& reproduce) {
     (void)load_cases(request);
     if (request.measured.empty() &&
         (request.branch_column != Request{}.branch_column || !request.cases.empty()))
-        throw std::invalid_argument(
-            "report: --branch-column and --case say how to read --measured; give a file");
+        throw std::invalid_argument("report: --branch-column and --case: only with --measured");
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
-        throw std::invalid_argument(
-            "report: --alarms belongs to what is solved; --from has it already");
+        throw std::invalid_argument("report: --alarms: not with --from");
     if (!request.stress.empty() && !request.from.empty())
-        throw std::invalid_argument(
-            "report: --stress belongs to what is solved; --from has it already");
+        throw std::invalid_argument("report: --stress: not with --from");
     const json stress = request.stress.empty() ? json() : read_stress(request.stress);
     const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
@@ -307,31 +304,31 @@ Command report_command() {
          "scene files (YAML)"},
         set_option(request->settings),
         {"--from", Text{&request->from, a_file("*.json")},
-         "draw from this result.json, without solving"},
+         "write the report from this result.json without solving"},
         {"-o,--output", Text{&request->folder, a_folder()},
          "folder for report.html, report.md, result.json, curves.csv, figures/", true},
         {"--tolerance", Text{&request->tolerance},
-         "accuracy asked for (default: 0.01mm,0.001deg,1%)"},
+         "required accuracy (default: 0.01mm,0.001deg,1%)"},
         {"--alarms", Text{&request->alarms, a_file("*.json")},
-         "results.json of seeded faults (./dev mutate), to show which alarms ring"},
+         "results.json of mutation tests (./dev mutate), shown as a section"},
         {"--stress", Text{&request->stress, a_file("*.json")},
-         "stress.json of `elastocheck stress`, to show what becomes of it at the extremes"},
+         "stress.json of `elastocheck stress`, shown as a section"},
         {"--measured", Text{&request->measured, a_file("*.csv")},
-         "CSV of measured curves, to draw over and compare with"},
+         "CSV of measured curves, for comparison"},
         {"--branch-column", Text{&request->branch_column},
-         "column of --measured that says which branch a point belongs to (default: branch)"},
+         "column of --measured with the branch of a point (default: branch)"},
         {"--case", TextList{&request->cases, TextList::Form::separate},
-         "THEIRS=OURS: a name in that column, and the branch that it means; may be repeated"}};
+         "NAME=BRANCH: a name in that column and its branch of the scene; repeatable"}};
     add_candidate_options(options, request->candidate);
-    options.insert(options.end(), {{"--archive", Flag{&request->archive},
-                                    "only what belongs in version control: README.md, numbers.csv, "
-                                    "figures/*.svg, without times"},
-                                   json_option(request->as_json),
-                                   {"--open", Flag{&request->open},
-                                    "then open the page: by $BROWSER, else by xdg-open"}});
-    return {"report", "Everything about one or more scenes as a page: verdict, figures, tables",
-            std::move(options),
-            [request](const std::string& line) { return report(*request, line); }};
+    options.insert(
+        options.end(),
+        {{"--archive", Flag{&request->archive},
+          "the form for version control: README.md, numbers.csv, figures/*.svg, without times"},
+         json_option(request->as_json),
+         {"--open", Flag{&request->open}, "open the page with $BROWSER or xdg-open"}});
+    return {
+        "report", "Write a report of one or more scenes as an HTML page: verdict, figures, tables",
+        std::move(options), [request](const std::string& line) { return report(*request, line); }};
 }
 
 }  // namespace elastocheck::reports

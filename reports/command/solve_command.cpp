@@ -47,8 +47,7 @@ void write_rates(const Model& model, const std::vector<Channel>& asked,
     std::vector<Channel> channels;
     std::ranges::copy_if(asked, std::back_inserter(channels), &Channel::kinematic);
     if (channels.empty())
-        throw std::invalid_argument(
-            "--rates: of positions and angles only, and --channels has none");
+        throw std::invalid_argument("--rates: needs a position or an angle in --channels");
     FileToBe csv(request.rates, rates_file);
     csv.add(rates_header(channels));
     const auto& [leg, how, refine, every, error_bound] = request.solver;
@@ -85,7 +84,7 @@ std::vector<Channel> chosen(const std::vector<Channel>& all,
         }
         if (!fits)
             throw std::invalid_argument(
-                fmt::format("--channels: no output is called {}{}", reader::quote(pattern),
+                fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
                             reader::did_you_mean(pattern, names, "outputs")));
     }
     return list;
@@ -231,22 +230,20 @@ Command solve_command() {
           "or "
           "series; equilibrium; energy"},
          {"--account", Flag{&given->request.solver.error_bound},
-          "say where the stiffness that is left will be gone, as the points announce it; adaptive "
-          "and "
-          "series always do, and whether they keep what they promise"},
+          "report the extrapolated singular point and error estimates; adaptive and series always "
+          "do"},
          {"--arc-length", Flag{&given->recursion.arc_length},
-          "series: follow the path by arc length, through limit points"},
+          "series: continuation by arc length, through limit points"},
          {"--rates", Text{&given->request.rates, a_file("*.csv")},
-          "series: write the derivatives of travel and outputs to this CSV file"},
+          "series: write derivatives of travel and outputs to this CSV file"},
          {"--states", Text{&given->request.states, a_file("*.jsonl")},
-          "write the poses of the bodies as well, as JSON lines, to this file"},
+          "write the poses of the bodies to this file (JSON lines)"},
          {"--channels", TextList{&given->request.channels, TextList::Form::commas},
-          "only these outputs, in this order: NAME,... as in the CSV's head, * for any letters"},
+          "outputs to write, in this order: NAME,... as in the CSV's head; * matches any letters"},
          every_option(given->request.solver.every),
-         {"-o,--output", Text{&given->output, a_file("*.csv")},
-          "write the CSV to this file instead"}});
-    return {"solve", "Solve a scene one way and print the curves as CSV", std::move(options),
-            [given](const std::string& line) {
+         {"-o,--output", Text{&given->output, a_file("*.csv")}, "write the CSV to this file"}});
+    return {"solve", "Solve a scene with one method and print the curves as CSV",
+            std::move(options), [given](const std::string& line) {
                 SolveRequest request = with_solver(given->request, given->recursion, given->method);
                 request.detail = given->keep_all ? Detail::everything : Detail::required;
                 return solve(given->scene, given->settings, request,

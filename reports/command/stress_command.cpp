@@ -95,19 +95,18 @@ int stress(const Request& request, const Delivery& delivery) {
 
 Command stress_command() {
     const auto request = std::make_shared<Request>();
-    return {
-        "stress",
-        "Scenes at their extremes, by every leg and method: right, an honest outcome, or wrong",
-        {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
-          "scene files (YAML); none: all built-in ones, and some that are extreme by their making"},
-         set_option(request->settings),
-         output_option(request->folder, "folder for stress.json and cells.csv"),
-         json_option(request->as_json)},
-        [request](const std::string& line) {
-            return stress(
-                *request,
-                {.folder = request->folder, .as_json = request->as_json, .command = line});
-        }};
+    return {"stress",
+            "Stress test: solve transformed and extreme scenes by every leg and method",
+            {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+              "scene files (YAML); default: all built-in scenes and those with extreme geometry"},
+             set_option(request->settings),
+             output_option(request->folder, "folder for stress.json and cells.csv"),
+             json_option(request->as_json)},
+            [request](const std::string& line) {
+                return stress(
+                    *request,
+                    {.folder = request->folder, .as_json = request->as_json, .command = line});
+            }};
 }
 
 }  // namespace elastocheck::reports

@@ -102,7 +102,7 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
     for (const auto& text : request.files)
         if (text.find('=') == text.npos)
             throw std::invalid_argument(fmt::format(
-                "--candidate {}: how many steps it has is missing; allowed: 75={}", text, text));
+                "--candidate {}: the number of steps is missing; allowed: 75={}", text, text));
     if (!request.files.empty() && !request.command.empty())
         throw std::invalid_argument("converge: --candidate or --candidate-command, one of the two");
     const compare::Comparison outline = compare::outline(loaded.model);
@@ -272,7 +272,7 @@ int converge(const std::string& file, const Settings& settings,
             std::ranges::copy(of_candidate->inconclusive, std::back_inserter(reasons));
         }
         if (!conclusive && reasons.empty())
-            reasons.emplace_back("no order of the series gave a number");
+            reasons.emplace_back("no order of the series gave a result");
         add_verdict(part, 0, reasons);
         deliver(delivery, std::move(part), std::move(files));
     }
@@ -284,7 +284,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     check(candidate, settings);
     if (!candidate.files.empty())
         throw std::invalid_argument(
-            "trade: a --candidate file says nothing of time; give --candidate-command");
+            "trade: a --candidate file has no time; give --candidate-command");
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
     const Model& model = loaded.model;
@@ -341,8 +341,7 @@ Command inspect_command() {
     options.push_back({"--verbose", Flag{&given->verbose},
                        "long lists whole, and the size of the matrix, its order and its fill-in"});
     options.push_back(keep_all_option(given->keep_all));
-    return {"inspect",
-            "Show how a scene is understood: bodies, coordinates, constraints, idle modes",
+    return {"inspect", "Show the compiled scene: bodies, coordinates, constraints, idle modes",
             std::move(options), [given](const std::string& line) {
                 return inspect(given->scene, given->settings,
                                given->keep_all ? Detail::everything : Detail::required,
@@ -361,11 +360,10 @@ Command compare_command() {
     for (const auto& method : recursive::methods) methods.emplace_back(method.name);
     std::vector<Option> options = given->options();
     options.push_back(keep_all_option(given->keep_all));
-    options.push_back(
-        {"--formulations", Flag{&given->request.formulations},
-         "how much the outputs depend on the formulation of the bushings, in which tools differ"});
+    options.push_back({"--formulations", Flag{&given->request.formulations},
+                       "add the spread of the outputs over the bushing formulations of tools"});
     options.push_back({"--within", Text{&given->request.within},
-                       "accuracy that the verdict asks for: mm, deg, N, Nm, and % of the extent of "
+                       "required accuracy of the verdict: mm, deg, N, Nm, and % of the extent of "
                        "forces, moments "
                        "and rates (default: 0.01mm,0.001deg,1%)"});
     add_recursion_options(options, given->recursion);
@@ -376,7 +374,7 @@ Command compare_command() {
     options.push_back(every_option(given->request.every));
     options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
     add_candidate_options(options, given->request.candidate);
-    return {"compare", "Solve a scene all three ways and show how far apart they are",
+    return {"compare", "Solve a scene with all three methods and show the deviations",
             std::move(options), [given](const std::string& line) {
                 CompareRequest request = given->request;
                 request.recursion = recursion(given->recursion);
@@ -407,7 +405,9 @@ Command converge_command() {
         given->folder,
         "folder for result.json, convergence.csv, step_errors.csv and attribution.csv"));
     add_candidate_options(options, given->candidate);
-    return {"converge", "Split the recursion's error into steps, formulation and reference",
+    return {"converge",
+            "Convergence study: split the recursion's error into step error, formulation gap and "
+            "reference uncertainty",
             std::move(options), [given](const std::string& line) {
                 return converge(given->scene, given->settings, given->methods, given->steps,
                                 given->candidate, given->delivery(line));
@@ -422,12 +422,11 @@ Command trade_command() {
     const auto given = std::make_shared<Given>();
     std::vector<Option> options = given->options();
     options.push_back({"--tolerance", Text{&given->tolerance},
-                       "accuracy asked for (default: 0.01mm,0.001deg,1%)"});
+                       "required accuracy (default: 0.01mm,0.001deg,1%)"});
     options.push_back(
         output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
     add_candidate_options(options, given->candidate);
-    return {"trade",
-            "What accuracy costs: every method against both references, and a recommendation",
+    return {"trade", "Cost of accuracy: every method against both references, and a recommendation",
             std::move(options), [given](const std::string& line) {
                 return trade(given->scene, given->settings, given->tolerance, given->candidate,
                              given->delivery(line));

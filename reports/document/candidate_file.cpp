@@ -165,7 +165,7 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
         if (channel < 0) {
             std::vector<std::string> names{"parameter", "branch"};
             for (const auto& c : all.channels) names.push_back(c.name);
-            wrong("output", fmt::format("no output is called {}{}", reader::quote(entry.output),
+            wrong("output", fmt::format("there is no output {}{}", reader::quote(entry.output),
                                         reader::did_you_mean(entry.output, names, "outputs")));
         }
         meaning.kind = Kind::output;

@@ -86,8 +86,7 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
                                     sort_of(entry)));
     if (!begins_as(file, kind))
         throw FileError(fmt::format(
-            "{}: is there, and is no {} that elastocheck wrote; choose another name, or "
-            "remove it",
+            "{}: exists and is no {} written by elastocheck; choose another name, or remove it",
             file.string(), kind.name));
 }
 

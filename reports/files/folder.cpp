@@ -57,7 +57,7 @@ void check_all_listed(const fs::path& folder) {
 // The folder after resolving links and checking that it may be replaced.
 fs::path resolved(const fs::path& folder) {
     std::error_code failed;
-    if (folder.empty()) fail("''", "is no name of a folder");
+    if (folder.empty()) fail("''", "is not a folder name");
     fs::path target = fs::weakly_canonical(fs::absolute(folder), failed);
     if (failed) fail(folder, failed.message());
     if (!target.has_filename()) target = target.parent_path();
@@ -70,7 +70,7 @@ fs::path resolved(const fs::path& folder) {
     if (status.type() == fs::file_type::not_found) return target;
     if (status.type() == fs::file_type::none) fail(folder, failed.message());
     if (status.type() != fs::file_type::directory)
-        fail(folder, "is a file; what is written here is a folder");
+        fail(folder, "is a file; a folder is written here");
     check_all_listed(target);
     return target;
 }

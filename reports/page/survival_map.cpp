@@ -13,11 +13,11 @@ using json = nlohmann::ordered_json;
 // Style-sheet class of a sign.
 const char* tint(char sign) {
     switch (sign) {
-        case '!': return "honest";
+        case '!': return "failed";
         case '~': return "elsewhere";
         case '?': return "unknown";
         case 'X': return "wrong";
-        case '.': return "unasked";
+        case '.': return "not-run";
         default: return sign >= '6' ? "many" : sign >= '3' ? "some" : "few";
     }
 }

@@ -37,7 +37,7 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
                 : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
         const bool parameter = w.kind == compare::ReadingKind::equal_parameter;
         const bool hardly = w.max > w.limit && w.max < 1.1 * w.limit;  // shown with more digits
-        const std::string size = std::isnan(w.max) ? "a number that is none"
+        const std::string size = std::isnan(w.max) ? "not a number"
                                  : w.max < 1e-9    ? "nothing"
                                  : hardly          ? fmt::format("{:.6g} {}", w.max, symbol(w.unit))
                                                    : quantity(w.max, symbol(w.unit));
@@ -106,7 +106,7 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
     std::string partly =
         j.not_given.empty() ? "" : fmt::format(" It does not give {}.", joined(j.not_given, 3));
     if (j.outside > 0)
-        partly += fmt::format(" {} of its points {} where the full solution does not come.",
+        partly += fmt::format(" {} of its points {} outside the range of the full solution.",
                               j.outside, j.outside == 1 ? "lies" : "lie");
     // Forces are judged where they have a tolerance; a state out of balance is reported in any
     // case.
@@ -130,13 +130,13 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                     return w.max < (w.extent > 0 ? 1e-6 * w.extent : 1e-9);
                 }))
                 return fmt::format(
-                    "Pass: {} is the full solution{}, within the arithmetic; the tolerance is "
+                    "Pass: {} equals the full solution{} to round-off; the tolerance is "
                     "{}.{}",
-                    who, j.not_given.empty() ? "" : " where it says something", tolerance_of(j),
+                    who, j.not_given.empty() ? "" : " where it has values", tolerance_of(j),
                     partly);
             return fmt::format("Pass: {} is within {} of the full solution{}, off by at most {}.{}",
                                who, tolerance_of(j),
-                               j.not_given.empty() ? " everywhere" : " where it says something",
+                               j.not_given.empty() ? " everywhere" : " where it has values",
                                worst_of(j, comparison), partly);
         case Grade::fail:
             if (!j.said.empty() && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
@@ -249,8 +249,8 @@ std::string candidate_text(const CandidateJudgement& j, const compare::Compariso
             if (!reading->not_compared.empty())
                 fmt::format_to(out, "  {}: not compared, {}\n", *how, reading->not_compared);
             if (reading->outside > 0)
-                fmt::format_to(out, "  {}: {} points lie where the reference does not come\n", *how,
-                               reading->outside);
+                fmt::format_to(out, "  {}: {} points lie outside the range of the reference\n",
+                               *how, reading->outside);
         }
         for (const auto& left : j.leftovers)
             if (left.branch == branch.branch) leftover_line(left, text);

@@ -27,7 +27,7 @@ std::string subject(const Assessment& j) {
 
 // `limit`: the tolerance; a small excess is shown with enough digits.
 std::string size(const Worst& worst, double limit) {
-    if (std::isnan(worst.max)) return "a number that is none";
+    if (std::isnan(worst.max)) return "not a number";
     if (worst.max > limit && worst.max < 1.1 * limit)
         return fmt::format("{:.6g} {}", worst.max, symbol(worst.unit));
     if (worst.max < nothing)
@@ -130,15 +130,14 @@ std::string sentence(const Assessment& j) {
             const std::string more =
                 j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)
                                      : "";
-            return fmt::format("Not judged: {}{}. What is shown is no basis for a decision.",
+            return fmt::format("Not judged: {}{}. The results are no basis for a decision.",
                                j.reasons.empty() ? "nothing was compared" : j.reasons.front(),
                                more);
         }
         case Grade::pass:
             if (j.exact)
-                return fmt::format(
-                    "Pass: {} is exact here, within the arithmetic; the tolerance is {}; {}.",
-                    subject(j), asked(j), compared(j));
+                return fmt::format("Pass: {} is exact to round-off; the tolerance is {}; {}.",
+                                   subject(j), asked(j), compared(j));
             return fmt::format(
                 "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.",
                 subject(j), asked(j), worst_of(j), rate_of(j), compared(j));

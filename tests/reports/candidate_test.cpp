@@ -336,7 +336,7 @@ TEST(CandidateCommand, ATableInNamesUnitsAndSignsOfItsOwnIsReadByAMap) {
         const char *text, *what;
     } cases[] = {
         {"columns:\n  TOE: {output: toes}\n",
-         "map.yaml:2: columns.TOE.output: no output is called 'toes', did you mean 'toe'?"},
+         "map.yaml:2: columns.TOE.output: there is no output 'toes', did you mean 'toe'?"},
         {"columns:\n  TOE: {output: toe, unit: mm}\n", "columns.TOE.unit: 'mm' is no unit of toe"},
         {"columns:\n  TOE: {output: toe, sign: 2}\n", "expected 1 or -1"},
         {"columns:\n  GONE: {output: toe}\n", "no column 'GONE', which"},

@@ -273,8 +273,7 @@ TEST(Command, OutputThatCannotBeWrittenExitsWith2) {
     const Said said =
         elastocheck_says("compare " + scenes + "/single_bushing.yaml --steps 2 -o " + file);
     EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "file: is a file; what is written here is a folder"))
-        << said.err;
+    EXPECT_TRUE(contains(said.err, "file: is a file; a folder is written here")) << said.err;
     EXPECT_EQ(text_of(file), "old");
 }
 

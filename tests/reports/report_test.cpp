@@ -165,7 +165,7 @@ TEST(Report, ShowsWhichAlarmsRangAndSaysWhenAFaultSurvived) {
     auto result = small_result("x");
     write_report(result, "result.json", folder.path / "without");
     EXPECT_FALSE(contains(text_of(folder.path / "without" / "report.html"),
-                          "Alarms that are shown to ring"));
+                          "Mutation tests: seeded faults"));
     result["alarms"] = nlohmann::ordered_json::parse(
         R"([{"fault": "sign", "in": "a.cpp", "simulates": "a <sign>", "first": "Some.Test", "margin": "3.2", "alarms": 2},
             {"fault": "row", "in": "b.cpp", "simulates": "a row", "first": "", "margin": "", "alarms": 0}])");
@@ -173,10 +173,10 @@ TEST(Report, ShowsWhichAlarmsRangAndSaysWhenAFaultSurvived) {
     const std::string html = text_of(folder.path / "with" / "report.html"),
                       markdown = text_of(folder.path / "with" / "report.md");
     for (const char* part :
-         {"Alarms that are shown to ring", "2 faults", "1 survived", "a &lt;sign&gt;", "Some.Test"})
+         {"Mutation tests: seeded faults", "2 faults", "1 survived", "a &lt;sign&gt;", "Some.Test"})
         EXPECT_TRUE(contains(html, part)) << part;
     for (const char* part :
-         {"## Alarms that are shown to ring", "2 faults", "Some.Test", "survived"})
+         {"## Mutation tests: seeded faults", "2 faults", "Some.Test", "survived"})
         EXPECT_TRUE(contains(markdown, part)) << part;
     result["alarms"][0].erase("first");
     EXPECT_THROW(write_report(result, "result.json", folder.path / "broken"), ResultError);
@@ -204,7 +204,7 @@ TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
     EXPECT_TRUE(contains(refusal(folder.path / "r"), "figures/mine.svg: is no part of a report"));
     EXPECT_EQ(contents_of(folder.path / "r"), before);
     const auto file = folder.write("file", "mine");
-    EXPECT_TRUE(contains(refusal(file), "is a file; what is written here is a folder"));
+    EXPECT_TRUE(contains(refusal(file), "is a file; a folder is written here"));
     EXPECT_TRUE(contains(refusal("/"), "choose a folder below it"));
     EXPECT_EQ(text_of(file), "mine");
 }
@@ -250,7 +250,7 @@ TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
     fs::create_symlink(folder.path / "loop", folder.path / "loop");
     EXPECT_TRUE(contains(refusal(folder.path / "loop"), "Too many levels of symbolic links"))
         << refusal(folder.path / "loop");
-    EXPECT_TRUE(contains(refusal(""), "is no name of a folder"));
+    EXPECT_TRUE(contains(refusal(""), "is not a folder name"));
 }
 
 TEST(Report, ADocumentThatCannotBeDrawnLeavesTheOldReport) {

@@ -78,7 +78,7 @@ TEST(New, UnknownNameIsAnsweredWithTheNearest) {
     EXPECT_EQ(said.code, 2);
     EXPECT_TRUE(said.out.empty());
     EXPECT_TRUE(contains(
-        said.err, "new: no template is called 'mcphersn', did you mean 'mcpherson'? there are:"))
+        said.err, "new: there is no template 'mcphersn', did you mean 'mcpherson'? there are:"))
         << said.err;
 }
 

@@ -158,8 +158,8 @@ TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
     EXPECT_TRUE(
         contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
         << text;
-    EXPECT_TRUE(
-        contains(said(sample_result("slider_crank")), "Its crank.drive moment is off by up to"))
+    EXPECT_TRUE(contains(said(sample_result("slider_crank")),
+                         "The error of its crank.drive moment is up to"))
         << said(sample_result("slider_crank"));
 }
 
@@ -211,8 +211,9 @@ TEST(Verdict, WhatCouldNotBeJudgedIsNotSaidToHaveFailed) {
     auto& trade = result["scenes"][0]["trade"];
     trade["recommendation"] = nullptr;
     trade["inconclusive"] = {"jounce: energy leg: branch lost"};
-    EXPECT_TRUE(contains(said(result), "What accuracy costs could not be judged.")) << said(result);
-    EXPECT_FALSE(contains(said(result), "Nothing tried")) << said(result);
+    EXPECT_TRUE(contains(said(result), "The cost of accuracy could not be judged."))
+        << said(result);
+    EXPECT_FALSE(contains(said(result), "No configuration tried")) << said(result);
     for (const auto& section : sections(result))
         if (section.id == "price") {
             const std::string text = render("text/price", section.words, Escape::nothing);
@@ -245,9 +246,9 @@ TEST(Verdict, AReferenceThatStoppedIsNotSaidToAgree) {
 TEST(Verdict, ARecursionThatStoppedIsSaidToHaveStopped) {
     json result = sample_result();
     result["scenes"][0]["branches"][1]["legs"][0]["outcome"] = "diverged";
-    EXPECT_TRUE(contains(
-        said(result),
-        "The published recursion with 20 steps does not get through branch rebound: diverged."))
+    EXPECT_TRUE(contains(said(result),
+                         "The published recursion with 20 steps does not reach the end of branch "
+                         "rebound: diverged."))
         << said(result);
     EXPECT_FALSE(contains(said(result), "within")) << said(result);
 }
@@ -256,7 +257,8 @@ TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
     json result = sample_result();
     result["scenes"][0]["trade"]["recommendation"] = nullptr;
     EXPECT_TRUE(contains(
-        said(result), "Nothing tried holds 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
+        said(result),
+        "No configuration tried holds 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
         << said(result);
 }
 
@@ -288,7 +290,7 @@ TEST(ParseResult, RefusesWhatItCannotRead) {
     EXPECT_EQ(refusal("{}"), "result.json: schema: missing");
     EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\"}"), "result.json: scenes: missing");
     EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\", \"scenes\": []}"),
-              "result.json: scenes: there is no scene in it");
+              "result.json: scenes: it has no scene");
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ TEST(SolveCommand, ChannelThatIsNoneIsAnsweredWithTheNearest) {
         const Said said = elastocheck_says(
             "solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked + " -o " + file);
         EXPECT_EQ(said.code, 2) << said.out;
-        EXPECT_TRUE(contains(said.err, "--channels: no output is called")) << said.err;
+        EXPECT_TRUE(contains(said.err, "--channels: there is no output")) << said.err;
         EXPECT_TRUE(contains(said.err, fmt::format("did you mean '{}'?", near))) << said.err;
     }
     EXPECT_EQ(elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'").code,

@@ -189,7 +189,7 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     }
     EXPECT_EQ(study_json(study, attribution)["gap"].dump(), table_json(gaps).dump());
 
-    // The error to the truth is step error plus gap; the contributions add up to the gap.
+    // The error against the reference is step error plus gap; the contributions add up to the gap.
     const auto steps = step_table(study);
     const double gap = number(outputs, 0, "gap");
     EXPECT_EQ(number(steps, 0, "error"), number(steps, 0, "end") + gap);

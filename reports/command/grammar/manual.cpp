@@ -32,7 +32,7 @@ std::string list(const std::vector<OptionGrammar>& options) {
 std::string manual(const Grammar& all, const std::string& version) {
     std::string page = ".TH ELASTOCHECK 1 \"\" \"" + all.name + " " + text(version) +
                        "\" \"User Commands\"\n.SH NAME\n" + all.name +
-                       " \\- can I trust my suspension solver?\n.SH SYNOPSIS\n.B " + all.name +
+                       " \\- verification of suspension solvers by independent solutions\n.SH SYNOPSIS\n.B " + all.name +
                        "\nCOMMAND [OPTION ...]\n.SH DESCRIPTION\n" + text(all.description) +
                        "\n.SH OPTIONS\n" + list(all.options) + ".SH COMMANDS\n";
     for (const auto& command : all.commands)

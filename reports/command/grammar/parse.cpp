@@ -20,8 +20,7 @@ namespace {
 
 std::string flaw_of_a_name(const std::string& word) {
     if (word.empty()) return "'' is no name";
-    if (word == "-")
-        return "'-' is no name; what goes to standard output goes there by itself, or by --json";
+    if (word == "-") return "'-' is no file name; standard output is the default or --json";
     return {};
 }
 
@@ -126,7 +125,7 @@ int explain(const CLI::App& app, const std::vector<Command>& commands, const CLI
             }
         }
     }
-    print_error("elastocheck: {}\nelastocheck --help tells more.\n", message);
+    print_error("elastocheck: {}\nSee elastocheck --help.\n", message);
     return bad_input;
 }
 

@@ -11,9 +11,8 @@ namespace elastocheck::reports {
 struct Program {
     std::string name, description, version, footer;
 };
-inline constexpr const char* version_help =
-    "the version, the commit it was built from, and the libraries in it";
-inline constexpr const char* help_help = "this text; after a command, its options";
+inline constexpr const char* version_help = "print version, commit and libraries";
+inline constexpr const char* help_help = "print this help; after a command, its options";
 
 // Returns the exit code. Prints --help and --version; reports an unknown word with the nearest
 // known one (exit code 2). Throws std::invalid_argument for a word that is not one line of UTF-8

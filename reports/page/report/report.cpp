@@ -157,8 +157,7 @@ struct Page {
 Table summary(const std::list<ScenePart>& parts) {
     Table table{
         .caption =
-            "At a glance: the largest deviations of the linear recursion as published, and whether "
-            "they are within the tolerance",
+            "Summary: largest deviations of the linear recursion as published, and the verdict",
         .columns = {{"scene", true},
                     {"verdict", true},
                     {"position, at equal load or drive"},
@@ -218,11 +217,11 @@ json provenance(const Field& result) {
 json alarms(const Field& result) {
     const auto found = result.find("alarms");
     if (!found) return nullptr;
-    Table table{.caption = "Seeded faults, and the first alarm to ring",
+    Table table{.caption = "Seeded faults and the first test that failed",
                 .columns = {{"fault", true},
                             {"in", true},
                             {"what it simulates", true},
-                            {"first to ring", true},
+                            {"first failing test", true},
                             {"margin"},
                             {"alarms"}},
                 .rows = {},
@@ -317,7 +316,7 @@ json parse_result(std::string_view text, const std::string& file) {
             fmt::format("'{}' is not a document this program reads; allowed: '{}'. Run the command "
                         "that made it again",
                         schema.text(), result_schema));
-    if (root["scenes"].items().empty()) root["scenes"].fail("there is no scene in it");
+    if (root["scenes"].items().empty()) root["scenes"].fail("it has no scene");
     expect_plain(root);
     return result;
 }

@@ -10,8 +10,8 @@ std::vector<Section> sections_of(const Field& scene) {
     };
     const Part parts[] = {
         {"", {candidate_section, first_section, drawing_section}},
-        {"What it does", {characteristics_section, curves_section, forces_section}},
-        {"How far to trust it",
+        {"Behaviour", {characteristics_section, curves_section, forces_section}},
+        {"Accuracy",
          {measured_section, verdict_section, deviation_section, price_section, convergence_section,
           attribution_section, orders_section, arithmetic_section, references_section,
           formulations_section, model_section}}};

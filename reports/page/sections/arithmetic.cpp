@@ -11,14 +11,13 @@ std::optional<Section> arithmetic_section(const Field& scene) {
     const auto study = scene.find("precision");
     if (!study) return std::nullopt;
     const std::string branch = (*study)["branch"].text();
-    Section section{.id = "arithmetic", .title = "The arithmetic’s share"};
+    Section section{.id = "arithmetic", .title = "Round-off"};
     section.words = {{"branch", branch}, {"reasons", (*study)["inconclusive"].texts()}};
-    section.tables.push_back(page_table(
-        fmt::format(
-            "Least errors over the step count, and the steps beyond which nothing is gained; "
-            "end of branch {}",
-            branch),
-        read_table((*study)["floors"], compare::floor_table({})), floor_columns));
+    section.tables.push_back(
+        page_table(fmt::format("Smallest errors over the number of steps, and the number of steps "
+                               "beyond which the error no longer falls; end of branch {}",
+                               branch),
+                   read_table((*study)["floors"], compare::floor_table({})), floor_columns));
     return section;
 }
 

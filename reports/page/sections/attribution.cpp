@@ -16,8 +16,8 @@ struct Term {
     const char *key, *name;
     Colour colour;
 };
-constexpr Term terms[] = {{"lever", "stored force’s lever", vermilion},
-                          {"axis", "its axis and law", blue},
+constexpr Term terms[] = {{"lever", "lever arm of the stored force", vermilion},
+                          {"axis", "axis and law of the stored force", blue},
                           {"load", "load’s lever", ochre}};
 
 // Range of an output over a branch, from the study.
@@ -73,7 +73,7 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
 std::optional<Section> attribution_section(const Field& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
-    Section section{.id = "attribution", .title = "What the formulation gap is made of"};
+    Section section{.id = "attribution", .title = "Contributions to the formulation gap"};
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto gaps = read_table((*study)["gap"], compare::gap_table({}, {}));
     if (gaps.rows.empty()) return std::nullopt;

@@ -27,8 +27,8 @@ Table figures_table(const compare::Table& at_design) {
                 .columns = {{"figure", true},
                             {"value"},
                             {"unit", true},
-                            {"published recursion off by"},
-                            {"what it is", true}}};
+                            {"error of the published recursion"},
+                            {"definition", true}}};
     for (std::size_t r = 0; r < at_design.rows.size(); ++r) {
         const std::string name = as_words(words(at_design, r, "output"));
         const std::string& undefined = words(at_design, r, "undefined");

@@ -71,22 +71,22 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
                       .y = "at the end of the branch [mm]",
                       .log_x = true,
                       .log_y = true};
-        figure.series = {
-            {"error to the truth", Series::Style::line_points, vermilion, 6, rows(steps, truth)},
-            {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
-            {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
+        figure.series = {{"error against the reference", Series::Style::line_points, vermilion, 6,
+                          rows(steps, truth)},
+                         {"step error", Series::Style::line_points, blue, 4, rows(steps, step)},
+                         {"|Φ|, eq. (31)", Series::Style::rings, green, 5, rows(steps, phi)}};
         std::erase_if(figure.series, [](const Series& s) { return s.rows.empty(); });
         if (figure.series.empty()) continue;
         figure.description = fmt::format(
             "Logarithmic plot, {}: from {} to {} steps the constraint error of eq. (31) goes from "
             "{} to {} "
             "mm, "
-            "the step error from {} to {} mm, the error to the truth from {} to {} mm.",
+            "the step error from {} to {} mm, the error against the reference from {} to {} mm.",
             name, number(steps.front(), 4), number(steps.back(), 4), number(phi.front(), 2),
             number(phi.back(), 2), number(step.front(), 2), number(step.back(), 2),
             number(truth.front(), 2), number(truth.back(), 2));
         group.table.columns.push_back({fmt::format("step error, {}", name)});
-        group.table.columns.push_back({fmt::format("error to the truth, {}", name)});
+        group.table.columns.push_back({fmt::format("error against the reference, {}", name)});
         group.figures.push_back(std::move(figure));
         both.push_back(levels);
     }
@@ -110,7 +110,7 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
 std::optional<Section> convergence_section(const Field& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
-    Section section{.id = "convergence", .title = "Error over steps"};
+    Section section{.id = "convergence", .title = "Convergence with the number of steps"};
     section.words["reasons"] = (*study)["reasons"].texts();
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto steps = read_table((*study)["step_errors"], compare::step_table({}));

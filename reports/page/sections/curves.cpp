@@ -181,7 +181,7 @@ Table outputs(const Field& scene, const Field& branch) {
 
 std::optional<Section> curves_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    Section section{.id = "curves", .title = "Outputs over what drives them"};
+    Section section{.id = "curves", .title = "Outputs over travel, load or drive"};
     for (const auto& sweep : sweeps_of(scene))
         for (const auto& output : outputs_of(scene, sweep))
             if (auto made = group(scene, sweep, output))

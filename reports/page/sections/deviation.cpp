@@ -26,7 +26,7 @@ struct Curves {
     Series load{"", Series::Style::line, vermilion};
     Series travel{"", Series::Style::dashed, blue};  // dashed, since it may cover the other curve
     Series recommended{"", Series::Style::line, green};
-    Series references{"references apart", Series::Style::thin, slate};
+    Series references{"difference of the references", Series::Style::thin, slate};
 };
 
 // Maximum over the compared points; points out of reach of the other leg are NaN.
@@ -55,7 +55,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
         curves.recommended.title = configuration(*recommended) + ", " + at_parameter;
         table.columns.push_back({fmt::format("{} [{}]", configuration(*recommended), unit)});
     }
-    table.columns.push_back({fmt::format("references apart [{}]", unit)});
+    table.columns.push_back({fmt::format("difference of the references [{}]", unit)});
 
     double high = 1e-9, load_peak = 0, travel_peak = 0, apart = 0;
     bool complete = true;  // both references reached the end
@@ -143,8 +143,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
     if (std::isfinite(tolerance))
         figure.bands.push_back({figure.y_low, tolerance, "within " + setting(tolerance, unit)});
     const std::string agreement =
-        complete ? fmt::format("The references are at most {} apart.", quantity(apart, unit))
-                 : "The references did not both go all the way.";
+        complete ? fmt::format("The references differ by at most {}.", quantity(apart, unit))
+                 : "Not both references reached the end.";
     figure.description = fmt::format(
         "Logarithmic plot over the {} from {} to {} {}. Largest deviation of {} from the full "
         "solution: "
@@ -185,7 +185,7 @@ Table deviations(const Field& scene, const Field& branch) {
         {alone.abscissa.empty() ? "at" : "at" + alone.abscissa.substr(alone.abscissa.find(" ["))},
         {"rms"},
         {"share"},
-        {"references apart"}};
+        {"difference of the references"}};
     const Field load = branch["deviation"]["at_equal_parameter"]["channels"];
     const Field travel = branch["deviation"]["at_equal_abscissa"]["channels"];
     const Field doubt = branch["reference_uncertainty"]["at_equal_parameter"]["channels"];

@@ -80,14 +80,14 @@ std::optional<Section> forces_section(const Field& scene) {
     const double least = threshold(largest.of_element);
 
     Section section{.id = "forces", .title = "Forces in bushings, springs and links"};
-    Table table{.caption = "The largest of each at the ends of the branches",
+    Table table{.caption = "Largest force of each element at the ends of the branches",
                 .columns = {{"element and axis", true},
                             {"largest"},
                             {"unit", true},
                             {"where", true},
                             {"deformed by"},
                             {"unit", true},
-                            {"recursion off by"},
+                            {"error of the recursion"},
                             {"share"}}};
     for (const std::size_t r : largest.rows) {
         if (!(largest.of_element.at(words(forces, r, "element")) >= least)) continue;

@@ -14,18 +14,21 @@ namespace elastocheck::reports {
 std::optional<Section> formulations_section(const Field& scene) {
     const auto study = scene.find("formulations");
     if (!study) return std::nullopt;
-    Section section{.id = "formulations", .title = "What tools may differ by"};
+    Section section{.id = "formulations",
+                    .title = "Differences between bushing formulations of tools"};
     const compare::Table spread =
         read_table((*study)["spread"], compare::formulation_table({}, {}));
-    Table table{.caption = "Largest less smallest value over the formulations, where that is most",
-                .columns = {{"branch", true},
-                            {"output", true},
-                            {"spread"},
-                            {"unit", true},
-                            {"smallest by", true},
-                            {"largest by", true},
-                            {"references apart"},
-                            {"published deviation"}}};
+    Table table{
+        .caption =
+            "Largest minus smallest value over the formulations, at the point where it is largest",
+        .columns = {{"branch", true},
+                    {"output", true},
+                    {"spread"},
+                    {"unit", true},
+                    {"smallest by", true},
+                    {"largest by", true},
+                    {"difference of the references"},
+                    {"published deviation"}}};
     double most = 1e-9;  // [mm]: smaller spreads are rounding
     for (std::size_t r = 0; r < spread.rows.size(); ++r) {
         const double value = reports::number(spread, r, "spread");

@@ -18,7 +18,7 @@ constexpr Colour colours[] = {vermilion, blue, green, purple};
 
 FigureGroup group(const std::string& branch, const compare::Table& levels) {
     FigureGroup group;
-    group.caption = fmt::format("Expansions that branch {} takes over their order.", branch);
+    group.caption = fmt::format("Number of expansions of branch {} over their order.", branch);
     group.table =
         page_table(fmt::format("Series over branch {}; error to the full solution", branch), levels,
                    order_columns);
@@ -48,8 +48,7 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
     }
     if (figure.series.empty()) return group;
     figure.description =
-        "Logarithmic plot of the expansions a branch takes over their order: " + enumerated(told) +
-        ".";
+        "Logarithmic plot of the number of expansions over their order: " + enumerated(told) + ".";
     group.figures.push_back(std::move(figure));
     return group;
 }
@@ -59,7 +58,7 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
 std::optional<Section> orders_section(const Field& scene) {
     const auto orders = scene.find("orders");
     if (!orders) return std::nullopt;
-    Section section{.id = "orders", .title = "The branch as a power series"};
+    Section section{.id = "orders", .title = "Series method: the branch as power series"};
     auto& nearest = section.words["nearest"] = nlohmann::ordered_json::array();
     const auto table = read_table(*orders, compare::order_table({}));
     for (const auto& branch : distinct(table, "branch")) {

@@ -12,10 +12,10 @@ namespace elastocheck::reports {
 
 std::optional<Section> references_section(const Field& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    Section section{.id = "references", .title = "The references, certified"};
+    Section section{.id = "references", .title = "Agreement and certification of the references"};
     Table agreement{
         .caption =
-            "How far the solution by energy is from the one by equilibrium, worst over the branch",
+            "Difference between the solutions by energy and by equilibrium, worst over the branch",
         .columns = {{"branch", true},
                     {"positions [mm]"},
                     {"angles [deg]"},
@@ -24,14 +24,14 @@ std::optional<Section> references_section(const Field& scene) {
                     {"numbers compared"}}};
     Table judged{
         .caption =
-            "What each solution leaves in the equations of the others, worst over the points",
+            "Residuals of each solution in the equations of the others, worst over the points",
         .columns = {{"branch", true},
                     {"states of", true},
                     {"judged by", true},
                     {"force [N]"},
                     {"moment [N·m]"},
                     {"constraint [mm]"}}};
-    Table work{.caption = "How each solution ended, and its work",
+    Table work{.caption = "Outcome and work of each solution",
                .columns = {{"branch", true},
                            {"solution", true},
                            {"outcome", true},
@@ -39,9 +39,7 @@ std::optional<Section> references_section(const Field& scene) {
                            {"factorisations"},
                            {"iterations"},
                            {"evaluations"}}};
-    Table proofs{.caption =
-                     "What is proved by interval arithmetic, of the points at the start, the "
-                     "middle and the ends",
+    Table proofs{.caption = "Proofs by interval arithmetic at the start, the middle and the ends",
                  .columns = {{"branch", true},
                              {"points of", true},
                              {"proved"},
@@ -105,8 +103,8 @@ std::optional<Section> references_section(const Field& scene) {
             }
             if (const auto told = leg.find("told"))
                 for (const auto& line : told->texts())
-                    section.words["told"].push_back(fmt::format(
-                        "On branch {}, by the account of {}: {}", name, leg["leg"].text(), line));
+                    section.words["told"].push_back(fmt::format("Branch {}, reported by {}: {}",
+                                                                name, leg["leg"].text(), line));
             const std::string detail = leg["detail"].text();
             std::vector<std::string> cells{
                 name, leg["leg"].text(),
@@ -139,7 +137,8 @@ std::optional<Section> references_section(const Field& scene) {
     }
     if (section.words.contains("no_energy") || section.words.contains("witness"))
         agreement.caption =
-            "How far the second reference is from the one by equilibrium, worst over the branch";
+            "Difference between the second reference and the solution by equilibrium, worst over "
+            "the branch";
     judged.folded = true;
     section.tables = {agreement, proofs, judged, work};
     return section;

@@ -177,7 +177,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
 }  // namespace
 
 std::optional<Section> verdict_section(const Field& scene) {
-    Section section{.id = "verdict", .title = "In short"};
+    Section section{.id = "verdict", .title = "Verdict"};
     json& words = section.words;
     std::vector<json> tiles;
     const Field verdict = scene["verdict"];

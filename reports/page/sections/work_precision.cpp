@@ -70,9 +70,8 @@ Figure figure(const Field& trade, const compare::Table& points, const char* id, 
     for (const auto& s : figure.series)
         if (!s.title.empty()) names.push_back(s.title);
     figure.description = fmt::format(
-        "Logarithmic plot of worst position error against {} for {}. The wide pale line joins "
-        "those that no "
-        "other beats in both.",
+        "Logarithmic plot of worst position error against {} for {}. The wide pale line is the "
+        "Pareto front.",
         axis, enumerated(names));
     return figure;
 }
@@ -82,7 +81,7 @@ Figure figure(const Field& trade, const compare::Table& points, const char* id, 
 std::optional<Section> price_section(const Field& scene) {
     const auto trade = scene.find("trade");
     if (!trade) return std::nullopt;
-    Section section{.id = "price", .title = "What accuracy costs"};
+    Section section{.id = "price", .title = "Cost of accuracy"};
     section.words["points"] = (*trade)["output_points"].whole();
     section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
     section.words["reasons"] = (*trade)["inconclusive"].texts();
@@ -105,7 +104,7 @@ std::optional<Section> price_section(const Field& scene) {
     group.caption =
         "Worst position error over all branches, output points and outputs, at equal parameter.";
     group.table = page_table(
-        "The ladder: what each method gives for its work. On the front no other is as good for s: "
+        "Work-precision table. A configuration is on the front if no other is as accurate for s: "
         "fewer "
         "solves, f: fewer factorisations and evaluations, t: less time",
         points, trade_columns);

@@ -65,14 +65,15 @@ double largest_of(const Field& list) {
 
 // Residuals of its states in the equations of the legs.
 Table leftovers(const std::string& who, const Field& states) {
-    Table table{.caption = fmt::format(
-                    "What the states of {} leave in the references' own equations, largest", who),
-                .columns = {{"branch", true},
-                            {"equations of", true},
-                            {"states"},
-                            {"force [N]"},
-                            {"moment [N·m]"},
-                            {"constraints [mm]"}}};
+    Table table{
+        .caption = fmt::format(
+            "Largest residuals of the states of {} in the equations of the references", who),
+        .columns = {{"branch", true},
+                    {"equations of", true},
+                    {"states"},
+                    {"force [N]"},
+                    {"moment [N·m]"},
+                    {"constraints [mm]"}}};
     for (const auto& of : states.items()) {
         const auto row = [&](const std::string& leg, const Field& left) {
             table.rows.push_back(

@@ -27,7 +27,7 @@ std::optional<Section> drawing_section(const Field& scene) {
     group.caption = "All three views have one scale.";
     Table& table = group.table;
     table.caption = fmt::format("Points at the design position{}",
-                                moved.empty() ? "" : ", and how far they move from there (Δ)");
+                                moved.empty() ? "" : ", and their displacements (Δ)");
     table.columns = {{"point", true}, {"on", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}};
     for (const auto& position : suspension->moved)
         for (const char* axis : {"Δx", "Δy", "Δz"})

@@ -101,7 +101,7 @@ double value_between(const Series& measured, double x) {
 std::optional<Section> measured_section(const Field& scene) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
-    Section section{.id = "measured", .title = "Against the measurement"};
+    Section section{.id = "measured", .title = "Comparison with the measurement"};
     bool over_load = false;
     if (scene.find("branches"))
         for (const auto& sweep : sweeps_of(scene))

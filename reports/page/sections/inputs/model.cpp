@@ -29,7 +29,7 @@ std::optional<Section> model_section(const Field& scene) {
         row("redundant", fmt::format("{}: {} rows", r["joint"].text(), r["rows"].whole()));
     for (const auto& omitted : model["left_out"].items())
         row("left out", fmt::format("{}: {}", omitted["what"].text(), omitted["why"].text()));
-    row("out of balance at the design position",
+    row("force and moment imbalance at the design position",
         fmt::format("{} N", number(model["imbalance_N"].number(), 2)));
     row("condition number, equilibrated (raw)",
         fmt::format("{} ({})", number(model["condition_equilibrated"].number(), 2),
@@ -49,7 +49,7 @@ std::optional<Section> model_section(const Field& scene) {
     }
     section.tables.push_back(std::move(table));
     if (scene.find("channels")) {
-        Table outputs{.caption = "Outputs, and what they mean",
+        Table outputs{.caption = "Outputs and their definitions",
                       .columns = {{"output", true}, {"unit", true}, {"definition", true}}};
         for (const auto& channel : scene["channels"].items())
             if (const auto text = channel.find("definition");
