@@ -46,7 +46,7 @@ bool is_there(const std::string& command) {
 
 std::string browser() {
     if (const std::string ci = variable("CI"); !ci.empty() && ci != "false" && ci != "0")
-        throw std::invalid_argument("--open: not where CI is set: nobody looks at a page there");
+        throw std::invalid_argument("--open: not in CI (variable CI is set)");
     for (const auto& command : parts(variable("BROWSER"), ':'))
         if (is_there(command)) return command;
     if (is_there("xdg-open")) return "xdg-open";

@@ -174,14 +174,13 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
     if (was.numbers && is.numbers) scene.changed = compare::changes(*was.numbers, *is.numbers);
     if (was.input_hash == is.input_hash) return;
-    const char* what =
-        !was.numbers || !is.numbers
-            ? "; which of its numbers changed is not known, they are kept from the next --accept on"
-        : scene.changed.empty() ? "; none of its numbers changed"
-                                : "";
-    scene.notes.push_back(
-        fmt::format("the scene file is not the one that was accepted ({}, now {}){}",
-                    was.input_hash, is.input_hash, what));
+    const char* what = !was.numbers || !is.numbers
+                           ? "; the changed numbers are unknown (this older baseline does not "
+                             "contain the numbers of the scene)"
+                       : scene.changed.empty() ? "; none of its numbers changed"
+                                               : "";
+    scene.notes.push_back(fmt::format("the scene file differs from the accepted one ({}, now {}){}",
+                                      was.input_hash, is.input_hash, what));
 }
 
 // Judges by the default tolerance, independent of the baseline, since no accepted result applies to
@@ -216,7 +215,7 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
                      .is = worst.max});
         if (offences.empty())
             scene.verdict.reasons.push_back(
-                fmt::format("candidate '{}': its states miss the constraints", judgement.name));
+                fmt::format("candidate '{}': its states violate the constraints", judgement.name));
         scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(),
                                       offences.end());
     }

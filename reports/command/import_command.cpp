@@ -100,9 +100,9 @@ bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
     scene = conversion.scene;
     std::string effect = apart(study);
     if (!effect.empty())
-        effect = "the outputs move by up to " + effect + ", by the equilibrium leg";
+        effect = "the outputs change by up to " + effect + ", by the equilibrium leg";
     for (const auto& why : study.inconclusive)
-        effect += fmt::format("{}by how much the outputs move is not known: {}",
+        effect += fmt::format("{}the change of the outputs is unknown: {}",
                               effect.empty() ? "" : "; ", why);
     notes.warn({0, fmt::format("elements {}", fmt::join(conversion.bushings, ", "))},
                fmt::format("converted to the bushing formulation of {}: {}", target, effect));
@@ -164,8 +164,9 @@ std::string settling(const std::string& yaml) {
         const auto path =
             compare::walk(compare::sides_of(model, branch, 1), {.leg = compare::Leg::equilibrium});
         if (path.points.empty())
-            return fmt::format("The drawn position does NOT settle, so no branch begins: {}: {}.",
-                               name(path.outcome), path.detail);
+            return fmt::format(
+                "The drawn position does NOT settle, so that no branch starts: {}: {}.",
+                name(path.outcome), path.detail);
         double moved = 0, turned = 0;
         for (std::size_t k = 0; k < model.bodies.size(); ++k) {
             const Pose &drawn = model.bodies[k].design, &rest = path.points.front().poses[k];
@@ -173,8 +174,8 @@ std::string settling(const std::string& yaml) {
             turned = std::max(turned, rest.p.angularDistance(drawn.p));
         }
         return fmt::format(
-            "The drawn position settles: bodies go by up to {:.3g} mm and {:.3g} deg.", 1e3 * moved,
-            turned * 180 / std::numbers::pi);
+            "The drawn position settles: bodies move by up to {:.3g} mm and {:.3g} deg.",
+            1e3 * moved, turned * 180 / std::numbers::pi);
     } catch (const SceneError&) {
         return "";  // a scene of hardpoints alone is incomplete
     }

@@ -34,9 +34,9 @@ using namespace elastocheck::reports;
 
 std::string footer(const std::function<std::string(const std::string&)>& place) {
     return fmt::format(
-        "Exit codes: 0 fine, 1 a gate's limit is broken, 2 bad input, 3 could not judge, 4 "
+        "Exit codes: 0 success, 1 failed judgement or gate, 2 bad input, 3 could not judge, 4 "
         "internal error.\n"
-        "The scene files: {}\nWhat commands write: {}\n",
+        "Scene files: {}\nOutput files: {}\n",
         place("models/scenes/README.md"), place("reports/README.md"));
 }
 

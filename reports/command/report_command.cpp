@@ -107,8 +107,8 @@ json solve_scene(const std::string& file, const Request& request) {
         add_measurement(document, read_whole(request.measured, largest_measurement),
                         request.measured, model, comparison, load_cases(request));
         if (compared_with_measurement(document) == 0)
-            reasons.push_back(fmt::format(
-                "no point of {} lies where the legs could be compared with it", request.measured));
+            reasons.push_back(
+                fmt::format("no point of {} is within the range of the legs", request.measured));
     }
 
     compare::StudyOptions study_options;

@@ -69,7 +69,7 @@ int stress(const Request& request, const Delivery& delivery) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     delivery.say(
         stress_text(survival) +
-        fmt::format("{:.0f} s, {:.0f} s of processor time; the dearest trial: {}, {}, {:.0f} s\n",
+        fmt::format("{:.0f} s, {:.0f} s of processor time; the slowest trial: {}, {}, {:.0f} s\n",
                     elapsed.count(), survival.seconds, survival.dearest.scene,
                     survival.dearest.variant, survival.dearest.seconds));
     if (delivery.wants_document()) {

@@ -315,28 +315,27 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
             if (!factor)
                 fail_at(file, table.lines[k],
                         fmt::format(
-                            "{}: {} is no unit of what branch '{}' goes by; allowed: {}",
+                            "{}: {} is not a unit of the parameter of branch '{}'; allowed: {}",
                             meaning.name, reader::quote(written_in),
                             table.branch.empty() ? all.branches.front().branch : table.branch[k],
                             allowed_units(unit)));
             if (!std::isnan(points.a[k]))
                 fail_at(file, table.lines[k],
-                        fmt::format("{}: another column says where this point is", meaning.name));
+                        fmt::format("{}: another column gives the parameter of this point as well",
+                                    meaning.name));
             points.a[k] = table.values[c][k] * *factor;
         }
     }
     if (!parameters.empty() && table.branch.empty())
         for (const auto& branch : all.branches)
             if (branch.unit != all.branches.front().unit)
-                fail_at(file, 1,
-                        "a column 'branch' has to say where a point belongs: branches go by "
-                        "different units");
+                fail_at(file, 1, "a column 'branch' is needed: branches have different units");
     for (std::size_t c = 0; c < table.columns.size(); ++c)
         if (table.columns[c].kind == Kind::output) {
             const auto& channel = all.channels[table.columns[c].channel];
             if (std::ranges::find(points.columns, table.columns[c].channel,
                                   &compare::PointColumn::channel) != points.columns.end())
-                fail_at(file, 1, fmt::format("two columns are {}", channel.name));
+                fail_at(file, 1, fmt::format("two columns for {}", channel.name));
             points.columns.push_back(
                 {table.columns[c].channel, table.columns[c].change, table.values[c]});
             if (!points.abscissa && !points.columns.back().change && is_travel(channel))
@@ -345,7 +344,8 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
     if (points.a.empty() && !points.abscissa) {
         std::vector<std::string> places{"parameter", "load_N", "travel_mm"};
         fail_at(file, 1,
-                "no column says where a point is" + reader::did_you_mean("", places, "allowed"));
+                "no column gives the parameter or travel of a point" +
+                    reader::did_you_mean("", places, "allowed"));
     }
     if (points.columns.empty())
         fail_at(file, 1,

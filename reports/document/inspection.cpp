@@ -175,7 +175,7 @@ std::string inspection(const Inspected& inspected) {
         line("  joint '{}': {} of its rows repeat what the joints before it hold{}",
              model.joints[static_cast<std::size_t>(r.joint)].name, r.rows,
              r.contradicts ? ", and contradict it"
-             : r.undecided ? ", or nearly: that cannot be told"
+             : r.undecided ? ", or nearly: undecided"
                            : "");
         std::string among;
         for (const auto& [joint, share] : std::span(r.shares).first(shown(r.shares.size())))

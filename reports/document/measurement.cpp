@@ -75,24 +75,23 @@ void check_parameters(const Points& points, const std::string& file,
                       const compare::Comparison& all) {
     if (points.branch.empty()) {
         if (points.parameters.size() > 1)
+            fail_at(file, 1,
+                    fmt::format("{} and {}: a column 'branch' is needed to choose between them",
+                                points.parameters[0], points.parameters[1]));
+        if (points.parameters.size() == 1 && parameter_columns(all).size() > 1)
             fail_at(
                 file, 1,
-                fmt::format("{} and {}: a column 'branch' has to say which of them places a point",
-                            points.parameters[0], points.parameters[1]));
-        if (points.parameters.size() == 1 && parameter_columns(all).size() > 1)
-            fail_at(file, 1,
-                    fmt::format("{}: not every branch goes by it; a column 'branch' has to say "
-                                "where a point belongs",
-                                points.parameters[0]));
+                fmt::format("{}: not the parameter of every branch; a column 'branch' is needed",
+                            points.parameters[0]));
         return;
     }
     for (std::size_t k = 0; k < points.branch.size(); ++k)
         for (const auto& parameter : points.parameters) {
             const std::string own = column_of(points.branch[k], all);
             if (own != parameter && std::isfinite((*points.find(parameter))[k]))
-                fail_at(
-                    file, points.lines[k],
-                    fmt::format("{}: branch '{}' goes by {}", parameter, points.branch[k], own));
+                fail_at(file, points.lines[k],
+                        fmt::format("{}: the parameter of branch '{}' is {}", parameter,
+                                    points.branch[k], own));
         }
 }
 
@@ -178,16 +177,17 @@ Points read(std::string_view csv, const std::string& file, const compare::Compar
     if (branch_column < 0 && cases.column != LoadCases{}.column)
         fail_at(
             file, 1,
-            fmt::format("no column {}, which --branch-column names", reader::quote(cases.column)));
+            fmt::format("there is no column {} (--branch-column)", reader::quote(cases.column)));
     if (std::ranges::none_of(points.columns, is_place)) {
         std::vector<std::string> allowed = parameter_columns(all);
         for (const auto& output : outputs)
             if (output.travel) allowed.push_back(output.name);
         fail_at(file, 1,
-                "no column says where a point is" + reader::did_you_mean("", allowed, "allowed"));
+                "no column gives the parameter or travel of a point" +
+                    reader::did_you_mean("", allowed, "allowed"));
     }
     if (std::ranges::count_if(points.columns, [](const Column& c) { return c.travel; }) > 1)
-        fail_at(file, 1, "two columns of travel say where a point is; one at most");
+        fail_at(file, 1, "two columns of travel; allowed: one");
     for (const auto& column : points.columns)
         if (is_parameter(column)) points.parameters.push_back(column.name);
     check_parameters(points, file, all);

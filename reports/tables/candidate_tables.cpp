@@ -195,8 +195,8 @@ std::string candidate_trade_text(const compare::Table& table) {
 }
 
 std::string candidate_text(const CandidateJudgement& j, const compare::Comparison& comparison) {
-    std::string text =
-        fmt::format("candidate '{}', read against the equilibrium leg at its own points\n", j.name);
+    std::string text = fmt::format(
+        "candidate '{}', compared with the equilibrium leg at its own points\n", j.name);
     const auto out = std::back_inserter(text);
     for (const auto& branch : j.branches) {
         fmt::format_to(out, "\nbranch '{}': {} points", branch.branch, branch.points);
@@ -243,7 +243,7 @@ std::string candidate_text(const CandidateJudgement& j, const compare::Compariso
             if (std::ranges::find(j.judged, false) != j.judged.end())
                 fmt::format_to(
                     out, "  * not judged: no main output, or no tolerance in its unit{}\n",
-                    hidden > 0 ? fmt::format("; {} more are off by less than 1e-6", hidden) : "");
+                    hidden > 0 ? fmt::format("; {} more have errors below 1e-6", hidden) : "");
         }
         for (const auto& [reading, how] : {std::pair{&load, &by_load}, {&travel, &by_travel}}) {
             if (!reading->not_compared.empty())

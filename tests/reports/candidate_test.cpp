@@ -358,7 +358,7 @@ TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
         std::string text, what;
     } cases[] = {
         {"a.csv", "load_N,toes_deg\n1,2\n", "a.csv:1: unknown column 'toes_deg', did you mean"},
-        {"a.csv", "toe_deg\n1\n", "a.csv:1: no column says where a point is"},
+        {"a.csv", "toe_deg\n1\n", "a.csv:1: no column gives the parameter or travel of a point"},
         {"a.csv", "branch,load_N,toe_deg\njounce,1,2\nbounce,1,2\n",
          "a.csv:3: branch: the scene has no branch 'bounce'"},
         {"a.csv", "branch,load_N,toe_deg\njounce,1,x\n", "a.csv:2: toe_deg: 'x' is not a number"},

@@ -348,7 +348,7 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
     EXPECT_TRUE(page.starts_with(".TH ELASTOCHECK 1 ")) << page.substr(0, 80);
     for (const std::string part :
          {"\\fB\\-o\\fR, \\fB\\-\\-output\\fR \\fIFOLDER\\fR\n", ".SS elastocheck gate\n",
-          "\\fB\\-\\-set\\fR \\fIPATH=VALUE\\fR\n", "Exit codes: 0 fine",
+          "\\fB\\-\\-set\\fR \\fIPATH=VALUE\\fR\n", "Exit codes: 0 success",
           "PREFIX/share/doc/elastocheck/models/scenes/README.md"})
         EXPECT_TRUE(contains(page, part)) << part;
     EXPECT_FALSE(contains(page, std::filesystem::current_path().string()));

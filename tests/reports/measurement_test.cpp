@@ -142,7 +142,8 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
           Case{"travel_mm,toe_rad\n1,2\n",
                "kc.csv:1: unknown column 'toe_rad'; allowed: branch, load_N, "},
           Case{"toe_deg\n1\n",
-               "kc.csv:1: no column says where a point is; allowed: load_N, travel_mm"},
+               "kc.csv:1: no column gives the parameter or travel of a point; allowed: load_N, "
+               "travel_mm"},
           Case{"travel_mm,load_N\n1,2\n", "kc.csv:1: no output among the columns"},
           Case{"travel_mm,toe_deg,toe_deg\n1,2,3\n",
                "kc.csv:1: column 'toe_deg' stands there twice"},

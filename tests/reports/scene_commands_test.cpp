@@ -43,11 +43,11 @@ TEST(Import, SaysWhetherTheDrawnPositionSettles) {
         const std::string text = text_of(file);
         return text.substr(0, text.find("\nelastocheck: 1"));
     };
-    EXPECT_TRUE(
-        contains(head_of("chrono_Cylindrical_Case01.adm"),
-                 "# The drawn position does NOT settle, so no branch begins: loaded idle mode: "));
+    EXPECT_TRUE(contains(
+        head_of("chrono_Cylindrical_Case01.adm"),
+        "# The drawn position does NOT settle, so that no branch starts: loaded idle mode: "));
     EXPECT_TRUE(contains(head_of("chrono_RotSpring_Case01.adm"),
-                         "# The drawn position settles: bodies go by up to 646 mm"));
+                         "# The drawn position settles: bodies move by up to 646 mm"));
 }
 
 // ---- elastocheck new

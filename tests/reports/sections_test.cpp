@@ -258,7 +258,7 @@ TEST(Verdict, WithoutARecommendationItSaysThatNothingReaches) {
     result["scenes"][0]["trade"]["recommendation"] = nullptr;
     EXPECT_TRUE(contains(
         said(result),
-        "No configuration tried holds 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
+        "No configuration tried reaches 0.01\u00a0mm and 0.001\u00a0deg over the whole range"))
         << said(result);
 }
 

@@ -251,7 +251,7 @@ TEST(ExportCommand, ConvertsBushingsAndSaysByHowMuchTheOutputsMove) {
     const Said said = elastocheck_says(command + "--formulation adams -o " + deck);
     EXPECT_EQ(said.code, 0) << said.err;
     const std::string effect =
-        "converted to the bushing formulation of adams: the outputs move by up to 6.9e-05 mm "
+        "converted to the bushing formulation of adams: the outputs change by up to 6.9e-05 mm "
         "(wheel_centre_z "
         "on "
         "branch 'vertical' at 3000 N) and 1e-05 deg (toe on branch 'travel' at 80 mm), by the "

@@ -39,46 +39,42 @@ std::vector<std::string> command_words(const std::string& command) {
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(fmt::format("--candidate-command: {}", error.what()));
     }
-    if (words.empty()) throw std::invalid_argument("--candidate-command: no program is named");
+    if (words.empty()) throw std::invalid_argument("--candidate-command: no program given");
     if (std::ranges::none_of(words,
                              [](const std::string& w) { return w.find("{output}") != w.npos; }))
         throw std::invalid_argument(
-            "--candidate-command: no {output} in it; allowed: words with {scene}, {steps} and "
-            "{output}, the "
-            "file that the "
-            "program is to write");
+            "--candidate-command: {output} is missing; allowed: words with {scene}, {steps} and "
+            "{output}, the file that the program writes");
     return words;
 }
 
 }  // namespace
 
 void add_candidate_options(std::vector<Option>& options, CandidateRequest& request) {
-    options.push_back(
-        {"--candidate", TextList{&request.files, TextList::Form::repeated, a_file("*.csv")},
-         "what another solver says: outputs (CSV) or states (JSON lines, CSV); STEPS=FILE where "
-         "it has steps"});
-    options.push_back(
-        {"--candidate-command", Text{&request.command},
-         "a solver to be run, without a shell: './mysolver {scene} {steps} {output}'"});
+    options.push_back({"--candidate",
+                       TextList{&request.files, TextList::Form::repeated, a_file("*.csv")},
+                       "results of another solver: outputs (CSV) or states (JSON lines, CSV); "
+                       "STEPS=FILE where it has steps"});
+    options.push_back({"--candidate-command", Text{&request.command},
+                       "solver to run, without a shell: './mysolver {scene} {steps} {output}'"});
     options.push_back({"--candidate-timeout", RealNumber{&request.timeout, 0.001, 86400},
                        "seconds after which the command is killed (default: 60)"});
     options.push_back({"--map", Text{&request.map, a_file("*.yaml")},
-                       "YAML: how the candidate names its columns, their units, signs, offsets"});
+                       "YAML file with the candidate's column names, units, signs and offsets"});
 }
 
 void check(const CandidateRequest& request, const Settings& settings) {
     if (!request.map.empty()) {
         if (!request.wanted())
-            throw std::invalid_argument("--map: says how to read a --candidate; give one");
+            throw std::invalid_argument("--map: only with --candidate or --candidate-command");
         (void)read_column_map(read_whole(request.map, largest_baseline), request.map);
     }
     if (request.command.empty()) return;
     (void)command_words(request.command);
     if (!settings.empty())
         throw std::invalid_argument(
-            "--candidate-command: not with --set: the program reads the scene as it stands in its "
-            "file; "
-            "change it there");
+            "--candidate-command: not with --set: the program reads the scene file; change the "
+            "file");
 }
 
 std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const std::string& scene,
@@ -112,7 +108,8 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
         run_of.seconds = ended.seconds, run_of.cpu = ended.cpu;
         if (!ended.well()) {
             run_of.failed = fmt::format("'{}' {}", words.front(), describe(ended, request.timeout));
-            if (!ended.said.empty()) print_error("{}: it said:\n{}\n", run_of.file, ended.said);
+            if (!ended.said.empty())
+                print_error("{}: output of the command:\n{}\n", run_of.file, ended.said);
             continue;
         }
         std::error_code ignored;
@@ -127,7 +124,7 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
                 run_of.failed = error.what();
             }
         if (!run_of.failed.empty() && !ended.said.empty())
-            print_error("{}: it said:\n{}\n", run_of.file, ended.said);
+            print_error("{}: output of the command:\n{}\n", run_of.file, ended.said);
     }
     progress("");
     return list;

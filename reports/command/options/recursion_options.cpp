@@ -13,13 +13,14 @@ namespace elastocheck::reports {
 
 void add_recursion_options(std::vector<Option>& options, RecursionRequest& request) {
     options.push_back({"--steps", Integer{&request.steps, 1, most_steps},
-                       "load steps per branch (default: as the scene says)"});
-    options.push_back({"--tolerance", Text{&request.tolerance},
-                       "of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)"});
-    options.push_back({"--order", Integer{&request.order, 1, 60}, "of the series (default: 16)"});
+                       "load steps per branch (default: of the scene)"});
     options.push_back(
-        {"--expansions", Integer{&request.expansions, 1, 1'000'000},
-         "of the series, at most; as many more for each knot gone over (default: 200)"});
+        {"--tolerance", Text{&request.tolerance},
+         "error tolerance of adaptive (default: 0.01mm,0.001deg) and series (default: 1e-9mm)"});
+    options.push_back({"--order", Integer{&request.order, 1, 60}, "of the series (default: 16)"});
+    options.push_back({"--expansions", Integer{&request.expansions, 1, 1'000'000},
+                       "largest number of expansions of the series; as many more for each knot "
+                       "passed (default: 200)"});
 }
 
 recursive::Options recursion(const RecursionRequest& request) {
@@ -46,10 +47,8 @@ recursive::Options recursion(const RecursionRequest& request) {
     const compare::Tolerance tolerance = compare::parse_tolerance(request.tolerance);
     if (series && std::isfinite(tolerance.deg))
         throw std::invalid_argument(
-            "--tolerance: the series is told one length, such as 1e-9mm, which bounds positions "
-            "and, times "
-            "the "
-            "model's size, angles");
+            "--tolerance: the series takes one length, such as 1e-9mm, which bounds positions and, "
+            "divided by the model's size, angles");
     if (series) series->tolerance = 1e-3 * tolerance.mm;
     if (adaptive && std::isfinite(tolerance.mm)) adaptive->length_tolerance = 1e-3 * tolerance.mm;
     if (adaptive)

@@ -132,7 +132,7 @@ std::string held(const Field& chosen) {
     const auto share = chosen["expected_error"].find("share"),
                again = chosen["confirmed_error"].find("share");
     if (share && again)
-        text += fmt::format(", and forces and moments to {} of their extent",
+        text += fmt::format(", forces and moments {} of their extent",
                             percent(std::max(share->number(), again->number())));
     return text;
 }
@@ -170,7 +170,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     tiles.push_back(
         {{"key", "chosen"},
          {"value", configuration(*chosen)},
-         {"label", fmt::format("cheapest within {}: holds {}", enumerated(asked), held(*chosen))}});
+         {"label", fmt::format("cheapest within {}: error {}", enumerated(asked), held(*chosen))}});
     return words;
 }
 

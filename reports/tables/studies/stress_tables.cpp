@@ -127,15 +127,14 @@ compare::Table cell_table(const Survival& survival) {
          words("verdict"),
          words("known by", "what the true state is"),
          {"digits", "", "-log10 of the error over the range"},
-         {"lost", "", "of the digits that are right of the scene as it is, those that differ here"},
-         {"apart", "mm", "how far the answer is from that of the scene as it is"},
+         {"lost", "", "correct digits of the untransformed scene that are lost"},
+         {"apart", "mm", "distance from the result of the untransformed scene"},
          {"error", "mm", "of any place, at most"},
-         {"claim", "mm",
-          "what the solver says that it is off by, at most; empty where it says nothing"},
+         {"claim", "mm", "error bound reported by the solver; empty without one"},
          {"range", "mm",
-          "how far the place that goes farthest goes; the scene's size where nothing moves"},
+          "largest displacement of a point; the size of the scene where nothing moves"},
          words("reason"),
-         words("detail", "what the solver says")},
+         words("detail", "message of the solver")},
         {}};
     for (const auto& c : survival.cells)
         table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome),
@@ -174,23 +173,20 @@ std::string stress_text(const Survival& survival) {
         fmt::format_to(out, "{:<{}}  {}\n", scene + ", " + variant, row_head,
                        signs(survival, scene, std::string(compare::extreme), variant));
     if (!rows.extremes.empty()) text += '\n';
-    text += "One sign each of";
+    text += "One sign for each of";
     for (const auto& solver : survival.solvers) fmt::format_to(out, " {}", solver);
     text +=
         ", the worst of all variants of a sweep:\n"
-        "  0 ... 9  digits of the range of motion that are right (9: nine or more)    !  an honest "
-        "outcome, "
-        "each time\n"
-        "  ~  at another equilibrium, proved as well    ?  converged, and nothing is known    X  "
-        "WRONG    .  "
-        "not asked\n";
+        "  0 ... 9  correct digits of the range of motion (9: nine or more)    !  reported as "
+        "failed each time\n"
+        "  ~  another proved equilibrium    ?  converged, not judged    X  WRONG    .  not run\n";
     text += '\n' + lost_text(lost_digits(survival));
     for (const auto verdict : verdicts)
         fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
                        verdict == verdicts.back() ? "" : ", ");
     fmt::format_to(out, ": {} cells\n", survival.cells.size());
     for (const auto& s : survival.skipped)
-        fmt::format_to(out, "not asked: {}, {}: {}\n", s.scene, s.variant, s.why);
+        fmt::format_to(out, "not run: {}, {}: {}\n", s.scene, s.variant, s.why);
     for (const auto& cell : survival.cells)
         if (cell.verdict == Verdict::wrong)
             fmt::format_to(out, "WRONG: {}: {}\n", where(cell), cell.why);
