@@ -43,7 +43,7 @@ int certify(const Request& request, const std::string& command) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const compare::CertifyStudy study = compare::certify(loaded.model, options);
     progress("");
-    delivery.say(certify_text(study));
+    delivery.print_text(certify_text(study));
     const bool conclusive = study.conclusive();
     if (delivery.wants_document()) {
         nlohmann::ordered_json part =
@@ -56,7 +56,7 @@ int certify(const Request& request, const std::string& command) {
             conclusive ? std::vector<std::string>{} : std::vector<std::string>{sentence(study)});
         deliver(delivery, std::move(part), {{"certify.csv", csv(certify_table(study))}});
     }
-    delivery.say(sentence(study) + "\n");
+    delivery.print_text(sentence(study) + "\n");
     return study.excluded() ? limit_broken : conclusive ? fine : could_not_judge;
 }
 

@@ -17,7 +17,7 @@ struct Delivery {
     std::string command = {};  // command line as given, for the document
 
     bool wants_document() const { return as_json || !folder.empty(); }
-    void say(std::string_view text) const {
+    void print_text(std::string_view text) const {
         if (!as_json) print(text);
     }
 };

@@ -51,7 +51,7 @@ int equilibria(const Request& request, const Delivery& delivery) {
         loaded.model, branch, a,
         {.turn = request.turned / 57.29577951308232, .progress = progress});
     progress("");
-    delivery.say(equilibria_text(all));
+    delivery.print_text(equilibria_text(all));
     if (delivery.as_json) {
         nlohmann::ordered_json document = {{"schema", equilibria_schema},
                                            {"reproduce", delivery.command},

@@ -365,9 +365,9 @@ int gate(const GateOptions& options) {
     std::vector<GatedScene> scenes;
     for (const auto& task : tasks(options)) {
         scenes.push_back(gate_scene(task, options));
-        delivery.say(gate_table(scenes.back()));
+        delivery.print_text(gate_table(scenes.back()));
     }
-    delivery.say(gate_conclusion(scenes) + "\n");
+    delivery.print_text(gate_conclusion(scenes) + "\n");
     if (options.as_json) print_document(gate_document(scenes, provenance()));
     // GitHub reads them from either stream.
     if (says_yes("GITHUB_ACTIONS"))

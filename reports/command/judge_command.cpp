@@ -57,8 +57,8 @@ int judge(const Request& request, const Delivery& delivery) {
         const auto judgement =
             judged(output, request.candidate, loaded, comparison, tolerance, asked);
         const std::string said = sentence(judgement, comparison);
-        delivery.say(candidate_text(judgement, comparison));
-        delivery.say(said + "\n");
+        delivery.print_text(candidate_text(judgement, comparison));
+        delivery.print_text(said + "\n");
         candidates.push_back(candidate_json(judgement, comparison, said));
         compared += judgement.compared;
         for (const auto& reason : judgement.reasons)

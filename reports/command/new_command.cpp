@@ -18,7 +18,7 @@
 namespace elastocheck::reports {
 namespace {
 
-// Field `name` of a scene file.
+// JsonCursor `name` of a scene file.
 std::string_view title(std::string_view scene) {
     constexpr std::string_view field = "\nname: ";
     const auto begin = scene.find(field);

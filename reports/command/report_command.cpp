@@ -92,17 +92,20 @@ json solve_scene(const std::string& file, const Request& request) {
     const LoadedScene loaded = load_scene(file, request.settings);
     const Scene& scene = loaded.scene;
     const Model& model = loaded.model;
-    const auto tell = [&](std::string_view what) { progress(fmt::format("{}: {}", file, what)); };
+    const auto report_progress = [&](std::string_view what) {
+        progress(fmt::format("{}: {}", file, what));
+    };
     json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
     if (loaded.trim) add_trim(document, *loaded.trim);
 
     compare::Options options;
-    options.progress = tell;
+    options.progress = report_progress;
     const auto comparison = compare::compare(model, options);
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
-        add_formulations(document, compare::formulation_study(scene, 0, 1, tell), comparison);
+        add_formulations(document, compare::formulation_study(scene, 0, 1, report_progress),
+                         comparison);
     if (!request.measured.empty()) {
         add_measurement(document, read_whole(request.measured, largest_measurement),
                         request.measured, model, comparison, load_cases(request));
@@ -115,10 +118,10 @@ json solve_scene(const std::string& file, const Request& request) {
     study_options.methods.clear();
     for (const auto& method : recursive::methods)
         if (recursive::has_steps(method)) study_options.methods.push_back(method);
-    study_options.progress = tell;
+    study_options.progress = report_progress;
     const auto study = compare::study(model, study_options);
     add_gap(document, comparison, study);
-    document["convergence"] = study_json(study, compare::attribute_gap(model, tell));
+    document["convergence"] = study_json(study, compare::attribute_gap(model, report_progress));
     for (const auto& reason : study.inconclusive)
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 
@@ -126,17 +129,18 @@ json solve_scene(const std::string& file, const Request& request) {
     trade_options.tolerance =
         compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     if (request.archive) trade_options.rounds = 0;
-    trade_options.progress = tell;
+    trade_options.progress = report_progress;
     const auto trade = compare::trade(model, trade_options);
     document["trade"] = trade_json(trade);
     if (const json profile = recommended(model, trade); !profile.is_null())
         document["recommended"] = profile;
 
-    document["orders"] = table_json(order_table(compare::order_study(model, {.progress = tell})));
+    document["orders"] =
+        table_json(order_table(compare::order_study(model, {.progress = report_progress})));
 
     // `elastocheck trade` uses a million steps, which shows more round-off but takes half a minute.
     document["precision"] = precision_json(compare::precision_study(
-        model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = tell}));
+        model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = report_progress}));
     if (request.candidate.wanted()) {
         document["candidates"] = json::array();
         const auto tolerance =

@@ -48,7 +48,7 @@ void write_rates(const Model& model, const std::vector<Channel>& asked,
     std::ranges::copy_if(asked, std::back_inserter(channels), &Channel::kinematic);
     if (channels.empty())
         throw std::invalid_argument("--rates: needs a position or an angle in --channels");
-    FileToBe csv(request.rates, rates_file);
+    AtomicFile csv(request.rates, rates_file);
     csv.add(rates_header(channels));
     const auto& [leg, how, refine, every, error_bound] = request.solver;
     for (const auto& branch : model.branches)
@@ -120,13 +120,13 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request);
 
-    std::optional<FileToBe> csv;
+    std::optional<AtomicFile> csv;
     if (!delivery.folder.empty()) csv.emplace(delivery.folder, curves_file);
-    std::optional<FileToBe> states;
+    std::optional<AtomicFile> states;
     bool has_states = false;
     if (!request.states.empty()) states.emplace(request.states, states_file);
     const auto write = [&](const std::string& lines) {
-        csv ? csv->add(lines) : delivery.say(lines);
+        csv ? csv->add(lines) : delivery.print_text(lines);
     };
     std::vector<compare::Walked> kept;  // only for the document
     write(curves_header(channels));

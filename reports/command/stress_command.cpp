@@ -67,7 +67,7 @@ int stress(const Request& request, const Delivery& delivery) {
     const compare::Survival survival = compare::stress(trials, {.progress = progress});
     progress("");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    delivery.say(
+    delivery.print_text(
         stress_text(survival) +
         fmt::format("{:.0f} s, {:.0f} s of processor time; the slowest trial: {}, {}, {:.0f} s\n",
                     elapsed.count(), survival.seconds, survival.dearest.scene,

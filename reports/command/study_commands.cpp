@@ -177,8 +177,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
         study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every,
                                            progress);
     progress("");
-    delivery.say(tables(model, comparison));
-    if (study) delivery.say(formulation_text(*study, comparison));
+    delivery.print_text(tables(model, comparison));
+    if (study) delivery.print_text(formulation_text(*study, comparison));
     const auto tolerance = compare::parse_tolerance(request.within, compare::Asks::forces_too);
     const bool asked = request.within != CompareRequest{}.within;
     const auto judgement = compare::assess(model, comparison, tolerance, asked);
@@ -188,7 +188,7 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
                     {request.recursion.steps > 0 ? request.recursion.steps : steps_of(model)})) {
         candidates.push_back(
             judged(output, request.candidate, loaded, comparison, tolerance, asked));
-        delivery.say("\n" + candidate_text(candidates.back(), comparison));
+        delivery.print_text("\n" + candidate_text(candidates.back(), comparison));
     }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
@@ -209,11 +209,11 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
                 candidate_json(candidate, comparison, sentence(candidate, comparison)));
         deliver(delivery, std::move(part), std::move(files));
     }
-    delivery.say(sentence(judgement) + "\n");
+    delivery.print_text(sentence(judgement) + "\n");
     // a difference is a result of `compare`, as for the recursion; `judge` makes it an exit code
     bool judged_all = true;
     for (const auto& candidate : candidates) {
-        delivery.say(sentence(candidate, comparison) + "\n");
+        delivery.print_text(sentence(candidate, comparison) + "\n");
         judged_all = judged_all && candidate.verdict != compare::Grade::not_judged;
     }
     return judged_all && comparison.conclusive() && (!study || study->conclusive())
@@ -245,9 +245,10 @@ int converge(const std::string& file, const Settings& settings,
     if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
         orders = compare::order_study(model, {.progress = progress});
     progress("");
-    if (!options.methods.empty()) delivery.say(study_text(model, study, attribution));
-    delivery.say(order_text(order_table(orders)));
-    if (of_candidate) delivery.say("\nthe candidate: " + study_text(model, *of_candidate, {}));
+    if (!options.methods.empty()) delivery.print_text(study_text(model, study, attribution));
+    delivery.print_text(order_text(order_table(orders)));
+    if (of_candidate)
+        delivery.print_text("\nthe candidate: " + study_text(model, *of_candidate, {}));
     const bool conclusive = (!of_candidate || of_candidate->conclusive()) &&
                             (options.methods.empty() || study.conclusive()) &&
                             (orders.empty() || compare::conclusive(orders));
@@ -295,12 +296,12 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const compare::PrecisionStudy precision =
         compare::precision_study(model, {.progress = progress});
     progress("");
-    delivery.say(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
+    delivery.print_text(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
     std::optional<compare::Table> of_candidate;
     auto reasons = trade.inconclusive;
     if (candidate.wanted()) {
         of_candidate = price_of(candidate, file, loaded, options.tolerance, reasons);
-        delivery.say("\nthe candidate\n" + candidate_trade_text(*of_candidate));
+        delivery.print_text("\nthe candidate\n" + candidate_trade_text(*of_candidate));
     }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);

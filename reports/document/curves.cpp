@@ -13,11 +13,11 @@ namespace elastocheck::reports {
 
 std::string curves_csv(const nlohmann::ordered_json& result, const std::string& file) {
     std::string csv = "scene,branch,leg,parameter,parameter unit,output,unit,value\n";
-    for (const auto& scene : Field{&result, "", &file}["scenes"].items()) {
+    for (const auto& scene : JsonCursor{&result, "", &file}["scenes"].items()) {
         if (!scene.find("branches")) continue;
         for (const auto& branch : scene["branches"].items())
             for (const auto& leg : branch["legs"].items()) {
-                const Field curve = leg["curve"], columns = curve["values"];
+                const JsonCursor curve = leg["curve"], columns = curve["values"];
                 const auto a = curve["a"].numbers();
                 const std::string unit = for_csv(branch["unit"].text());
                 const std::string whose = for_csv(scene["name"].text()) + "," +
@@ -43,7 +43,7 @@ std::string forces_csv(const nlohmann::ordered_json& result, const std::string& 
     const compare::Table one = compare::force_table({});
     compare::Table all = one;
     all.columns.insert(all.columns.begin(), compare::Column{.name = "scene", .words = true});
-    for (const auto& scene : Field{&result, "", &file}["scenes"].items()) {
+    for (const auto& scene : JsonCursor{&result, "", &file}["scenes"].items()) {
         const auto forces = scene.find("forces");
         if (!forces) continue;
         for (auto row : read_table(*forces, one).rows) {

@@ -21,17 +21,17 @@ Registry& registry() {
     return *one;
 }
 
-int arrived = -1;  // write end of the pipe from the signal handler to the thread
+int signal_pipe = -1;  // write end of the pipe from the signal handler to the thread
 
-void hand_over(int signal) {
+void forward_signal(int signal) {
     const int error = errno;
-    [[maybe_unused]] const auto told = ::write(arrived, &signal, sizeof signal);
+    [[maybe_unused]] const auto ignored = ::write(signal_pipe, &signal, sizeof signal);
     errno = error;
 }
 
-void wait_and_clean_up(int arriving, const std::vector<int>& handled) {
+void clean_up_after_signal(int pipe_end, const std::vector<int>& handled) {
     int signal = 0;
-    while (::read(arriving, &signal, sizeof signal) != static_cast<ssize_t>(sizeof signal))
+    while (::read(pipe_end, &signal, sizeof signal) != static_cast<ssize_t>(sizeof signal))
         continue;
     for (const int one : handled) std::signal(one, SIG_DFL);
     registry().mutex.lock();  // never unlocked
@@ -54,26 +54,26 @@ void clean_up_on_signals() {
     int ends[2];
     // without a pipe, signals end the process immediately
     if (handled.empty() || ::pipe2(ends, O_CLOEXEC) != 0) return;
-    arrived = ends[1];
-    std::thread(wait_and_clean_up, ends[0], handled).detach();
+    signal_pipe = ends[1];
+    std::thread(clean_up_after_signal, ends[0], handled).detach();
     for (const int signal : handled) {
         struct sigaction action {};
-        action.sa_handler = hand_over;
+        action.sa_handler = forward_signal;
         action.sa_flags = SA_RESTART;
         ::sigaction(signal, &action, nullptr);
     }
 }
 
 CleanupOnSignal::CleanupOnSignal(std::function<void(int)> work) {
-    const auto lock = no_cleanup_now();
+    const auto lock = block_cleanup();
     at_ = registry().cleanups.insert(registry().cleanups.end(), std::move(work));
 }
 CleanupOnSignal::~CleanupOnSignal() {
-    const auto lock = no_cleanup_now();
+    const auto lock = block_cleanup();
     registry().cleanups.erase(at_);
 }
 
-std::unique_lock<std::recursive_mutex> no_cleanup_now() {
+std::unique_lock<std::recursive_mutex> block_cleanup() {
     return std::unique_lock(registry().mutex);
 }
 

@@ -30,6 +30,6 @@ class CleanupOnSignal {
 // Lock that excludes cleanups for its lifetime. It must be held while an object that needs a
 // cleanup is created and registered, and while writing into a folder that a cleanup removes. Does
 // not return after a signal.
-[[nodiscard]] std::unique_lock<std::recursive_mutex> no_cleanup_now();
+[[nodiscard]] std::unique_lock<std::recursive_mutex> block_cleanup();
 
 }  // namespace elastocheck::reports

@@ -19,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void cannot(const fs::path& file, const char* what, int error = errno) {
+[[noreturn]] void fail_access(const fs::path& file, const char* what, int error = errno) {
     throw FileError(fmt::format("{}: cannot be {}: {}", file.string(), what, std::strerror(error)));
 }
 
-std::string without_space(std::string_view text) {
+std::string without_white_space(std::string_view text) {
     std::string solid;
     for (const char c : text)
         if (std::string_view(" \t\r\n").find(c) == std::string_view::npos) solid.push_back(c);
@@ -35,10 +35,10 @@ bool begins_as(const fs::path& file, const FileKind& kind) {
     std::ifstream in(file, std::ios::binary);
     in.read(start.data(), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<std::size_t>(in.gcount()));
-    return without_space(start).starts_with(without_space(kind.beginning));
+    return without_white_space(start).starts_with(without_white_space(kind.beginning));
 }
 
-const char* sort_of(const struct stat& entry) {
+const char* type_of(const struct stat& entry) {
     return S_ISLNK(entry.st_mode)    ? "a symbolic link"
            : S_ISDIR(entry.st_mode)  ? "a folder"
            : S_ISBLK(entry.st_mode)  ? "a block device"
@@ -78,12 +78,12 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
     struct stat entry {};
     if (::lstat(file.c_str(), &entry) != 0) {
         // A missing folder will be created; an inaccessible one is an error now.
-        if (errno != ENOENT) cannot(file, "written");
+        if (errno != ENOENT) fail_access(file, "written");
         return;
     }
     if (!S_ISREG(entry.st_mode))
         throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
-                                    sort_of(entry)));
+                                    type_of(entry)));
     if (!begins_as(file, kind))
         throw FileError(fmt::format(
             "{}: exists and is no {} written by elastocheck; choose another name, or remove it",
@@ -121,7 +121,7 @@ fs::path temporary_beside(const fs::path& path) {
     return temporary.replace_filename(fmt::format("{}{}", prefix, ::getpid()));
 }
 
-FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
+AtomicFile::AtomicFile(fs::path file, const FileKind& kind) : kind_(&kind), file_(std::move(file)) {
     std::error_code failed;
     if (file_.has_parent_path()) fs::create_directories(file_.parent_path(), failed);
     if (failed)
@@ -129,67 +129,67 @@ FileToBe::FileToBe(fs::path file, const FileKind& kind) : kind_(&kind), file_(st
             fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
     temporary_ = temporary_beside(file_);
-    const auto lock = no_cleanup_now();
+    const auto lock = block_cleanup();
     out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (out_ < 0) cannot(file_, "written");
+    if (out_ < 0) fail_access(file_, "written");
     cleanup_.emplace([path = temporary_](int) { ::unlink(path.c_str()); });
 }
 
-FileToBe::~FileToBe() {
+AtomicFile::~AtomicFile() {
     if (out_ < 0) return;
     ::close(out_);
     ::unlink(temporary_.c_str());
 }
 
-void FileToBe::give_up(int error) {
+void AtomicFile::fail_writing(int error) {
     if (out_ >= 0) ::close(std::exchange(out_, -1));
     ::unlink(temporary_.c_str());
-    cannot(file_, "written", error);
+    fail_access(file_, "written", error);
 }
 
-void FileToBe::write_waiting() {
-    if (!write_all(out_, waiting_)) give_up(errno);
-    waiting_.clear();
+void AtomicFile::write_buffer() {
+    if (!write_all(out_, buffer_)) fail_writing(errno);
+    buffer_.clear();
 }
 
-void FileToBe::add(std::string_view content) {
-    constexpr std::size_t together = 1 << 16;
-    waiting_ += content;
-    if (waiting_.size() >= together) write_waiting();
+void AtomicFile::add(std::string_view content) {
+    constexpr std::size_t buffer_size = 1 << 16;
+    buffer_ += content;
+    if (buffer_.size() >= buffer_size) write_buffer();
 }
 
-void FileToBe::finish() {
-    write_waiting();
-    if (!flush_and_close(std::exchange(out_, -1), true)) give_up(errno);
+void AtomicFile::finish() {
+    write_buffer();
+    if (!flush_and_close(std::exchange(out_, -1), true)) fail_writing(errno);
     try {
         check_may_write(file_, *kind_);  // again: a file may have appeared meanwhile
     } catch (const FileError&) {
         ::unlink(temporary_.c_str());
         throw;
     }
-    if (::rename(temporary_.c_str(), file_.c_str()) != 0) give_up(errno);
+    if (::rename(temporary_.c_str(), file_.c_str()) != 0) fail_writing(errno);
 }
 
 void write_whole(const fs::path& file, std::string_view content, const FileKind& kind) {
-    FileToBe whole(file, kind);
+    AtomicFile whole(file, kind);
     whole.add(content);
     whole.finish();
 }
 
 void append(const fs::path& file, std::string_view content) {
     const int out = ::open(file.c_str(), O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-    if (out < 0) cannot(file, "appended to");
+    if (out < 0) fail_access(file, "appended to");
     struct stat entry {};
     if (::fstat(out, &entry) != 0 || !S_ISREG(entry.st_mode)) {
         ::close(out);
         throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
-                                    sort_of(entry)));
+                                    type_of(entry)));
     }
-    if (!write_and_close(out, content)) cannot(file, "appended to");
+    if (!write_and_close(out, content)) fail_access(file, "appended to");
 }
 
 void fill(const fs::path& file, std::string_view content) {
-    const auto lock = no_cleanup_now();
+    const auto lock = block_cleanup();
     std::error_code failed;
     fs::create_directories(file.parent_path(), failed);
     if (failed)
@@ -197,18 +197,18 @@ void fill(const fs::path& file, std::string_view content) {
             fmt::format("{}: cannot make its folder: {}", file.string(), failed.message()));
     const int out =
         ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (out < 0 || !write_and_close(out, content)) cannot(file, "written");
+    if (out < 0 || !write_and_close(out, content)) fail_access(file, "written");
 }
 
 std::string read_whole(const fs::path& file, std::size_t largest) {
     const int in = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
     struct stat entry {};
-    if (in < 0 || ::fstat(in, &entry) != 0) cannot(file, "read");
+    if (in < 0 || ::fstat(in, &entry) != 0) fail_access(file, "read");
     std::string text;
     bool good = S_ISREG(entry.st_mode) || S_ISFIFO(entry.st_mode);
     if (!good) {
         ::close(in);
-        throw FileError(fmt::format("{}: cannot be read: it is {}", file.string(), sort_of(entry)));
+        throw FileError(fmt::format("{}: cannot be read: it is {}", file.string(), type_of(entry)));
     }
     for (char buffer[1 << 16]; good;) {
         const ssize_t count = ::read(in, buffer, sizeof buffer);
@@ -224,7 +224,7 @@ std::string read_whole(const fs::path& file, std::size_t largest) {
     }
     const int error = errno;
     ::close(in);
-    if (!good) cannot(file, "read", error);
+    if (!good) fail_access(file, "read", error);
     return text;
 }
 

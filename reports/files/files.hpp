@@ -42,24 +42,24 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path);
 // complete. An unfinished file is removed by its owner, also when a signal ends the program; if the
 // owner was killed, by the next run that writes this file. Throws FileError; an older file of that
 // name is then untouched.
-class FileToBe {
+class AtomicFile {
   public:
     // check_may_write; creates the folder when it is missing.
-    FileToBe(std::filesystem::path file, const FileKind& kind);
-    FileToBe(const FileToBe&) = delete;
-    FileToBe& operator=(const FileToBe&) = delete;
-    ~FileToBe();
+    AtomicFile(std::filesystem::path file, const FileKind& kind);
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+    ~AtomicFile();
 
     void add(std::string_view content);
     void finish();  // flushes it to the disk and renames it
 
   private:
-    [[noreturn]] void give_up(int error);
-    void write_waiting();
+    [[noreturn]] void fail_writing(int error);
+    void write_buffer();
 
     const FileKind* kind_;  // one of the constants above
     std::filesystem::path file_, temporary_;
-    std::string waiting_;  // write buffer
+    std::string buffer_;  // write buffer
     int out_ = -1;
     std::optional<CleanupOnSignal> cleanup_;
 };

@@ -15,23 +15,24 @@ namespace elastocheck::reports {
 // std::invalid_argument for an unclosed quote.
 std::vector<std::string> words_of(std::string_view line);
 
-struct Ended {
+struct ProcessResult {
     enum class How { by_itself, by_signal, too_long, not_started } how = How::by_itself;
-    int code = 0;        // exit code, signal, or errno
-    std::string said;    // last part of its standard error and output
-    double seconds = 0;  // wall-clock time
-    double cpu = 0;      // of the program and the children it waited for
+    int code = 0;             // exit code, signal, or errno
+    std::string output_text;  // last part of its standard error and output
+    double seconds = 0;       // wall-clock time
+    double cpu = 0;           // of the program and the children it waited for
 
-    bool well() const { return how == How::by_itself && code == 0; }
+    bool succeeded() const { return how == How::by_itself && code == 0; }
 };
 // "ended with exit code 2", "was killed by signal 11 (Segmentation fault)", "took longer than 60 s
 // and was killed"
-std::string describe(const Ended& ended, double limit);
+std::string describe(const ProcessResult& result, double limit);
 
 // Runs the program in `folder` with empty standard input. When it ends, or after `limit` seconds,
 // the rest of its process group is killed. A signal that ends this program is passed to the group,
 // which is killed after one second.
-Ended run(const std::vector<std::string>& words, double limit, const std::string& folder = ".");
+ProcessResult run(const std::vector<std::string>& words, double limit,
+                  const std::string& folder = ".");
 
 // A new folder in $TMPDIR or in /tmp, removed by its destructor or when a signal ends the program.
 // Throws FileError.

@@ -27,14 +27,14 @@ bool is_known(const std::string& unit) {
 
 // The element of `kinds` with this name.
 template <class Kinds>
-auto named(const Field& field, const Kinds& kinds) {
+auto named(const JsonCursor& field, const Kinds& kinds) {
     const std::string word = field.text();
     for (const auto kind : kinds)
         if (word == name(kind)) return kind;
     field.fail(fmt::format("'{}' is not known", word));
 }
 
-Provenance provenance_of(const Field& in) {
+Provenance provenance_of(const JsonCursor& in) {
     in.only_keys({"elastocheck", "commit", "dirty", "compiler", "flags", "cpu", "libraries"});
     Provenance p;
     p.version = in["elastocheck"].text();
@@ -54,7 +54,7 @@ json tolerances_json(const compare::Tolerances& tolerances) {
     return result;
 }
 
-std::map<ToleranceClass, compare::Tolerances> tolerances_of(const Field& in) {
+std::map<ToleranceClass, compare::Tolerances> tolerances_of(const JsonCursor& in) {
     std::map<ToleranceClass, compare::Tolerances> result;
     in.only_keys({name(ToleranceClass::same_build), name(ToleranceClass::cross_build),
                   name(ToleranceClass::physical)});
@@ -68,7 +68,7 @@ std::map<ToleranceClass, compare::Tolerances> tolerances_of(const Field& in) {
     return result;
 }
 
-Series series_of(const Field& in) {
+Series series_of(const JsonCursor& in) {
     in.only_keys({"branch", "of", "channel", "unit", "values"});
     Series s{in["branch"].text(), named(in["of"], compare::quantities), in["channel"].text(),
              in["unit"].text(), in["values"].numbers()};
@@ -76,7 +76,7 @@ Series series_of(const Field& in) {
     return s;
 }
 
-compare::Limit limit_of(const Field& in) {
+compare::Limit limit_of(const JsonCursor& in) {
     in.only_keys({"of", "channel", "max"});
     constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
                                     Quantity::deviation_at_equal_abscissa};
@@ -84,7 +84,7 @@ compare::Limit limit_of(const Field& in) {
 }
 
 // ["points.tie_rod_inner.z", -0.055, "m"]
-Number number_of(const Field& in) {
+Number number_of(const JsonCursor& in) {
     const auto parts = in.items();
     if (parts.size() != 3) in.fail("is not [path, value, unit]");
     return {parts[0].text(), parts[1].number(), parts[2].text()};
@@ -97,7 +97,7 @@ std::string one_a_line(const std::vector<json>& entries) {
     return "[" + lines + (entries.empty() ? "]" : "\n ]");
 }
 
-BaselineFile parse(const Field& top) {
+BaselineFile parse(const JsonCursor& top) {
     if (!top.value->is_object() || !top.value->contains("schema"))
         top.fail("has no schema: it is not a baseline");
     if (const std::string schema = top["schema"].text(); schema != baseline_schema)
@@ -108,7 +108,7 @@ BaselineFile parse(const Field& top) {
         {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"},
         "numbers");
     BaselineFile file;
-    const Field scene = top["scene"];
+    const JsonCursor scene = top["scene"];
     scene.only_keys({"file", "name", "input_hash"});
     file.scene_file = scene["file"].text();
     file.baseline.accepted.scene = scene["name"].text();

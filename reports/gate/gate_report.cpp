@@ -55,8 +55,8 @@ std::vector<Worst> worst_of_each_channel(const std::vector<const GatedScene*>& s
     return all;
 }
 
-std::string told(const Worst& worst) {
-    return story(*worst.offence) +
+std::string describe_worst(const Worst& worst) {
+    return describe(*worst.offence) +
            (worst.numbers > 1 ? fmt::format("; {} numbers of it in all", worst.numbers) : "");
 }
 
@@ -181,7 +181,7 @@ std::string message(const char* kind, std::string_view summary, const std::strin
 
 std::string testcase(const Test& test, std::size_t most_lines) {
     std::vector<std::string> all;
-    for (const auto& change : test.scene->changed) all.push_back("changed: " + story(change));
+    for (const auto& change : test.scene->changed) all.push_back("changed: " + describe(change));
     const std::string changed = all.empty() ? "" : lines(all, most_lines);
     const std::vector<std::string>& reasons = test.scene->verdict.reasons;
     std::string messages;
@@ -189,10 +189,11 @@ std::string testcase(const Test& test, std::size_t most_lines) {
         messages += message("error", reasons.front(),
                             headline(*test.scene) + "\n" + lines(reasons, most_lines) + changed);
     if (!test.failed.empty()) {
-        std::vector<std::string> stories;
+        std::vector<std::string> descriptions;
         for (const auto& worst : worst_of_each_channel(test.scene, test.failed))
-            stories.push_back(told(worst));
-        messages += message("failure", stories.front(), lines(stories, most_lines) + changed);
+            descriptions.push_back(describe_worst(worst));
+        messages +=
+            message("failure", descriptions.front(), lines(descriptions, most_lines) + changed);
     }
     return fmt::format("  <testcase{}{}>\n{}  </testcase>\n",
                        attribute("classname", test.scene->file), attribute("name", test.name),
@@ -255,7 +256,7 @@ int exit_code(const std::vector<GatedScene>& scenes) {
     return failed ? 1 : bad ? 2 : unjudged ? 3 : 0;
 }
 
-std::string story(const Offence& o) {
+std::string describe(const Offence& o) {
     std::string line = fmt::format("branch '{}', {}: {}", o.branch, name(o.quantity), o.channel);
     if (o.a) line += fmt::format(" at {:g} {}", *o.a, o.a_unit);
     if (o.of_limit)
@@ -269,7 +270,7 @@ std::string story(const Offence& o) {
     return line + fmt::format(", {:.3g} times what an engineer notices", o.noticed());
 }
 
-std::string story(const compare::Change& change) {
+std::string describe(const compare::Change& change) {
     const auto shown = [](const Number& n) {
         return fmt::format("{}{}{}", n.value, n.unit.empty() ? "" : " ", n.unit);
     };
@@ -283,7 +284,7 @@ std::string gate_table(const GatedScene& scene) {
     const auto& verdict = scene.verdict;
     std::string out = headline(scene) + "\n";
     for (std::size_t k = 0; k < std::min(scene.changed.size(), rows_in_table); ++k)
-        out += fmt::format("  changed: {}\n", story(scene.changed[k]));
+        out += fmt::format("  changed: {}\n", describe(scene.changed[k]));
     if (scene.changed.size() > rows_in_table)
         out += fmt::format("  ... and {} more numbers of the scene\n",
                            scene.changed.size() - rows_in_table);
@@ -400,7 +401,7 @@ std::string step_summary(const std::vector<GatedScene>& scenes) {
     for (const auto& scene : scenes)
         for (const auto& change : scene.changed)
             if (++changes_in_all <= rows_in_summary)
-                changes.push_back({{"scene", cell(scene.file)}, {"what", cell(story(change))}});
+                changes.push_back({{"scene", cell(scene.file)}, {"what", cell(describe(change))}});
     for (const auto& scene : scenes)
         for (const auto& why : scene.verdict.reasons) {
             if (++reasons_in_all > rows_in_summary) continue;
@@ -438,8 +439,9 @@ std::string annotations(const std::vector<GatedScene>& scenes) {
         if (++count <= annotations_in_all)
             out += annotation(
                 *worst.scene, "elastocheck gate: out of tolerance",
-                told(worst) +
-                    (changed.empty() ? "" : "; changed in the scene: " + story(changed.front())) +
+                describe_worst(worst) +
+                    (changed.empty() ? ""
+                                     : "; changed in the scene: " + describe(changed.front())) +
                     (changed.size() > 1 ? fmt::format(" and {} more", changed.size() - 1) : ""));
     }
     for (const auto& scene : scenes)

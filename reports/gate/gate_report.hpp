@@ -30,10 +30,10 @@ struct GatedScene {
 int exit_code(const std::vector<GatedScene>& scenes);
 
 // "branch 'jounce', recursive: toe at load 3000: accepted -1.52 deg, measured ..."
-std::string story(const compare::Offence& offence);
+std::string describe(const compare::Offence& offence);
 
 // "points.tie_rod_inner.z: -0.055 m, was -0.06 m"
-std::string story(const compare::Change& change);
+std::string describe(const compare::Change& change);
 
 // Complete results for programs: {schema, provenance, verdict, exit_code, compared, scenes}.
 inline constexpr const char* gate_schema = "elastocheck/gate/1";

@@ -17,7 +17,7 @@ struct ResultError : std::runtime_error {
 };
 
 // The document and the file's name outlive the field.
-struct Field {
+struct JsonCursor {
     const nlohmann::ordered_json* value;
     std::string path;  // empty for the whole document
     const std::string* file;
@@ -27,10 +27,10 @@ struct Field {
     // Fails unless this is an object with all of `required` and no other field but `optional`.
     void only_keys(std::initializer_list<std::string_view> required,
                    std::string_view optional = "") const;
-    Field operator[](std::string_view key) const;                // must be there
-    std::optional<Field> find(std::string_view key) const;       // empty when absent or null
-    std::vector<std::pair<std::string, Field>> entries() const;  // of an object
-    std::vector<Field> items() const;                            // of an array
+    JsonCursor operator[](std::string_view key) const;                // must be there
+    std::optional<JsonCursor> find(std::string_view key) const;       // empty when absent or null
+    std::vector<std::pair<std::string, JsonCursor>> entries() const;  // of an object
+    std::vector<JsonCursor> items() const;                            // of an array
 
     double number() const;  // NaN for null
     int whole() const;

@@ -16,7 +16,7 @@ std::string ChannelInfo::label() const { return as_words(name); }
 
 std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label(), unit); }
 
-std::vector<ChannelInfo> channels_of(const Field& scene) {
+std::vector<ChannelInfo> channels_of(const JsonCursor& scene) {
     std::vector<ChannelInfo> all;
     for (const auto& c : scene["channels"].items())
         all.push_back({c["name"].text(), c["unit"].text(), c["main"].truth(),
@@ -24,7 +24,7 @@ std::vector<ChannelInfo> channels_of(const Field& scene) {
     return all;
 }
 
-std::vector<ChannelInfo> main_channels_of(const Field& scene) {
+std::vector<ChannelInfo> main_channels_of(const JsonCursor& scene) {
     auto all = channels_of(scene);
     std::erase_if(all, [](const ChannelInfo& c) { return !c.main; });
     return all;
@@ -37,11 +37,11 @@ std::size_t LegCurve::start() const {
     return nearest;
 }
 
-LegCurve curve_of(const Field& branch, std::string_view leg) {
-    const Field legs = branch["legs"];
+LegCurve curve_of(const JsonCursor& branch, std::string_view leg) {
+    const JsonCursor legs = branch["legs"];
     for (const auto& run : legs.items()) {
         if (run["leg"].text() != leg) continue;
-        const Field curve = run["curve"];
+        const JsonCursor curve = run["curve"];
         LegCurve found{std::string(leg), curve["a"].numbers(), {}, curve["values"]};
         for (const auto& [name, values] : found.values.entries())
             if (values.value->size() != found.a.size())
@@ -64,11 +64,11 @@ std::string Sweep::at_equal_abscissa() const {
     return compare::abscissa_reading(abscissa.substr(0, abscissa.find(" [")));
 }
 
-Sweep sweep_of(const Field& scene, const Field& branch) {
+Sweep sweep_of(const JsonCursor& scene, const JsonCursor& branch) {
     return {branch["name"].text(), branch["unit"].text(), abscissa_of(scene, branch), {branch}};
 }
 
-std::string abscissa_of(const Field& scene, const Field& branch) {
+std::string abscissa_of(const JsonCursor& scene, const JsonCursor& branch) {
     const auto abscissa = branch.find("abscissa");
     if (!abscissa) return {};
     for (const auto& channel : channels_of(scene))
@@ -80,14 +80,14 @@ namespace {
 
 // Whether every leg's curve has this abscissa and it is useful: with a travel below a millimetre
 // the branch does not lift the wheel.
-bool over_abscissa(const Field& branch) {
+bool over_abscissa(const JsonCursor& branch) {
     if (const auto abscissa = branch.find("abscissa");
         abscissa && abscissa->text().ends_with("travel")) {
         const auto x = curve_of(branch, "equilibrium").channel(abscissa->text());
         const auto [low, high] = std::ranges::minmax_element(x);
         if (low == x.end() || !(*high - *low >= compare::least_travel)) return false;
     }
-    return std::ranges::all_of(branch["legs"].items(), [&](const Field& leg) {
+    return std::ranges::all_of(branch["legs"].items(), [&](const JsonCursor& leg) {
         const LegCurve curve = curve_of(branch, leg["leg"].text());
         return curve.a.empty() || !curve.x.empty();
     });
@@ -95,9 +95,9 @@ bool over_abscissa(const Field& branch) {
 
 }  // namespace
 
-std::vector<Sweep> sweeps_of(const Field& scene) {
+std::vector<Sweep> sweeps_of(const JsonCursor& scene) {
     std::vector<Sweep> sweeps;
-    const auto same_drive = [](const Field& a, const Field& b) {
+    const auto same_drive = [](const JsonCursor& a, const JsonCursor& b) {
         return a["unit"].text() == b["unit"].text() &&
                a["drivers"]["moved"].texts() == b["drivers"]["moved"].texts() &&
                a["drivers"]["held"].texts() == b["drivers"]["held"].texts() &&
@@ -127,7 +127,7 @@ std::vector<Sweep> sweeps_of(const Field& scene) {
     return sweeps;
 }
 
-std::optional<Sweep> leading_sweep(const Field& scene) {
+std::optional<Sweep> leading_sweep(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
     auto sweeps = sweeps_of(scene);
     if (sweeps.empty()) return std::nullopt;
@@ -181,10 +181,10 @@ std::string written(double value, Digits digits) {
 }  // namespace
 
 Table page_table(std::string caption, const compare::Table& table,
-                 const std::vector<Shown>& shown) {
+                 const std::vector<ShownColumn>& shown) {
     Table page{.caption = std::move(caption),
                .rows = std::vector<std::vector<std::string>>(table.rows.size())};
-    for (const auto& s : filled(table, shown)) {
+    for (const auto& s : nonempty_columns(table, shown)) {
         const std::size_t c = column(table, s.column);
         page.columns.push_back({heading(table, s), table.columns[c].words});
         for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -196,7 +196,7 @@ Table page_table(std::string caption, const compare::Table& table,
     return page;
 }
 
-std::string configuration(const Field& chosen) {
+std::string configuration(const JsonCursor& chosen) {
     const std::string method = chosen["method"].text();
     if (const auto steps = chosen.find("steps"))
         return fmt::format("{}, {} steps", method, whole_number(steps->whole()));

@@ -129,7 +129,7 @@ double marker_radius(Series::Style style) {  // [px]; 0: without markers
 
 // Path data of a marker of this radius.
 enum class Shape { circle, square, up, down, diamond };
-std::string marker(Shape shape, Spot p, double r) {
+std::string marker(Shape shape, PaperPoint p, double r) {
     switch (shape) {
         case Shape::circle:
             return fmt::format("M{0},{1}a{2},{2} 0 1 0 {3},0a{2},{2} 0 1 0 -{3},0", px(p.x - r),
@@ -156,7 +156,7 @@ std::string marker(Shape shape, Spot p, double r) {
 
 struct Marker {
     Shape shape;
-    bool filled;
+    bool nonempty_columns;
 };
 constexpr Marker markers[] = {{Shape::circle, true}, {Shape::square, true},  {Shape::up, true},
                               {Shape::down, true},   {Shape::diamond, true}, {Shape::circle, false},
@@ -168,12 +168,12 @@ std::string rectangle(double left, double top, double right, double bottom) {
 }
 
 // Path data of the polyline where top <= y <= bottom.
-std::string clipped(const std::vector<Spot>& points, double top, double bottom) {
+std::string clipped(const std::vector<PaperPoint>& points, double top, double bottom) {
     std::string path;
-    std::vector<Spot> piece;
+    std::vector<PaperPoint> piece;
     const auto flush = [&] { path += Svg::polyline(piece), piece.clear(); };
     for (std::size_t k = 1; k < points.size(); ++k) {
-        const Spot &a = points[k - 1], &b = points[k];
+        const PaperPoint &a = points[k - 1], &b = points[k];
         double from = 0, to = 1;
         if (a.y != b.y) {
             const double enter = (top - a.y) / (b.y - a.y), leave = (bottom - a.y) / (b.y - a.y);
@@ -185,7 +185,7 @@ std::string clipped(const std::vector<Spot>& points, double top, double bottom) 
         if (from > to || from > 0) flush();
         if (from > to) continue;
         const auto between = [&](double t) {
-            return Spot{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+            return PaperPoint{a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
         };
         if (piece.empty()) piece.push_back(between(from));
         piece.push_back(between(to));
@@ -203,14 +203,14 @@ void draw_series(Svg& svg, const Series& series, At&& at, double top, double bot
     const double radius = marker_radius(series.style);
     const Marker& mark = markers[static_cast<std::size_t>(series.mark) % std::size(markers)];
     std::string lines, marks;
-    std::vector<Spot> piece;
+    std::vector<PaperPoint> piece;
     const auto flush = [&] {
         lines += series.style == Style::face ? Svg::polyline(piece, true)
                                              : clipped(piece, top - slack, bottom + slack);
         piece.clear();
     };
     for (const auto& row : series.rows) {
-        const std::optional<Spot> p = row.size() < 2 ? std::nullopt : at(row[0], row[1]);
+        const std::optional<PaperPoint> p = row.size() < 2 ? std::nullopt : at(row[0], row[1]);
         if (!p) {
             flush();
         } else if (series.style == Style::bars) {
@@ -230,7 +230,7 @@ void draw_series(Svg& svg, const Series& series, At&& at, double top, double bot
     else if (series.style != Style::points && series.style != Style::rings)
         svg.stroke(lines, series.colour, line_width(series.style),
                    series.style == Style::dashed ? " stroke-dasharray=\"6,4\"" : "");
-    if (series.style == Style::bars || mark.filled)
+    if (series.style == Style::bars || mark.nonempty_columns)
         svg.area(marks, series.colour);
     else
         svg.stroke(marks, series.colour, line_width(series.style));
@@ -263,7 +263,7 @@ std::vector<Entry> legend(const Figure& figure, double lines_width) {
     return entries;
 }
 
-void draw_entry(Svg& svg, const Entry& entry, Spot at) {
+void draw_entry(Svg& svg, const Entry& entry, PaperPoint at) {
     if (entry.band != nullptr) {
         svg.area(rectangle(at.x, at.y - 5, at.x + sample, at.y + 5), entry.band->colour, 0.25);
     } else if (entry.series->style == Series::Style::bars) {
@@ -273,7 +273,7 @@ void draw_entry(Svg& svg, const Entry& entry, Spot at) {
         one.rows = {{0, 0}, {sample, 0}};
         const Series line = one;
         const auto place = [&](double x, double y) {
-            return std::optional(Spot{at.x + x, at.y + y});
+            return std::optional(PaperPoint{at.x + x, at.y + y});
         };
         if (marker_radius(one.style) > 0) {
             one.rows = {{sample / 2, 0}};
@@ -345,7 +345,7 @@ Svg draw_plot(const Figure& figure) {
         draw_series(
             svg, series,
             [&](double a, double b) {
-                const Spot p{x(a), y(b)};
+                const PaperPoint p{x(a), y(b)};
                 return std::isfinite(p.x) && std::isfinite(p.y) ? std::optional(p) : std::nullopt;
             },
             top, bottom);
@@ -357,7 +357,7 @@ Svg draw_sheet(const Figure& figure) {
     const Sheet& sheet = *figure.sheet;
     Svg svg{sheet.width, sheet.height};
     const auto at = [&](double x, double y) {
-        const Spot p{(x - sheet.x) * sheet.scale, sheet.height - (y - sheet.y) * sheet.scale};
+        const PaperPoint p{(x - sheet.x) * sheet.scale, sheet.height - (y - sheet.y) * sheet.scale};
         return std::isfinite(p.x) && std::isfinite(p.y) ? std::optional(p) : std::nullopt;
     };
     for (const auto& series : figure.series) draw_series(svg, series, at, 0, sheet.height);

@@ -12,24 +12,24 @@ namespace elastocheck::reports {
 
 // Each makes its section from one scene of result.json, or none if the scene has no data for it.
 // Throws ResultError for missing fields.
-std::optional<Section> candidate_section(const Field& scene);
-std::optional<Section> first_section(const Field& scene);
-std::optional<Section> verdict_section(const Field& scene);
-std::optional<Section> deviation_section(const Field& scene);
-std::optional<Section> price_section(const Field& scene);
-std::optional<Section> drawing_section(const Field& scene);
-std::optional<Section> characteristics_section(const Field& scene);
-std::optional<Section> curves_section(const Field& scene);
-std::optional<Section> forces_section(const Field& scene);
-std::optional<Section> measured_section(const Field& scene);
-std::optional<Section> convergence_section(const Field& scene);
-std::optional<Section> attribution_section(const Field& scene);
-std::optional<Section> orders_section(const Field& scene);
-std::optional<Section> arithmetic_section(const Field& scene);
-std::optional<Section> references_section(const Field& scene);
-std::optional<Section> formulations_section(const Field& scene);
-std::optional<Section> model_section(const Field& scene);
+std::optional<Section> candidate_section(const JsonCursor& scene);
+std::optional<Section> first_section(const JsonCursor& scene);
+std::optional<Section> verdict_section(const JsonCursor& scene);
+std::optional<Section> deviation_section(const JsonCursor& scene);
+std::optional<Section> price_section(const JsonCursor& scene);
+std::optional<Section> drawing_section(const JsonCursor& scene);
+std::optional<Section> characteristics_section(const JsonCursor& scene);
+std::optional<Section> curves_section(const JsonCursor& scene);
+std::optional<Section> forces_section(const JsonCursor& scene);
+std::optional<Section> measured_section(const JsonCursor& scene);
+std::optional<Section> convergence_section(const JsonCursor& scene);
+std::optional<Section> attribution_section(const JsonCursor& scene);
+std::optional<Section> orders_section(const JsonCursor& scene);
+std::optional<Section> arithmetic_section(const JsonCursor& scene);
+std::optional<Section> references_section(const JsonCursor& scene);
+std::optional<Section> formulations_section(const JsonCursor& scene);
+std::optional<Section> model_section(const JsonCursor& scene);
 
-std::vector<Section> sections_of(const Field& scene);
+std::vector<Section> sections_of(const JsonCursor& scene);
 
 }  // namespace elastocheck::reports

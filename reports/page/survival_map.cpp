@@ -23,7 +23,7 @@ const char* tint(char sign) {
 }
 
 // Adjacent signs of the same class, grouped.
-json runs(const Field& field, std::size_t solvers) {
+json runs(const JsonCursor& field, std::size_t solvers) {
     const std::string signs = field.text();
     if (signs.size() != solvers || signs.find_first_not_of("0123456789!~?X.") != signs.npos)
         field.fail("expected one sign a solver, each one of 0 ... 9 ! ~ ? X .");
@@ -36,7 +36,7 @@ json runs(const Field& field, std::size_t solvers) {
 }
 
 // Digits lost to other arithmetic, by scene, arithmetic and solver group.
-json arithmetic(const Field& part) {
+json arithmetic(const JsonCursor& part) {
     std::string groups;
     for (const auto& group : part["groups"].texts()) groups += (groups.empty() ? "" : ", ") + group;
     const auto variants = part["variants"].texts();
@@ -64,10 +64,10 @@ json arithmetic(const Field& part) {
 
 }  // namespace
 
-json survival(const Field& result) {
+json survival(const JsonCursor& result) {
     const auto found = result.find("stress");
     if (!found) return nullptr;
-    const Field& part = *found;
+    const JsonCursor& part = *found;
     const auto solvers = part["solvers"].texts();
     std::string who;
     for (const auto& solver : solvers) who += (who.empty() ? "" : ", ") + solver;

@@ -9,6 +9,6 @@ namespace elastocheck::reports {
 
 // Data of the templates survival.mustache; null if the document has none. Throws ResultError for a
 // sign that is not one of compare::sign.
-nlohmann::ordered_json survival(const Field& result);
+nlohmann::ordered_json survival(const JsonCursor& result);
 
 }  // namespace elastocheck::reports

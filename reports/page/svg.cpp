@@ -15,7 +15,7 @@ std::string px(double value) {
     return text == "-0" ? "0" : text;
 }
 
-std::string Svg::polyline(const std::vector<Spot>& points, bool closed) {
+std::string Svg::polyline(const std::vector<PaperPoint>& points, bool closed) {
     std::string path, before;
     int count = 0;
     for (const auto& p : points) {
@@ -42,7 +42,7 @@ void Svg::area(const std::string& path, Colour colour, double opacity) {
                    opacity < 1 ? fmt::format(" fill-opacity=\"{:.2f}\"", opacity) : "", path);
 }
 
-void Svg::text(Spot at, std::string_view text, Colour colour, std::string_view anchor,
+void Svg::text(PaperPoint at, std::string_view text, Colour colour, std::string_view anchor,
                std::string_view attributes, std::string_view exponent) {
     fmt::format_to(std::back_inserter(elements),
                    "<text class=\"e-f{}\" x=\"{}\" y=\"{}\" text-anchor=\"{}\"{}>{}{}</text>",

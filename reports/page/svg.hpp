@@ -36,14 +36,14 @@ struct Svg {
     std::string elements{};
 
     // Path data of a polyline, without repeated points; "" for fewer than two points.
-    static std::string polyline(const std::vector<Spot>& points, bool closed = false);
+    static std::string polyline(const std::vector<PaperPoint>& points, bool closed = false);
 
     // `path`: SVG path data; `attributes`: more attributes of the element, with a leading space.
     void stroke(const std::string& path, Colour colour, double line_width,
                 std::string_view attributes = "");
     void area(const std::string& path, Colour colour, double opacity = 1);
     // `anchor`: start, middle or end; `at` is on the baseline; `exponent` is set as a superscript.
-    void text(Spot at, std::string_view text, Colour colour, std::string_view anchor,
+    void text(PaperPoint at, std::string_view text, Colour colour, std::string_view anchor,
               std::string_view attributes = "", std::string_view exponent = "");
 };
 

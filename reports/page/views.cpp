@@ -18,44 +18,44 @@ constexpr double letter = 10, line_height = 13;  // [px]
 constexpr double margin = 46;                    // [px] about the suspension, for names
 constexpr double strip = 17;                     // [px] a line of the legend
 
-double dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Place cross(const Place& a, const Place& b) {
+double dot(const Position& a, const Position& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Position cross(const Position& a, const Position& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Place along(const Place& p, double t, const Place& u) {
+Position along(const Position& p, double t, const Position& u) {
     return {p[0] + t * u[0], p[1] + t * u[1], p[2] + t * u[2]};
 }
-Place unit(const Place& v) {
+Position unit(const Position& v) {
     const double length = std::sqrt(dot(v, v));
-    return length > 0 ? Place{v[0] / length, v[1] / length, v[2] / length} : v;
+    return length > 0 ? Position{v[0] / length, v[1] / length, v[2] / length} : v;
 }
 
 // Projection plane of a view: up is up; in the top view forward points down the page, as below a
 // front view in a technical drawing.
 struct Plane {
-    Place right, up;
+    Position right, up;
 
-    explicit Plane(const Place& towards) {
+    explicit Plane(const Position& towards) {
         const bool above = std::abs(towards[0]) + std::abs(towards[1]) < 1e-9;
-        right = above ? Place{0, 1, 0} : unit(cross({0, 0, 1}, towards));
+        right = above ? Position{0, 1, 0} : unit(cross({0, 0, 1}, towards));
         up = cross(unit(towards), right);
     }
-    Spot operator()(const Place& p) const { return {dot(right, p), dot(up, p)}; }
+    PaperPoint operator()(const Position& p) const { return {dot(right, p), dot(up, p)}; }
 };
 
 // Both edges of a tyre, from the wheel's centre to its patch; its width is unknown and drawn as 0.6
 // of the radius.
-std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Wheel& wheel) {
-    const Place centre = s.points[wheel.centre].at, patch = s.points[wheel.patch].at,
-                e = unit(wheel.spin_axis);
-    Place arm = along(patch, -1, centre);
+std::vector<std::vector<Position>> tyre(const Suspension& s, const Suspension::Wheel& wheel) {
+    const Position centre = s.points[wheel.centre].at, patch = s.points[wheel.patch].at,
+                   e = unit(wheel.spin_axis);
+    Position arm = along(patch, -1, centre);
     arm = along(arm, -dot(arm, e), e);
     const double radius = std::sqrt(dot(arm, arm));
     if (radius < 1) return {};
-    const Place other = cross(e, arm);
-    std::vector<std::vector<Place>> edges;
+    const Position other = cross(e, arm);
+    std::vector<std::vector<Position>> edges;
     for (const double side : {-0.3, 0.3}) {
-        std::vector<Place> edge;
+        std::vector<Position> edge;
         constexpr int corners = 60;
         for (int k = 0; k <= corners; ++k) {
             const double angle = 2 * std::numbers::pi * k / corners;
@@ -69,13 +69,13 @@ std::vector<std::vector<Place>> tyre(const Suspension& s, const Suspension::Whee
 
 // Convex hull of points on paper (Andrew's monotone chain, 1979).
 Stroke hull(Stroke points) {
-    std::ranges::sort(points, {}, [](const Spot& p) { return std::pair{p.x, p.y}; });
+    std::ranges::sort(points, {}, [](const PaperPoint& p) { return std::pair{p.x, p.y}; });
     Stroke round;
     for (int side = 0; side < 2; ++side) {
         const std::size_t first = round.size();
         for (const auto& p : points) {
             while (round.size() >= first + 2) {
-                const Spot &a = round[round.size() - 2], &b = round.back();
+                const PaperPoint &a = round[round.size() - 2], &b = round.back();
                 if ((b.x - a.x) * (p.y - b.y) - (b.y - a.y) * (p.x - b.x) > 0) break;
                 round.pop_back();
             }
@@ -89,7 +89,7 @@ Stroke hull(Stroke points) {
 }
 
 // Strokes on paper by style, in drawing order.
-struct Board {
+struct Canvas {
     Plane plane;
     double x = 0, y = 0;  // plane coordinates of the paper's corner [mm]
     double scale = 1;     // [px/mm]
@@ -97,8 +97,8 @@ struct Board {
     std::vector<Word> words{};
     Paper paper{};
 
-    Spot on(const Place& p) const {
-        const Spot s = plane(p);
+    PaperPoint on(const Position& p) const {
+        const PaperPoint s = plane(p);
         return {(s.x - x) * scale, (s.y - y) * scale};
     }
     void stroke(const Stroke& stroke, Series::Style style, Colour colour, bool in_the_way = true) {
@@ -117,7 +117,7 @@ struct Board {
         for (const auto& one : all) stroke(one, style, colour, in_the_way);
     }
     // Text from its left end, vertically centred.
-    Box word(Spot at, const std::string& text, Colour colour) {
+    Box word(PaperPoint at, const std::string& text, Colour colour) {
         words.push_back({x + at.x / scale, y + at.y / scale, text, colour});
         const Box box{at.x, at.y - line_height / 2, at.x + text_width(text, letter),
                       at.y + line_height / 2};
@@ -128,44 +128,44 @@ struct Board {
 
 constexpr Colour moved_colours[] = {sky, pink};
 
-void draw_symbol(Board& board, const Suspension::Symbol& symbol) {
+void draw_symbol(Canvas& canvas, const Suspension::Symbol& symbol) {
     using Style = Series::Style;
-    const Spot at = board.on(symbol.at);
-    const Place axis = symbol.axis ? unit(*symbol.axis) : Place{0, 0, 1};
-    const Spot direction{dot(board.plane.right, axis), dot(board.plane.up, axis)};
+    const PaperPoint at = canvas.on(symbol.at);
+    const Position axis = symbol.axis ? unit(*symbol.axis) : Position{0, 0, 1};
+    const PaperPoint direction{dot(canvas.plane.right, axis), dot(canvas.plane.up, axis)};
     if (symbol.kind == "bushing") {
-        board.stroke(ring(at, 5.5), Style::line, green);
-        board.stroke(ring(at, 2), Style::line, green);
+        canvas.stroke(ring(at, 5.5), Style::line, green);
+        canvas.stroke(ring(at, 2), Style::line, green);
     } else if (symbol.kind == "spherical") {
-        board.stroke(ring(at, 3.2), Style::line, ink);
-        board.stroke(ring(at, 1.2), Style::line, ink);
+        canvas.stroke(ring(at, 3.2), Style::line, ink);
+        canvas.stroke(ring(at, 1.2), Style::line, ink);
     } else if (symbol.kind == "revolute") {
-        board.strokes(barrel(at, direction, 8), Style::line, blue);
+        canvas.strokes(barrel(at, direction, 8), Style::line, blue);
     } else if (symbol.kind == "sliding") {
-        board.strokes(barrel(at, direction, 13), Style::line, blue);
+        canvas.strokes(barrel(at, direction, 13), Style::line, blue);
     } else if (symbol.kind == "universal") {
-        board.strokes(cross(at, 5), Style::line, blue);
+        canvas.strokes(cross(at, 5), Style::line, blue);
     } else if (symbol.kind == "fixed") {
-        board.strokes(square(at, 4), Style::line, blue);
+        canvas.strokes(square(at, 4), Style::line, blue);
     } else if (symbol.kind == "plane") {
-        board.strokes(diamond(at, 5), Style::line, blue);
+        canvas.strokes(diamond(at, 5), Style::line, blue);
     } else if (symbol.kind == "drive" && std::hypot(direction.x, direction.y) > 0.15) {
         // beside the point, so that the arrow does not cover it
         const double length = std::hypot(direction.x, direction.y), nx = -direction.y / length,
                      ny = direction.x / length;
         const double off = ny < 0 ? -13 : 13;
-        const Spot beside{at.x + off * nx, at.y + off * ny};
-        board.strokes(arrow({beside.x - 20 * direction.x, beside.y - 20 * direction.y},
-                            {beside.x + 20 * direction.x, beside.y + 20 * direction.y}, true),
-                      Style::line, purple);
+        const PaperPoint beside{at.x + off * nx, at.y + off * ny};
+        canvas.strokes(arrow({beside.x - 20 * direction.x, beside.y - 20 * direction.y},
+                             {beside.x + 20 * direction.x, beside.y + 20 * direction.y}, true),
+                       Style::line, purple);
     }
-    board.paper.taken.push_back({at.x - 5, at.y - 5, at.x + 5, at.y + 5});
+    canvas.paper.taken.push_back({at.x - 5, at.y - 5, at.x + 5, at.y + 5});
 }
 
 // Legend of the symbols in use, in lines from the lower edge up.
 struct Entry {
     std::string text;
-    std::function<void(Board&, Spot)> sign;
+    std::function<void(Canvas&, PaperPoint)> sign;
 };
 
 std::vector<Entry> entries(const Suspension& s) {
@@ -173,20 +173,20 @@ std::vector<Entry> entries(const Suspension& s) {
     std::vector<Entry> list;
     const auto symbol = [&](const char* kind, const char* text) {
         if (std::ranges::any_of(s.symbols, [&](const auto& one) { return one.kind == kind; }))
-            list.push_back(
-                {text, [kind](Board& board, Spot at) {
-                     const Spot mm{board.x + at.x / board.scale, board.y + at.y / board.scale};
-                     Place place = along({0, 0, 0}, mm.x, board.plane.right);
-                     place = along(place, mm.y, board.plane.up);
-                     draw_symbol(board, {kind, place, board.plane.right});
-                 }});
+            list.push_back({text, [kind](Canvas& canvas, PaperPoint at) {
+                                const PaperPoint mm{canvas.x + at.x / canvas.scale,
+                                                    canvas.y + at.y / canvas.scale};
+                                Position place = along({0, 0, 0}, mm.x, canvas.plane.right);
+                                place = along(place, mm.y, canvas.plane.up);
+                                draw_symbol(canvas, {kind, place, canvas.plane.right});
+                            }});
     };
     const auto link = [&](const char* kind, const char* text, auto&& strokes, Style style,
                           Colour colour) {
         if (std::ranges::any_of(s.links, [&](const auto& one) { return one.kind == kind; }))
-            list.push_back({text, [=](Board& board, Spot at) {
-                                board.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style,
-                                              colour, false);
+            list.push_back({text, [=](Canvas& canvas, PaperPoint at) {
+                                canvas.strokes(strokes({at.x - 10, at.y}, {at.x + 10, at.y}), style,
+                                               colour, false);
                             }});
     };
     symbol("spherical", "ball joint");
@@ -197,43 +197,44 @@ std::vector<Entry> entries(const Suspension& s) {
     symbol("fixed", "fixed joint");
     link(
         "spring", "spring",
-        [](Spot a, Spot b) {
+        [](PaperPoint a, PaperPoint b) {
             return coil({a.x - 5, a.y}, {b.x + 3, b.y});
         },
         Style::line, vermilion);
     link(
-        "damper", "damper", [](Spot a, Spot b) { return damper(a, b); }, Style::line, ochre);
+        "damper", "damper", [](PaperPoint a, PaperPoint b) { return damper(a, b); }, Style::line,
+        ochre);
     link(
         "beam", "elastic beam",
-        [](Spot a, Spot b) {
+        [](PaperPoint a, PaperPoint b) {
             return Strokes{{a, b}};
         },
         Style::heavy, purple);
     if (std::ranges::any_of(s.points, [](const auto& p) { return p.body == "ground"; }))
-        list.push_back({"vehicle body", [](Board& board, Spot at) {
-                            board.strokes(hatching({at.x, at.y + 6}), Style::hair, slate, false);
+        list.push_back({"vehicle body", [](Canvas& canvas, PaperPoint at) {
+                            canvas.strokes(hatching({at.x, at.y + 6}), Style::hair, slate, false);
                         }});
     if (std::ranges::any_of(s.symbols, [](const auto& one) { return one.kind == "drive"; }))
-        list.push_back({"driven", [](Board& board, Spot at) {
-                            board.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true),
-                                          Style::line, purple, false);
+        list.push_back({"driven", [](Canvas& canvas, PaperPoint at) {
+                            canvas.strokes(arrow({at.x - 10, at.y}, {at.x + 10, at.y}, true),
+                                           Style::line, purple, false);
                         }});
     for (std::size_t m = 0; m < s.moved.size(); ++m)
-        list.push_back({s.moved[m].title, [m](Board& board, Spot at) {
-                            board.strokes({{{at.x - 10, at.y}, {at.x + 10, at.y}}}, Style::thin,
-                                          moved_colours[m % std::size(moved_colours)], false);
+        list.push_back({s.moved[m].title, [m](Canvas& canvas, PaperPoint at) {
+                            canvas.strokes({{{at.x - 10, at.y}, {at.x + 10, at.y}}}, Style::thin,
+                                           moved_colours[m % std::size(moved_colours)], false);
                         }});
     return list;
 }
 
-struct Seat {
+struct LegendPosition {
     double x;
     int line;
 };
 // Positions of the entries on lines of this width; the number of lines is the last entry's line
 // plus one.
-std::vector<Seat> seats(const std::vector<Entry>& list, double width) {
-    std::vector<Seat> result;
+std::vector<LegendPosition> legend_positions(const std::vector<Entry>& list, double width) {
+    std::vector<LegendPosition> result;
     double x = 6;
     int line = 0;
     for (const auto& entry : list) {
@@ -245,140 +246,142 @@ std::vector<Seat> seats(const std::vector<Entry>& list, double width) {
     return result;
 }
 
-void draw_legend(Board& board, const std::vector<Entry>& list, double width) {
-    const auto where = seats(list, width);
+void draw_legend(Canvas& canvas, const std::vector<Entry>& list, double width) {
+    const auto where = legend_positions(list, width);
     if (where.empty()) return;
     const int lines = where.back().line + 1;
     for (std::size_t k = 0; k < list.size(); ++k) {
-        const Spot at{where[k].x + 17, strip * (lines - where[k].line) - strip / 2};
-        list[k].sign(board, at);
-        board.word({where[k].x + 38, at.y}, list[k].text, ink);
+        const PaperPoint at{where[k].x + 17, strip * (lines - where[k].line) - strip / 2};
+        list[k].sign(canvas, at);
+        canvas.word({where[k].x + 38, at.y}, list[k].text, ink);
     }
-    board.paper.taken.push_back({0, 0, width, strip * lines + 2});
+    canvas.paper.taken.push_back({0, 0, width, strip * lines + 2});
 }
 
 // Vehicle axes and a scale bar, in the lower corners.
-void draw_axes(Board& board, double bottom, double width) {
+void draw_axes(Canvas& canvas, double bottom, double width) {
     using Style = Series::Style;
     constexpr double length = 24;
-    const std::pair<const char*, Place> axes[] = {
+    const std::pair<const char*, Position> axes[] = {
         {"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}};
     double left = 0, low = 0;
     for (const auto& [name, axis] : axes) {
-        left = std::min(left, length * dot(board.plane.right, axis));
-        low = std::min(low, length * dot(board.plane.up, axis));
+        left = std::min(left, length * dot(canvas.plane.right, axis));
+        low = std::min(low, length * dot(canvas.plane.up, axis));
     }
-    const Spot origin{12 - left, bottom + 16 - low};
+    const PaperPoint origin{12 - left, bottom + 16 - low};
     for (const auto& [name, axis] : axes) {
-        const Spot u{dot(board.plane.right, axis), dot(board.plane.up, axis)};
+        const PaperPoint u{dot(canvas.plane.right, axis), dot(canvas.plane.up, axis)};
         if (std::hypot(u.x, u.y) < 0.15) continue;
-        board.strokes(arrow(origin, {origin.x + length * u.x, origin.y + length * u.y}),
-                      Style::thin, slate);
+        canvas.strokes(arrow(origin, {origin.x + length * u.x, origin.y + length * u.y}),
+                       Style::thin, slate);
         const double far = length + 7;
-        board.word({origin.x + far * u.x - 3, origin.y + far * u.y}, name, slate);
+        canvas.word({origin.x + far * u.x - 3, origin.y + far * u.y}, name, slate);
     }
     // [mm]: 1, 2 or 5, at most a third of the width
-    double bar = std::pow(10, std::floor(std::log10(0.3 * width / board.scale)));
+    double bar = std::pow(10, std::floor(std::log10(0.3 * width / canvas.scale)));
     for (const double longer : {5.0, 2.0})
-        if (longer * bar * board.scale <= 0.3 * width) {
+        if (longer * bar * canvas.scale <= 0.3 * width) {
             bar *= longer;
             break;
         }
-    const double px = bar * board.scale, y = bottom + 10, end = width - 10;
-    board.strokes({{{end - px, y}, {end, y}},
-                   {{end - px, y - 3}, {end - px, y + 3}},
-                   {{end, y - 3}, {end, y + 3}}},
-                  Style::thin, slate);
+    const double px = bar * canvas.scale, y = bottom + 10, end = width - 10;
+    canvas.strokes({{{end - px, y}, {end, y}},
+                    {{end - px, y - 3}, {end - px, y + 3}},
+                    {{end, y - 3}, {end, y + 3}}},
+                   Style::thin, slate);
     const std::string text = fmt::format("{:g} mm", bar);
-    board.word({end - text_width(text, letter), y + 11}, text, slate);
+    canvas.word({end - text_width(text, letter), y + 11}, text, slate);
 }
 
-void draw_suspension(Board& board, const Suspension& s) {
+void draw_suspension(Canvas& canvas, const Suspension& s) {
     using Style = Series::Style;
     for (const auto& wheel : s.wheels) {
         const auto edges = tyre(s, wheel);
         Stroke both;
         for (const auto& edge : edges)
-            for (const auto& p : edge) both.push_back(board.on(p));
+            for (const auto& p : edge) both.push_back(canvas.on(p));
         if (both.empty()) continue;
-        board.stroke(hull(both), Style::face, slate, false);
+        canvas.stroke(hull(both), Style::face, slate, false);
         for (const auto& edge : edges) {
             Stroke rim;
-            for (const auto& p : edge) rim.push_back(board.on(p));
-            board.stroke(rim, Style::hair, slate, false);
+            for (const auto& p : edge) rim.push_back(canvas.on(p));
+            canvas.stroke(rim, Style::hair, slate, false);
         }
-        board.stroke(hull(both), Style::thin, slate);
+        canvas.stroke(hull(both), Style::thin, slate);
     }
     for (std::size_t m = 0; m < s.moved.size(); ++m) {
         const Colour colour = moved_colours[m % std::size(moved_colours)];
         for (const auto& rim : s.moved[m].wheels) {
             Stroke stroke;
-            for (const auto& p : rim) stroke.push_back(board.on(p));
-            board.stroke(stroke, Style::hair, colour, false);
+            for (const auto& p : rim) stroke.push_back(canvas.on(p));
+            canvas.stroke(stroke, Style::hair, colour, false);
         }
         for (const auto& link : s.links)
             if (link.kind != "spring" && link.kind != "stop" && link.kind != "damper")
-                board.stroke(
-                    {board.on(s.moved[m].points[link.i]), board.on(s.moved[m].points[link.j])},
+                canvas.stroke(
+                    {canvas.on(s.moved[m].points[link.i]), canvas.on(s.moved[m].points[link.j])},
                     Style::thin, colour);
     }
     Stroke standing;  // one hatching for coincident points
     for (const auto& p : s.points) {
-        const Spot at = board.on(p.at);
-        if (p.body != "ground" || std::ranges::any_of(standing, [&](const Spot& other) {
+        const PaperPoint at = canvas.on(p.at);
+        if (p.body != "ground" || std::ranges::any_of(standing, [&](const PaperPoint& other) {
                 return std::hypot(other.x - at.x, other.y - at.y) < 4;
             }))
             continue;
         standing.push_back(at);
-        board.strokes(hatching(at), Style::hair, slate);
+        canvas.strokes(hatching(at), Style::hair, slate);
     }
     for (const auto& face : s.faces) {
         Stroke round;
-        for (const auto k : face) round.push_back(board.on(s.points[k].at));
+        for (const auto k : face) round.push_back(canvas.on(s.points[k].at));
         round.push_back(round.front());
-        board.stroke(round, Style::face, blue, false);
+        canvas.stroke(round, Style::face, blue, false);
     }
     const auto each = [&](std::string_view kind, auto&& draw) {
         for (const auto& link : s.links)
             if (link.kind == kind)
-                draw(board.on(s.points[link.i].at), board.on(s.points[link.j].at));
+                draw(canvas.on(s.points[link.i].at), canvas.on(s.points[link.j].at));
     };
-    each("spring", [&](Spot a, Spot b) { board.strokes(coil(a, b), Style::line, vermilion); });
-    each("damper", [&](Spot a, Spot b) { board.strokes(damper(a, b), Style::line, ochre); });
-    each("body", [&](Spot a, Spot b) { board.stroke({a, b}, Style::heavy, ink); });
-    each("rod", [&](Spot a, Spot b) { board.stroke({a, b}, Style::heavy, ink); });
-    each("beam", [&](Spot a, Spot b) { board.stroke({a, b}, Style::heavy, purple); });
-    for (const auto& symbol : s.symbols) draw_symbol(board, symbol);
+    each("spring",
+         [&](PaperPoint a, PaperPoint b) { canvas.strokes(coil(a, b), Style::line, vermilion); });
+    each("damper",
+         [&](PaperPoint a, PaperPoint b) { canvas.strokes(damper(a, b), Style::line, ochre); });
+    each("body", [&](PaperPoint a, PaperPoint b) { canvas.stroke({a, b}, Style::heavy, ink); });
+    each("rod", [&](PaperPoint a, PaperPoint b) { canvas.stroke({a, b}, Style::heavy, ink); });
+    each("beam", [&](PaperPoint a, PaperPoint b) { canvas.stroke({a, b}, Style::heavy, purple); });
+    for (const auto& symbol : s.symbols) draw_symbol(canvas, symbol);
     for (const auto& wheel : s.wheels)
-        board.stroke(ring(board.on(s.points[wheel.patch].at), 2), Style::line, slate);
+        canvas.stroke(ring(canvas.on(s.points[wheel.patch].at), 2), Style::line, slate);
 }
 
 // Names of the hardpoints, one for a place shared by several bodies.
-void draw_names(Board& board, const Suspension& s) {
+void draw_names(Canvas& canvas, const Suspension& s) {
     std::vector<std::string> names;
     std::vector<Label> labels;
     for (const auto& p : s.points) {
         if (!p.hardpoint || std::ranges::find(names, p.name) != names.end()) continue;
         names.push_back(p.name);
-        labels.push_back({board.on(p.at), text_width(as_words(p.name), letter), line_height});
+        labels.push_back({canvas.on(p.at), text_width(as_words(p.name), letter), line_height});
     }
-    const auto placed = place_labels(labels, board.paper);
+    const auto placed = place_labels(labels, canvas.paper);
     for (std::size_t k = 0; k < labels.size(); ++k) {
         if (!placed[k]) continue;
         const Box& box = *placed[k];
-        const Spot near{std::clamp(labels[k].at.x, box.left, box.right),
-                        std::clamp(labels[k].at.y, box.bottom, box.top)};
+        const PaperPoint near{std::clamp(labels[k].at.x, box.left, box.right),
+                              std::clamp(labels[k].at.y, box.bottom, box.top)};
         if (std::hypot(near.x - labels[k].at.x, near.y - labels[k].at.y) > 15)
-            board.stroke({labels[k].at, near}, Series::Style::hair, slate, false);
-        board.words.push_back({board.x + box.left / board.scale,
-                               board.y + (box.bottom + box.top) / 2 / board.scale,
-                               as_words(names[k]), ink});
+            canvas.stroke({labels[k].at, near}, Series::Style::hair, slate, false);
+        canvas.words.push_back({canvas.x + box.left / canvas.scale,
+                                canvas.y + (box.bottom + box.top) / 2 / canvas.scale,
+                                as_words(names[k]), ink});
     }
 }
 
 struct Extent {
     double left = INFINITY, right = -INFINITY, bottom = INFINITY, top = -INFINITY;
-    void take(Spot p) {
+    void take(PaperPoint p) {
         left = std::min(left, p.x), right = std::max(right, p.x);
         bottom = std::min(bottom, p.y), top = std::max(top, p.y);
     }
@@ -419,7 +422,7 @@ Frame small_frame(const Suspension& s) { return {s.wheels.size() > 1 ? 480 : 330
 std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& views,
                                const Frame& frame) {
     const auto list = frame.legend ? entries(s) : std::vector<Entry>{};
-    const auto where = seats(list, frame.width);
+    const auto where = legend_positions(list, frame.width);
     const double legend = where.empty() ? 0 : strip * (where.back().line + 1);
     double scale = INFINITY;
     for (const auto& view : views) {
@@ -437,16 +440,16 @@ std::vector<Figure> draw_views(const Suspension& s, const std::vector<View>& vie
                              : std::max(std::ceil(e.height() * scale + 2 * margin + legend), 170.0);
         const double x = (e.left + e.right) / 2 - frame.width / scale / 2,
                      y = (e.bottom + e.top) / 2 - (height + legend) / scale / 2;
-        Board board{plane, x, y, scale};
-        board.paper.width = frame.width, board.paper.height = height;
-        draw_suspension(board, s);
-        draw_legend(board, list, frame.width);
-        draw_axes(board, legend, frame.width);
-        draw_names(board, s);
+        Canvas canvas{plane, x, y, scale};
+        canvas.paper.width = frame.width, canvas.paper.height = height;
+        draw_suspension(canvas, s);
+        draw_legend(canvas, list, frame.width);
+        draw_axes(canvas, legend, frame.width);
+        draw_names(canvas, s);
         Figure figure{.id = view.id, .title = view.title};
         figure.sheet = Sheet{x, y, scale, frame.width, static_cast<int>(height)};
-        figure.series = std::move(board.series);
-        figure.words = std::move(board.words);
+        figure.series = std::move(canvas.series);
+        figure.words = std::move(canvas.words);
         figures.push_back(std::move(figure));
     }
     return figures;

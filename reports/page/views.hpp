@@ -10,13 +10,13 @@
 
 namespace elastocheck::reports {
 
-using Place = std::array<double, 3>;  // x forward, y left, z up [mm]
+using Position = std::array<double, 3>;  // x forward, y left, z up [mm]
 
 struct Suspension {
-    struct Spotted {
+    struct Point {
         std::string name, body;
         bool hardpoint = false;  // else named after the joint or element there
-        Place at{};
+        Position at{};
     };
     struct Link {
         std::string kind;  // body, rod, spring, stop, beam, damper
@@ -24,19 +24,19 @@ struct Suspension {
     };
     struct Symbol {
         std::string kind;  // spherical, revolute, universal, sliding, plane, fixed, bushing, drive
-        Place at{};
-        std::optional<Place> axis{};
+        Position at{};
+        std::optional<Position> axis{};
     };
     struct Wheel {
         std::size_t centre = 0, patch = 0;
-        Place spin_axis{};
+        Position spin_axis{};
     };
     struct Moved {  // another position of the suspension
         std::string title;
-        std::vector<Place> points{};
-        std::vector<std::vector<Place>> wheels{};  // rims
+        std::vector<Position> points{};
+        std::vector<std::vector<Position>> wheels{};  // rims
     };
-    std::vector<Spotted> points{};
+    std::vector<Point> points{};
     std::vector<Link> links{};
     std::vector<std::vector<std::size_t>> faces{};
     std::vector<Symbol> symbols{};
@@ -46,7 +46,7 @@ struct Suspension {
 
 struct View {
     const char *id, *title, *from;  // "from the front"
-    Place towards_viewer;
+    Position towards_viewer;
 };
 inline constexpr View front_view{"view-front", "Front view", "from the front", {1, 0, 0}};
 inline constexpr View side_view{"view-side", "Side view", "from the left", {0, 1, 0}};

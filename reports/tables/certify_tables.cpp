@@ -15,21 +15,21 @@ std::string claim(const compare::Tolerance& tolerance) {
 
 }  // namespace
 
-const std::vector<Shown> certify_columns{{"solver"},
-                                         {"outcome"},
-                                         {"points", Digits::whole},
-                                         {"proved", Digits::whole},
-                                         {"excluded", Digits::whole},
-                                         {"open", Digits::whole},
-                                         {"stable", Digits::whole},
-                                         {"error", Digits::size, "off at most"},
-                                         {"angle error", Digits::size, "at most"},
-                                         {"force error", Digits::size, "at most"},
-                                         {"alone", Digits::size, "alone within"},
-                                         {"curve"},
-                                         {"curve pieces", Digits::whole, "pieces"},
-                                         {"tube", Digits::size},
-                                         {"limit"}};
+const std::vector<ShownColumn> certify_columns{{"solver"},
+                                               {"outcome"},
+                                               {"points", Digits::whole},
+                                               {"proved", Digits::whole},
+                                               {"excluded", Digits::whole},
+                                               {"open", Digits::whole},
+                                               {"stable", Digits::whole},
+                                               {"error", Digits::size, "off at most"},
+                                               {"angle error", Digits::size, "at most"},
+                                               {"force error", Digits::size, "at most"},
+                                               {"alone", Digits::size, "alone within"},
+                                               {"curve"},
+                                               {"curve pieces", Digits::whole, "pieces"},
+                                               {"tube", Digits::size},
+                                               {"limit"}};
 
 std::string what_is_proved(const compare::CertifyStudy& study) {
     return fmt::format(
@@ -76,7 +76,8 @@ std::string certify_text(const compare::CertifyStudy& study) {
     const compare::Table table = certify_table(study);
     for (const auto& branch : distinct(table, "branch")) {
         const compare::Table rows = where(table, "branch", branch);
-        fmt::format_to(out, "branch '{}'\n{}", branch, text(rows, filled(rows, certify_columns)));
+        fmt::format_to(out, "branch '{}'\n{}", branch,
+                       text(rows, nonempty_columns(rows, certify_columns)));
         bool said = false;
         for (const auto& way : study.ways) {
             if (way.branch != branch) continue;

@@ -10,7 +10,7 @@
 namespace elastocheck::reports {
 
 // of compare::certify_table, on the terminal and the page
-extern const std::vector<Shown> certify_columns;
+extern const std::vector<ShownColumn> certify_columns;
 
 // Statement and limits of the proofs in one paragraph, for text and page.
 std::string what_is_proved(const compare::CertifyStudy& study);

@@ -19,7 +19,7 @@ compare::Column words(std::string name, std::string description = {}) {
     return {std::move(name), {}, std::move(description), true};
 }
 
-double told(double value) { return std::isfinite(value) ? value : std::nan(""); }
+double finite_or_nan(double value) { return std::isfinite(value) ? value : std::nan(""); }
 
 }  // namespace
 
@@ -39,8 +39,8 @@ compare::Table equilibria_table(const AllEquilibria& all) {
     for (const auto& one : all.list)
         table.rows.push_back({++number, one.stable ? "stable" : "unstable", 1e3 * one.length,
                               deg * one.angle, name(one.proof.answer),
-                              told(1e3 * one.proof.error.length),
-                              told(1e3 * one.proof.unique.length), one.meaning});
+                              finite_or_nan(1e3 * one.proof.error.length),
+                              finite_or_nan(1e3 * one.proof.unique.length), one.meaning});
     return table;
 }
 

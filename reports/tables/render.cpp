@@ -80,7 +80,7 @@ json table_json(const Table& table) {
     return {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
 }
 
-Table read_table(const Field& field, const Table& like) {
+Table read_table(const JsonCursor& field, const Table& like) {
     Table table{like.name, like.columns, {}};
     std::vector<std::string> names, units;
     for (const auto& column : field["columns"].items()) {
@@ -107,13 +107,14 @@ Table read_table(const Field& field, const Table& like) {
     return table;
 }
 
-std::string heading(const Table& table, const Shown& shown) {
+std::string heading(const Table& table, const ShownColumn& shown) {
     const Column& of = table.columns[column(table, shown.column)];
     return with_unit(shown.heading.empty() ? of.name : shown.heading, of.unit);
 }
 
-std::vector<Shown> filled(const Table& table, const std::vector<Shown>& shown) {
-    std::vector<Shown> some;
+std::vector<ShownColumn> nonempty_columns(const Table& table,
+                                          const std::vector<ShownColumn>& shown) {
+    std::vector<ShownColumn> some;
     for (const auto& s : shown) {
         const std::size_t c = column(table, s.column);
         if (!std::ranges::all_of(table.rows, [&](const auto& row) { return empty(row[c]); }))
@@ -122,8 +123,8 @@ std::vector<Shown> filled(const Table& table, const std::vector<Shown>& shown) {
     return some;
 }
 
-std::string text(const Table& table, const std::vector<Shown>& shown) {
-    const auto columns = filled(table, shown);
+std::string text(const Table& table, const std::vector<ShownColumn>& shown) {
+    const auto columns = nonempty_columns(table, shown);
     std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
     std::vector<std::size_t> places, widths;
     for (const auto& s : columns) {

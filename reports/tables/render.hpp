@@ -19,7 +19,7 @@ nlohmann::ordered_json table_json(const compare::Table& table);
 
 // Reads the columns of `like`, found by name, in its order; other columns are ignored. Throws
 // ResultError with the place of a missing column, another unit, or a cell of the wrong kind.
-compare::Table read_table(const Field& field, const compare::Table& like);
+compare::Table read_table(const JsonCursor& field, const compare::Table& like);
 
 // Number format for readers.
 enum class Digits {
@@ -31,19 +31,20 @@ enum class Digits {
 };
 
 // A displayed column.
-struct Shown {
+struct ShownColumn {
     std::string column;
     Digits digits = Digits::whole;
     std::string heading = {};  // instead of the column's name
 };
 
-std::string heading(const compare::Table& table, const Shown& shown);  // "error [mm]"
+std::string heading(const compare::Table& table, const ShownColumn& shown);  // "error [mm]"
 
 // The columns that are not empty.
-std::vector<Shown> filled(const compare::Table& table, const std::vector<Shown>& shown);
+std::vector<ShownColumn> nonempty_columns(const compare::Table& table,
+                                          const std::vector<ShownColumn>& shown);
 
 // For a terminal: a line of headings and the rows, each column as wide as needed, words
 // left-aligned, without empty columns.
-std::string text(const compare::Table& table, const std::vector<Shown>& shown);
+std::string text(const compare::Table& table, const std::vector<ShownColumn>& shown);
 
 }  // namespace elastocheck::reports

@@ -12,7 +12,7 @@ constexpr double gap = 2;  // [px] between boxes
 
 // Whether the segment a b intersects the box (Liang & Barsky 1984): the part of 0 ... 1 within each
 // pair of sides in turn.
-bool crosses(const Spot& a, const Spot& b, const Box& box) {
+bool crosses(const PaperPoint& a, const PaperPoint& b, const Box& box) {
     if (std::max(a.x, b.x) < box.left || std::min(a.x, b.x) > box.right ||
         std::max(a.y, b.y) < box.bottom || std::min(a.y, b.y) > box.top)
         return false;  // the usual case
@@ -62,13 +62,13 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
     std::ranges::stable_sort(order, std::ranges::greater{}, company);
 
     std::vector<Box> taken = paper.taken;
-    std::vector<std::array<Spot, 2>> leaders;
+    std::vector<std::array<PaperPoint, 2>> leaders;
     std::vector<std::optional<Box>> placed(labels.size());
     for (const auto k : order) {
         const Label& label = labels[k];
         double best = std::numeric_limits<double>::infinity();
         std::optional<Box> found;
-        std::array<Spot, 2> leader{};
+        std::array<PaperPoint, 2> leader{};
         for (const double reach : {9.0, 15.0, 24.0, 36.0, 52.0, 72.0, 95.0, 125.0, 160.0})
             for (int direction = 0; direction < 16; ++direction) {
                 const double angle = 2 * std::numbers::pi * direction / 16;
@@ -86,8 +86,8 @@ std::vector<std::optional<Box>> place_labels(const std::vector<Label>& labels, c
                 if (std::ranges::any_of(taken,
                                         [&](const Box& other) { return overlap(roomy, other); }))
                     continue;
-                const Spot near{std::clamp(label.at.x, box.left, box.right),
-                                std::clamp(label.at.y, box.bottom, box.top)};
+                const PaperPoint near{std::clamp(label.at.x, box.left, box.right),
+                                      std::clamp(label.at.y, box.bottom, box.top)};
                 // Leaders must not cross words, nor words cover leaders.
                 if (reach > 15 && std::ranges::any_of(taken, [&](const Box& other) {
                         return crosses(label.at, near, other) &&

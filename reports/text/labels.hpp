@@ -9,7 +9,7 @@
 namespace elastocheck::reports {
 
 // On paper [px], y up.
-struct Spot {
+struct PaperPoint {
     double x = 0, y = 0;
 };
 struct Box {
@@ -21,14 +21,14 @@ bool overlap(const Box& a, const Box& b);
 double text_width(std::string_view text, double size);
 
 struct Label {
-    Spot at;  // of the labelled point
+    PaperPoint at;  // of the labelled point
     double width = 0, height = 0;
 };
 
 struct Paper {
     double width = 0, height = 0;
-    std::vector<std::array<Spot, 2>> lines;  // crossed by a label only as a last resort
-    std::vector<Box> taken;                  // boxes of other words and symbols, which labels avoid
+    std::vector<std::array<PaperPoint, 2>> lines;  // crossed by a label only as a last resort
+    std::vector<Box> taken;  // boxes of other words and symbols, which labels avoid
 };
 
 // Box of each label; empty where there is no free place near the point.

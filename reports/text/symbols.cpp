@@ -11,20 +11,21 @@ constexpr double pi = std::numbers::pi;
 
 // Local frame of a line: its length, and points by coordinates along and across it.
 struct Frame {
-    Spot from;
+    PaperPoint from;
     double length, ux, uy;
 
-    Frame(Spot a, Spot b) : from(a), length(std::hypot(b.x - a.x, b.y - a.y)), ux(1), uy(0) {
+    Frame(PaperPoint a, PaperPoint b)
+        : from(a), length(std::hypot(b.x - a.x, b.y - a.y)), ux(1), uy(0) {
         if (length > 0) ux = (b.x - a.x) / length, uy = (b.y - a.y) / length;
     }
-    Spot at(double along, double across) const {
+    PaperPoint at(double along, double across) const {
         return {from.x + along * ux - across * uy, from.y + along * uy + across * ux};
     }
 };
 
 }  // namespace
 
-Stroke ring(Spot at, double radius) {
+Stroke ring(PaperPoint at, double radius) {
     Stroke stroke;
     constexpr int corners = 24;
     for (int k = 0; k <= corners; ++k) {
@@ -34,7 +35,7 @@ Stroke ring(Spot at, double radius) {
     return stroke;
 }
 
-Strokes coil(Spot a, Spot b) {
+Strokes coil(PaperPoint a, PaperPoint b) {
     const Frame line(a, b);
     constexpr double radius = 8;
     if (line.length < 3 * radius) return {ring({(a.x + b.x) / 2, (a.y + b.y) / 2}, radius)};
@@ -53,7 +54,7 @@ Strokes coil(Spot a, Spot b) {
     return {stroke};
 }
 
-Strokes damper(Spot a, Spot b) {
+Strokes damper(PaperPoint a, PaperPoint b) {
     const Frame line(a, b);
     constexpr double half = 4.5;
     if (line.length < 4 * half) return {ring({(a.x + b.x) / 2, (a.y + b.y) / 2}, half)};
@@ -65,7 +66,7 @@ Strokes damper(Spot a, Spot b) {
         {line.at(piston, 0), b}};
 }
 
-Strokes barrel(Spot at, Spot along, double half_length) {
+Strokes barrel(PaperPoint at, PaperPoint along, double half_length) {
     constexpr double half = 4;
     const double seen = std::hypot(along.x, along.y);  // of a unit length
     if (seen * half_length < half) return {ring(at, half + 1), ring(at, 1)};
@@ -76,18 +77,18 @@ Strokes barrel(Spot at, Spot along, double half_length) {
             {line.at(-l - 4, 0), line.at(l + 4, 0)}};
 }
 
-Strokes cross(Spot at, double radius) {
+Strokes cross(PaperPoint at, double radius) {
     return {ring(at, radius),
             {{at.x - radius, at.y}, {at.x + radius, at.y}},
             {{at.x, at.y - radius}, {at.x, at.y + radius}}};
 }
 
-Strokes diamond(Spot at, double r) {
+Strokes diamond(PaperPoint at, double r) {
     return {
         {{at.x - r, at.y}, {at.x, at.y + r}, {at.x + r, at.y}, {at.x, at.y - r}, {at.x - r, at.y}}};
 }
 
-Strokes square(Spot at, double h) {
+Strokes square(PaperPoint at, double h) {
     return {{{at.x - h, at.y - h},
              {at.x + h, at.y - h},
              {at.x + h, at.y + h},
@@ -95,7 +96,7 @@ Strokes square(Spot at, double h) {
              {at.x - h, at.y - h}}};
 }
 
-Strokes hatching(Spot at) {
+Strokes hatching(PaperPoint at) {
     constexpr double half = 8, below = 9;
     const double y = at.y - below;
     Strokes strokes{{at, {at.x, y}}, {{at.x - half, y}, {at.x + half, y}}};
@@ -104,7 +105,7 @@ Strokes hatching(Spot at) {
     return strokes;
 }
 
-Strokes arrow(Spot from, Spot to, bool both_ways) {
+Strokes arrow(PaperPoint from, PaperPoint to, bool both_ways) {
     const Frame line(from, to);
     const double l = line.length;
     Strokes strokes{{from, to}, {line.at(l - 6, 3), to, line.at(l - 6, -3)}};

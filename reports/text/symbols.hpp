@@ -7,19 +7,19 @@
 
 namespace elastocheck::reports {
 
-using Stroke = std::vector<Spot>;
+using Stroke = std::vector<PaperPoint>;
 using Strokes = std::vector<Stroke>;
 
-Stroke ring(Spot at, double radius);
-Strokes coil(Spot a, Spot b);    // coil spring in side view; a ring in end view
-Strokes damper(Spot a, Spot b);  // a tube from a, a rod to b, the piston between
-Strokes barrel(Spot at, Spot along,
+Stroke ring(PaperPoint at, double radius);
+Strokes coil(PaperPoint a, PaperPoint b);    // coil spring in side view; a ring in end view
+Strokes damper(PaperPoint a, PaperPoint b);  // a tube from a, a rod to b, the piston between
+Strokes barrel(PaperPoint at, PaperPoint along,
                // a sleeve along its axis `along` (foreshortened, length up to 1)
                double half_length);
-Strokes cross(Spot at, double radius);
-Strokes diamond(Spot at, double radius);
-Strokes square(Spot at, double half_side);
-Strokes hatching(Spot at);  // ground symbol
-Strokes arrow(Spot from, Spot to, bool both_ways = false);
+Strokes cross(PaperPoint at, double radius);
+Strokes diamond(PaperPoint at, double radius);
+Strokes square(PaperPoint at, double half_side);
+Strokes hatching(PaperPoint at);  // ground symbol
+Strokes arrow(PaperPoint from, PaperPoint to, bool both_ways = false);
 
 }  // namespace elastocheck::reports

@@ -80,14 +80,14 @@ TEST(GateReport, ExitCodesAreRanked) {
 }
 
 TEST(GateReport, AnOffenceIsToldWithPlaceOldNewDifferenceAndShare) {
-    EXPECT_EQ(story(offence(0.5)),
+    EXPECT_EQ(describe(offence(0.5)),
               "branch 'jounce', recursive: toe at 3000 N: accepted 1 deg, measured 0.5 deg, "
               "difference -0.5, "
               "2 times the tolerance of 0.25, 1 times what an engineer notices");
     compare::Offence limit = offence(0.007);
     limit.of_limit = true, limit.a = {}, limit.was = limit.tolerance = 0.005;
     limit.quantity = Quantity::deviation_at_equal_abscissa;
-    EXPECT_EQ(story(limit),
+    EXPECT_EQ(describe(limit),
               "branch 'jounce', deviation at equal abscissa: toe: 0.007 deg is over its limit of "
               "0.005 deg");
     const std::string table = gate_table(failed());
@@ -120,8 +120,8 @@ TEST(GateReport, TheFieldsOfTheSceneThatChangedAreNamedEverywhere) {
                       Number{"points.tie_rod_inner.z", -0.055, "m"}},
                      {std::nullopt, Number{"springs.coil.preload", 300, "N"}},
                      {Number{"factor", 2, ""}, std::nullopt}};
-    EXPECT_EQ(story(scene.changed[1]), "springs.coil.preload: 300 N, is new");
-    EXPECT_EQ(story(scene.changed[2]), "factor: is gone, was 2");
+    EXPECT_EQ(describe(scene.changed[1]), "springs.coil.preload: 300 N, is new");
+    EXPECT_EQ(describe(scene.changed[2]), "factor: is gone, was 2");
     const std::string first = "points.tie_rod_inner.z: -0.055 m, was -0.06 m";
     EXPECT_TRUE(contains(gate_table(scene), "  changed: " + first + "\n")) << gate_table(scene);
     EXPECT_TRUE(contains(junit({scene}), "changed: " + first)) << junit({scene});

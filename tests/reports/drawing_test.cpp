@@ -25,7 +25,7 @@ json drawing_of(const std::string& name) {
 Suspension drawn(const std::string& name) {
     static const std::string file = "result.json";
     const json scene = json::parse(json{{"drawing", drawing_of(name)}}.dump());
-    return *suspension_of(Field{&scene, "scenes[0]", &file});
+    return *suspension_of(JsonCursor{&scene, "scenes[0]", &file});
 }
 
 std::vector<Figure> all_views(const Suspension& s) {

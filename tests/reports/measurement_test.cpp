@@ -89,7 +89,7 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
     result["scenes"][0]["measured"] = measured("travel_mm,toe_deg\n-50,1.4\n50,-1.8\n");
     const std::string file = "result.json";
     bool section = false, drawn = false, fourth = false;
-    for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
+    for (const auto& s : sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file})) {
         section = section || s.id == "measured";
         for (const auto& group : s.figures)
             for (const auto& figure : group.figures) {
@@ -166,7 +166,7 @@ TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
 }
 
 Sweep first_sweep(const json& result, const std::string& file) {
-    return sweeps_of(Field{&result["scenes"][0], "scenes[0]", &file}).front();
+    return sweeps_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file}).front();
 }
 
 // A point of one branch is not compared, drawn or tabulated on another.
@@ -178,7 +178,7 @@ TEST(Measurement, PointsStayOnTheBranchTheyWereMeasuredOn) {
     result["scenes"][0]["measured"] = json::parse(
         measured("branch,travel_mm,toe_deg\njounce,20,-0.7\njounce,60,-2\nrebound,-60,2\n").dump());
     const std::string file = "result.json";
-    const Field scene{&result["scenes"][0], "scenes[0]", &file};
+    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
     Sweep sweep = first_sweep(result, file);
     ASSERT_EQ(sweep.branches.size(), 2u);
     EXPECT_EQ(measured_series(scene, sweep, "toe", false)->rows.size(), 3u);
@@ -197,7 +197,7 @@ TEST(Measurement, PointsByLoadAreDrawnOverTheLoad) {
         measured("load_N,toe_deg,wheel_centre_y_change_mm\n1500,-1,-1\n-1500,1,0\n").dump());
     const std::string file = "result.json";
     int figures = 0, drawn = 0;
-    for (const auto& s : sections_of(Field{&result["scenes"][0], "scenes[0]", &file})) {
+    for (const auto& s : sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file})) {
         if (s.id != "curves") continue;
         for (const auto& group : s.figures)
             for (const auto& figure : group.figures) {
@@ -339,7 +339,7 @@ TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
                  {})
             .dump());
     const std::string file = "result.json";
-    const Field scene{&result["scenes"][0], "scenes[0]", &file};
+    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
     int seen = 0;
     for (const auto& sweep : sweeps_of(scene)) {
         const auto points = measured_series(scene, sweep, "toe", false);

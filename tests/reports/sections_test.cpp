@@ -15,7 +15,7 @@ using json = nlohmann::ordered_json;
 const std::string file = "result.json";
 
 std::vector<Section> sections(const json& result) {
-    return sections_of(Field{&result["scenes"][0], "scenes[0]", &file});
+    return sections_of(JsonCursor{&result["scenes"][0], "scenes[0]", &file});
 }
 
 std::string said(const json& result) {

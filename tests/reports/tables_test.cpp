@@ -56,7 +56,7 @@ compare::Table through_json(const compare::Table& table) {
     compare::Table like = table;
     like.rows.clear();
     const json read = json::parse(table_json(table).dump());
-    return read_table(Field{&read, "", &file}, like);
+    return read_table(JsonCursor{&read, "", &file}, like);
 }
 
 TEST(Tables, CsvHasAUnitInTheHeaderAndExactNumbers) {
@@ -77,7 +77,7 @@ TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
     like.rows.clear();
     const auto refused = [&](const json& damaged) -> std::string {
         try {
-            (void)read_table(Field{&damaged, "t", &file}, like);
+            (void)read_table(JsonCursor{&damaged, "t", &file}, like);
         } catch (const ResultError& error) {
             return error.what();
         }

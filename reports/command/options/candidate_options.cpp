@@ -104,12 +104,13 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
         run_of.steps = n;
         run_of.of_command = true;
         progress(run_of.file);
-        const Ended ended = run(given, request.timeout);
-        run_of.seconds = ended.seconds, run_of.cpu = ended.cpu;
-        if (!ended.well()) {
-            run_of.failed = fmt::format("'{}' {}", words.front(), describe(ended, request.timeout));
-            if (!ended.said.empty())
-                print_error("{}: output of the command:\n{}\n", run_of.file, ended.said);
+        const ProcessResult result = run(given, request.timeout);
+        run_of.seconds = result.seconds, run_of.cpu = result.cpu;
+        if (!result.succeeded()) {
+            run_of.failed =
+                fmt::format("'{}' {}", words.front(), describe(result, request.timeout));
+            if (!result.output_text.empty())
+                print_error("{}: output of the command:\n{}\n", run_of.file, result.output_text);
             continue;
         }
         std::error_code ignored;
@@ -123,8 +124,8 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
             } catch (const FileError& error) {
                 run_of.failed = error.what();
             }
-        if (!run_of.failed.empty() && !ended.said.empty())
-            print_error("{}: output of the command:\n{}\n", run_of.file, ended.said);
+        if (!run_of.failed.empty() && !result.output_text.empty())
+            print_error("{}: output of the command:\n{}\n", run_of.file, result.output_text);
     }
     progress("");
     return list;

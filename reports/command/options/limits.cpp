@@ -24,8 +24,8 @@ double bytes_per_row(std::size_t channels, bool written) {
     return overhead + numbers * (sizeof(double) + (written ? in_document : 0));
 }
 
-double points_of(const Branch& branch, const Asked& asked) {
-    return 1.0 + (asked.steps > 0 ? asked.steps : branch.steps) / asked.every;
+double points_of(const Branch& branch, const RunSize& run) {
+    return 1.0 + (run.steps > 0 ? run.steps : branch.steps) / run.every;
 }
 
 void check(double points, double bytes, double steps_per_branch,
@@ -39,22 +39,22 @@ void check(double points, double bytes, double steps_per_branch,
 
 }  // namespace
 
-void check_memory(const Model& model, const Asked& asked) {
+void check_memory(const Model& model, const RunSize& run) {
     double points = 0;
-    for (const auto& branch : model.branches) points += points_of(branch, asked);
+    for (const auto& branch : model.branches) points += points_of(branch, run);
     const auto branches = static_cast<double>(std::max<std::size_t>(1, model.branches.size()));
-    check(points, asked.legs * bytes_per_row(compare::channels(model).size(), asked.written),
-          asked.every * points / branches,
+    check(points, run.legs * bytes_per_row(compare::channels(model).size(), run.written),
+          run.every * points / branches,
           fmt::format("{:.0f} points on {} branches, by {} of the legs,", points,
-                      model.branches.size(), asked.legs));
+                      model.branches.size(), run.legs));
 }
 
-void check_memory_of_rows(const Model& model, const Asked& asked, std::size_t channels) {
+void check_memory_of_rows(const Model& model, const RunSize& run, std::size_t channels) {
     for (Branch branch : model.branches) {
-        if (asked.steps > 0) branch.steps = asked.steps;
+        if (run.steps > 0) branch.steps = run.steps;
         const auto all = ways(branch);
         if (all.size() < 2) continue;
-        const double points = points_of(all.front(), {.every = asked.every});
+        const double points = points_of(all.front(), {.every = run.every});
         check(
             points, bytes_per_row(channels, false), branch.steps,
             fmt::format("{:.0f} points of branch '{}' that come in reverse", points, branch.name));

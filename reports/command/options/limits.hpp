@@ -13,7 +13,7 @@ inline constexpr double most_memory = 4e9;
 
 // Requested points and what is stored of them. Outputs are stored, states never; a comparison of
 // legs stores the outputs of all points of all branches.
-struct Asked {
+struct RunSize {
     int steps = 0;  // of each branch; 0: the branch's own number
     int every = 1;
     int legs = 1;
@@ -22,11 +22,11 @@ struct Asked {
 
 // Throws std::invalid_argument with the largest possible number of steps if this exceeds
 // `most_memory`.
-void check_memory(const Model& model, const Asked& asked);
+void check_memory(const Model& model, const RunSize& run);
 
 // The same for output row by row with `channels` outputs: only the first of two branch sides is
 // stored, since it is solved in reverse.
-void check_memory_of_rows(const Model& model, const Asked& asked, std::size_t channels);
+void check_memory_of_rows(const Model& model, const RunSize& run, std::size_t channels);
 
 // Throws std::invalid_argument for an --every larger than the steps of a branch.
 void check_every(const Model& model, int steps, int every);

@@ -60,7 +60,7 @@ json paragraphs(const Section& section) {
 
 // A scene with its sections and its prefix for files and ids.
 struct ScenePart {
-    Field scene;
+    JsonCursor scene;
     std::string id;
     std::vector<Section> sections;
     std::vector<Plot> plots{};
@@ -77,7 +77,7 @@ struct Page {
         return name;
     }
 
-    ScenePart part(const Field& scene) {
+    ScenePart part(const JsonCursor& scene) {
         ScenePart part{scene, unique(slug(fs::path(scene["source"].text()).stem().string())),
                        sections_of(scene)};
         for (const auto& section : part.sections)
@@ -197,8 +197,8 @@ Table summary(const std::list<ScenePart>& parts) {
     return table;
 }
 
-json provenance(const Field& result) {
-    const Field p = result["provenance"];
+json provenance(const JsonCursor& result) {
+    const JsonCursor p = result["provenance"];
     Table table{.caption = "Made by", .columns = {{"what", true}, {"which", true}}};
     table.rows = {
         {"elastocheck", p["elastocheck"].text()},
@@ -214,7 +214,7 @@ json provenance(const Field& result) {
 }
 
 // Seeded faults (mutation tests), and the first failing check of each.
-json alarms(const Field& result) {
+json alarms(const JsonCursor& result) {
     const auto found = result.find("alarms");
     if (!found) return nullptr;
     Table table{.caption = "Seeded faults and the first test that failed",
@@ -243,9 +243,10 @@ json alarms(const Field& result) {
 
 std::string numbers_csv(const json& result, const std::string& file) {
     std::string csv = "scene,branch,output,unit,quantity,value,tolerance\n";
-    const Field root{&result, "", &file};
-    const auto row = [&](const Field& scene, const Field& branch, const ChannelInfo& channel,
-                         const std::string& quantity, double value, double tolerance) {
+    const JsonCursor root{&result, "", &file};
+    const auto row = [&](const JsonCursor& scene, const JsonCursor& branch,
+                         const ChannelInfo& channel, const std::string& quantity, double value,
+                         double tolerance) {
         csv += fmt::format("{},{},{},{},{},{:.12g},{:.1g}\n",
                            for_csv(fs::path(scene["source"].text()).stem().string()),
                            for_csv(branch["name"].text()), for_csv(channel.name),
@@ -283,7 +284,7 @@ namespace {
 
 // Checks also fields without a section, since they are copied to the report's own result.json. (It
 // escapes line ends.)
-void expect_plain(const Field& field) {
+void expect_plain(const JsonCursor& field) {
     const auto check = [&](std::string text) {
         std::ranges::replace_if(
             text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
@@ -304,13 +305,13 @@ void expect_plain(const Field& field) {
 
 json parse_result(std::string_view text, const std::string& file) {
     json result;
-    const Field root{&result, "", &file};
+    const JsonCursor root{&result, "", &file};
     try {
         result = parse_json(text);
     } catch (const JsonError& error) {
         root.fail(error.what());
     }
-    const Field schema = root["schema"];
+    const JsonCursor schema = root["schema"];
     if (schema.text() != result_schema)
         schema.fail(
             fmt::format("'{}' is not a document this program reads; allowed: '{}'. Run the command "
@@ -330,7 +331,7 @@ struct Draft {
     std::vector<Plot> plots{};
 };
 
-Draft draft(const Field& root) {
+Draft draft(const JsonCursor& root) {
     Draft made;
     for (const auto& scene : root["scenes"].items()) {
         made.parts.push_back(made.page.part(scene));
@@ -347,8 +348,8 @@ struct Texts {
 };
 
 // `sections` as in Page::scene.
-Answer answer(const Field& scene, const json& sections) {
-    const Field verdict = scene["verdict"];
+Answer answer(const JsonCursor& scene, const json& sections) {
+    const JsonCursor verdict = scene["verdict"];
     Answer made{.name = scene["name"].text(),
                 .source = scene["source"].text(),
                 .sentence = {},
@@ -365,7 +366,7 @@ Answer answer(const Field& scene, const json& sections) {
 }
 
 Texts texts(Draft draft, const json& result, const std::string& file, bool archive) {
-    const Field root{&result, "", &file};
+    const JsonCursor root{&result, "", &file};
     json scenes = json::array();
     for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
     json tints = json::array();

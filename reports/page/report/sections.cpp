@@ -3,10 +3,10 @@
 namespace elastocheck::reports {
 
 // First the results for a chassis engineer, then the accuracy of each number.
-std::vector<Section> sections_of(const Field& scene) {
+std::vector<Section> sections_of(const JsonCursor& scene) {
     struct Part {
         const char* title;
-        std::vector<std::optional<Section> (*)(const Field&)> sections;
+        std::vector<std::optional<Section> (*)(const JsonCursor&)> sections;
     };
     const Part parts[] = {
         {"", {candidate_section, first_section, drawing_section}},

@@ -7,7 +7,7 @@
 
 namespace elastocheck::reports {
 
-std::optional<Section> arithmetic_section(const Field& scene) {
+std::optional<Section> arithmetic_section(const JsonCursor& scene) {
     const auto study = scene.find("precision");
     if (!study) return std::nullopt;
     const std::string branch = (*study)["branch"].text();

@@ -42,7 +42,7 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
     for (const auto& term : terms)
         figure.series.push_back({term.name, Series::Style::bars, term.colour});
     double row = 0;
-    std::string said;
+    std::string gaps;
     for (std::size_t r = 0; r < shares.rows.size(); ++r) {
         const ChannelInfo channel{words(shares, r, "output"), words(shares, r, "unit")};
         const double range = range_of(outputs, channel.name), whole = number(shares, r, "whole");
@@ -55,14 +55,14 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
             figure.series[t].rows.push_back({value / 2, middle, std::min(0.0, value),
                                              std::max(0.0, value), middle - 0.11, middle + 0.11});
         }
-        said +=
+        gaps +=
             fmt::format(" {}: {} % of its range.", channel.label(), number(100 * whole / range, 2));
     }
     if (row == 0) return std::nullopt;
     figure.y_low = row - 0.6;
     figure.y_high = -0.4;
     figure.height = std::max(0.8, 0.35 + 0.13 * -row);
-    figure.description = "Bars of the three contributions per output. Whole gap:" + said;
+    figure.description = "Bars of the three contributions per output. Whole gap:" + gaps;
     group.caption = fmt::format("Branch {}, {}.", name, reading);
     group.figures.push_back(std::move(figure));
     return group;
@@ -70,7 +70,7 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
 
 }  // namespace
 
-std::optional<Section> attribution_section(const Field& scene) {
+std::optional<Section> attribution_section(const JsonCursor& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
     Section section{.id = "attribution", .title = "Contributions to the formulation gap"};

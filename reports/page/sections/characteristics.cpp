@@ -105,8 +105,9 @@ bool is(const std::string& channel, std::string_view name) {
     return channel == name || channel.ends_with("." + std::string(name));
 }
 
-std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const Drawn& drawn,
-                                  const std::string& x_axis, bool over_abscissa) {
+std::optional<FigureGroup> figure(const JsonCursor& scene, const JsonCursor& branch,
+                                  const Drawn& drawn, const std::string& x_axis,
+                                  bool over_abscissa) {
     FigureGroup group;
     Figure figure{
         .id = fmt::format("{}-{}", slug(std::string(drawn.name)), slug(branch["name"].text())),
@@ -168,7 +169,7 @@ std::optional<FigureGroup> figure(const Field& scene, const Field& branch, const
 
 }  // namespace
 
-std::optional<Section> characteristics_section(const Field& scene) {
+std::optional<Section> characteristics_section(const JsonCursor& scene) {
     const auto found = scene.find("characteristics");
     if (!found) return std::nullopt;
     Section section{.id = "characteristics", .title = "Kinematics and compliance"};

@@ -49,7 +49,7 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps,
 }
 
 // "at equal wheel centre y": display name of a channel.
-std::string spoken(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
+std::string readable(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
 
 // Step errors of one method over one branch.
 std::optional<FigureGroup> group(const std::string& branch, const compare::Table& table) {
@@ -63,7 +63,7 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
         const Levels levels = levels_of(where(table, "reading", reading));
         if (levels.steps.empty()) continue;
         const auto& [steps, phi, step, truth] = levels;
-        const std::string name = spoken(reading);
+        const std::string name = readable(reading);
         Figure figure{.id = fmt::format("steps-{}-{}", slug(branch), slug(name)),
                       .title = fmt::format("{}: {}", branch, name),
                       .description = {},
@@ -107,7 +107,7 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
 
 }  // namespace
 
-std::optional<Section> convergence_section(const Field& scene) {
+std::optional<Section> convergence_section(const JsonCursor& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
     Section section{.id = "convergence", .title = "Convergence with the number of steps"};
@@ -125,7 +125,7 @@ std::optional<Section> convergence_section(const Field& scene) {
                 !why.empty() && words(published, r, "reading") != readings.front())
                 section.words["notes"].push_back(
                     {{"branch", branch},
-                     {"reading", spoken(words(published, r, "reading"))},
+                     {"reading", readable(words(published, r, "reading"))},
                      {"why", why}});
         section.tables.push_back(
             page_table(fmt::format("Orders and gaps, branch {}, {}", branch, readings.front()),

@@ -20,7 +20,7 @@ struct Output {
     bool load = false;  // the load, over the abscissa
 };
 
-std::vector<Output> outputs_of(const Field& scene, const Sweep& sweep) {
+std::vector<Output> outputs_of(const JsonCursor& scene, const Sweep& sweep) {
     std::vector<Output> outputs;
     const auto channels = main_channels_of(scene);
     const bool wheel =
@@ -70,7 +70,8 @@ std::vector<double> values_of(const LegCurve& curve, const Output& output) {
     return values;
 }
 
-std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const Output& output) {
+std::optional<FigureGroup> group(const JsonCursor& scene, const Sweep& sweep,
+                                 const Output& output) {
     Series reference{"full solution (equilibrium)", Series::Style::wide, sky},
         energy{"its check (energy)", Series::Style::points, ink, 6},
         published{"published recursion", Series::Style::line, vermilion};
@@ -159,7 +160,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, const O
 }
 
 // Every main output at the end of a branch, by leg.
-Table outputs(const Field& scene, const Field& branch) {
+Table outputs(const JsonCursor& scene, const JsonCursor& branch) {
     Table table{
         .caption =
             fmt::format("Outputs at the end ({} {}) of branch {}", number(branch["to"].number(), 4),
@@ -179,7 +180,7 @@ Table outputs(const Field& scene, const Field& branch) {
 
 }  // namespace
 
-std::optional<Section> curves_section(const Field& scene) {
+std::optional<Section> curves_section(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
     Section section{.id = "curves", .title = "Outputs over travel, load or drive"};
     for (const auto& sweep : sweeps_of(scene))

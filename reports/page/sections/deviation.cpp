@@ -36,7 +36,8 @@ void raise_peak(double& most, const Profile& profile) {
 }
 
 // Worst deviation per unit: a figure with its table.
-std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::string_view unit) {
+std::optional<FigureGroup> group(const JsonCursor& scene, const Sweep& sweep,
+                                 std::string_view unit) {
     auto channels = main_channels_of(scene);
     std::erase_if(channels, [&](const ChannelInfo& c) { return c.unit != unit; });
     if (channels.empty()) return std::nullopt;
@@ -66,24 +67,24 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
             return branch["profiles"][reading][unit].numbers();
         };
         const Profile by_load = profile("at_equal_parameter"),
-                      by_travel = profile("at_equal_abscissa"), doubt = profile("references");
-        for (const auto* one : {&by_load, &by_travel, &doubt})
+                      by_travel = profile("at_equal_abscissa"), uncertainty = profile("references");
+        for (const auto* one : {&by_load, &by_travel, &uncertainty})
             if (one->size() > a.a.size()) branch["profiles"].fail("more numbers than points");
         raise_peak(load_peak, by_load);
         raise_peak(travel_peak, by_travel);
-        raise_peak(apart, doubt);
-        complete = complete && doubt.size() == by_load.size() && doubt.size() > 1;
+        raise_peak(apart, uncertainty);
+        complete = complete && uncertainty.size() == by_load.size() && uncertainty.size() > 1;
         append(curves.load, a.a, by_load);
         append(curves.travel, a.a, by_travel);
-        append(curves.references, a.a, doubt);
-        Profile rung;
-        std::vector<double> rung_load;
+        append(curves.references, a.a, uncertainty);
+        Profile recommended_errors;
+        std::vector<double> recommended_loads;
         if (recommended)
             for (const auto& own : (*recommended)["branches"].items()) {
                 if (own["name"].text() != branch["name"].text()) continue;
-                rung_load = own["a"].numbers();
-                rung = own[angle ? "error_deg" : "error_mm"].numbers();
-                append(curves.recommended, rung_load, rung);
+                recommended_loads = own["a"].numbers();
+                recommended_errors = own[angle ? "error_deg" : "error_mm"].numbers();
+                append(curves.recommended, recommended_loads, recommended_errors);
             }
         const auto rows = thinned(by_load.size(), 7);
         for (const auto k : rows) {
@@ -92,14 +93,16 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
                                          k < by_travel.size() ? number(by_travel[k]) : "–"};
             if (recommended) {
                 std::size_t nearest = 0;
-                for (std::size_t l = 0; l < rung.size(); ++l)
-                    if (std::abs(rung_load[l] - a.a[k]) < std::abs(rung_load[nearest] - a.a[k]))
+                for (std::size_t l = 0; l < recommended_errors.size(); ++l)
+                    if (std::abs(recommended_loads[l] - a.a[k]) <
+                        std::abs(recommended_loads[nearest] - a.a[k]))
                         nearest = l;
-                const bool same = !rung.empty() && std::abs(rung_load[nearest] - a.a[k]) <=
-                                                       1e-9 * std::abs(a.a.back());
-                row.push_back(same ? number(rung[nearest]) : "–");
+                const bool same =
+                    !recommended_errors.empty() &&
+                    std::abs(recommended_loads[nearest] - a.a[k]) <= 1e-9 * std::abs(a.a.back());
+                row.push_back(same ? number(recommended_errors[nearest]) : "–");
             }
-            row.push_back(k < doubt.size() ? number(doubt[k]) : "–");
+            row.push_back(k < uncertainty.size() ? number(uncertainty[k]) : "–");
             rows_by_load.emplace_back(a.a[k], row);
         }
     }
@@ -120,8 +123,8 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
             if (row.size() == 2) high = std::max(high, row[1]);
     double tolerance = NAN;
     if (const auto trade = scene.find("trade"))
-        if (const auto asked = (*trade)["tolerance"].find(std::string(unit)))
-            tolerance = asked->number();
+        if (const auto required = (*trade)["tolerance"].find(std::string(unit)))
+            tolerance = required->number();
     if (std::isfinite(tolerance)) high = std::max(high, tolerance);
     // Six decades are shown; smaller values lie on the lower edge.
     figure.y_low = std::pow(10, std::floor(std::log10(high)) - 6);
@@ -169,7 +172,7 @@ std::optional<FigureGroup> group(const Field& scene, const Sweep& sweep, std::st
 std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); }
 
 // One row per main channel, and per joint for its worst force and moment component.
-Table deviations(const Field& scene, const Field& branch) {
+Table deviations(const JsonCursor& scene, const JsonCursor& branch) {
     Table table{.caption = fmt::format(
                     "Deviation of the published recursion from the full solution, branch {}",
                     branch["name"].text())};
@@ -186,9 +189,10 @@ Table deviations(const Field& scene, const Field& branch) {
         {"rms"},
         {"share"},
         {"difference of the references"}};
-    const Field load = branch["deviation"]["at_equal_parameter"]["channels"];
-    const Field travel = branch["deviation"]["at_equal_abscissa"]["channels"];
-    const Field doubt = branch["reference_uncertainty"]["at_equal_parameter"]["channels"];
+    const JsonCursor load = branch["deviation"]["at_equal_parameter"]["channels"];
+    const JsonCursor travel = branch["deviation"]["at_equal_abscissa"]["channels"];
+    const JsonCursor uncertainty =
+        branch["reference_uncertainty"]["at_equal_parameter"]["channels"];
     struct Row {
         ChannelInfo channel;
         double max;
@@ -209,7 +213,7 @@ Table deviations(const Field& scene, const Field& branch) {
     }
     std::erase_if(rows, [](const Row& r) { return !r.channel.main && r.max < 1e-6; });
     for (const auto& [channel, max] : rows) {
-        const Field d = load[channel.name];
+        const JsonCursor d = load[channel.name];
         std::vector<std::string> row{channel.heading(),
                                      number(d["range"].number(), 4),
                                      deviation_number(d["signed_max"].number()),
@@ -223,7 +227,7 @@ Table deviations(const Field& scene, const Field& branch) {
         } else {
             row.insert(row.end(), {"–", "–", "–", "–"});
         }
-        const auto u = doubt.find(channel.name);
+        const auto u = uncertainty.find(channel.name);
         row.push_back(u ? number((*u)["max"].number(), 2) : "–");
         table.rows.push_back(row);
     }
@@ -232,7 +236,7 @@ Table deviations(const Field& scene, const Field& branch) {
 
 }  // namespace
 
-std::optional<Section> deviation_section(const Field& scene) {
+std::optional<Section> deviation_section(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
     Section section{.id = "deviation", .title = "Deviation over the branch"};
     for (const auto& sweep : sweeps_of(scene))

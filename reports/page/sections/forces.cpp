@@ -68,7 +68,7 @@ using Deformations = std::map<std::tuple<std::string, double, std::string>, std:
 
 }  // namespace
 
-std::optional<Section> forces_section(const Field& scene) {
+std::optional<Section> forces_section(const JsonCursor& scene) {
     const auto field = scene.find("forces");
     if (!field) return std::nullopt;
     const compare::Table forces = read_table(*field, compare::force_table({}));

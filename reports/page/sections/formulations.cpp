@@ -11,7 +11,7 @@
 
 namespace elastocheck::reports {
 
-std::optional<Section> formulations_section(const Field& scene) {
+std::optional<Section> formulations_section(const JsonCursor& scene) {
     const auto study = scene.find("formulations");
     if (!study) return std::nullopt;
     Section section{.id = "formulations",

@@ -31,31 +31,32 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
                   .log_y = true};
     std::map<double, std::vector<std::vector<double>>, std::greater<>> by_tolerance;
     for (std::size_t r = 0; r < levels.rows.size(); ++r)
-        if (const double told = number(levels, r, "told");
-            std::isfinite(told) && words(levels, r, "outcome") == name(Outcome::converged))
-            by_tolerance[told].push_back(
+        if (const double tolerance = number(levels, r, "told");
+            std::isfinite(tolerance) && words(levels, r, "outcome") == name(Outcome::converged))
+            by_tolerance[tolerance].push_back(
                 {number(levels, r, "order"), number(levels, r, "expansions")});
-    std::vector<std::string> told;
+    std::vector<std::string> listed;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
         figure.series.push_back({fmt::format("tolerance {} m", number(tolerance, 1)),
                                  Series::Style::line_points, colours[k % std::size(colours)],
                                  static_cast<int>(4 + k), rows});
-        told.push_back(fmt::format("tolerance {} m, {} expansions at order {} and {} at order {}",
-                                   number(tolerance, 1), number(rows.front()[1], 3),
-                                   number(rows.front()[0], 2), number(rows.back()[1], 3),
-                                   number(rows.back()[0], 2)));
+        listed.push_back(fmt::format("tolerance {} m, {} expansions at order {} and {} at order {}",
+                                     number(tolerance, 1), number(rows.front()[1], 3),
+                                     number(rows.front()[0], 2), number(rows.back()[1], 3),
+                                     number(rows.back()[0], 2)));
     }
     if (figure.series.empty()) return group;
     figure.description =
-        "Logarithmic plot of the number of expansions over their order: " + enumerated(told) + ".";
+        "Logarithmic plot of the number of expansions over their order: " + enumerated(listed) +
+        ".";
     group.figures.push_back(std::move(figure));
     return group;
 }
 
 }  // namespace
 
-std::optional<Section> orders_section(const Field& scene) {
+std::optional<Section> orders_section(const JsonCursor& scene) {
     const auto orders = scene.find("orders");
     if (!orders) return std::nullopt;
     Section section{.id = "orders", .title = "Series method: the branch as power series"};

@@ -10,7 +10,7 @@
 
 namespace elastocheck::reports {
 
-std::optional<Section> references_section(const Field& scene) {
+std::optional<Section> references_section(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
     Section section{.id = "references", .title = "Agreement and certification of the references"};
     Table agreement{
@@ -54,10 +54,10 @@ std::optional<Section> references_section(const Field& scene) {
         for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
     if (times) work.columns.push_back({"time [ms]"});
     const auto channels = channels_of(scene);
-    bool said = false;  // the theorem has been printed
+    bool theorem_printed = false;  // the theorem has been printed
     for (const auto& branch : scene["branches"].items()) {
         const std::string name = branch["name"].text();
-        const Field apart = branch["reference_uncertainty"]["at_equal_parameter"];
+        const JsonCursor apart = branch["reference_uncertainty"]["at_equal_parameter"];
         std::vector<std::string> row{name};
         int compared = 0;
         for (const char* unit : {"mm", "deg", "N", "N·m"}) {
@@ -98,11 +98,11 @@ std::optional<Section> references_section(const Field& scene) {
                      (*proof)["not_proved"].text()});
                 if (proved > 0) section.words["proofs"] = true;
                 const std::string also = (*proof)["says_also"].text();
-                if (!said && !also.empty()) section.words["says_also"].push_back(also);
-                said = said || !also.empty();
+                if (!theorem_printed && !also.empty()) section.words["says_also"].push_back(also);
+                theorem_printed = theorem_printed || !also.empty();
             }
-            if (const auto told = leg.find("told"))
-                for (const auto& line : told->texts())
+            if (const auto messages = leg.find("told"))
+                for (const auto& line : messages->texts())
                     section.words["told"].push_back(fmt::format("Branch {}, reported by {}: {}",
                                                                 name, leg["leg"].text(), line));
             const std::string detail = leg["detail"].text();

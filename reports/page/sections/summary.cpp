@@ -36,7 +36,7 @@ std::string end_number(double a) {
 
 // One end of the sweep, by the equilibrium leg.
 struct End {
-    Field branch;
+    JsonCursor branch;
     LegCurve curve;
     std::size_t at = 0;
     double a = 0;  // of the parameter
@@ -66,7 +66,7 @@ struct Tile {
 };
 
 // Rates at the ends of the sweep for one wheel; for the other only where they differ.
-void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep) {
+void add_rates(std::vector<Tile>& tiles, const JsonCursor& scene, const Sweep& sweep) {
     for (const bool ride : {false, true}) {
         std::vector<std::string> wheels;
         for (const auto& rate : scene["rate_errors"].items())
@@ -108,7 +108,7 @@ void add_rates(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep)
 }
 
 // Rates at the design position; the first of equal wheels.
-void add_characteristics(std::vector<Tile>& tiles, const Field& scene) {
+void add_characteristics(std::vector<Tile>& tiles, const JsonCursor& scene) {
     const auto found = scene.find("characteristics");
     if (!found) return;
     struct Wanted {
@@ -140,7 +140,7 @@ void add_characteristics(std::vector<Tile>& tiles, const Field& scene) {
 }
 
 // Changes of outputs at the ends; equal wheels are shown once.
-void add_changes(std::vector<Tile>& tiles, const Field& scene, const Sweep& sweep) {
+void add_changes(std::vector<Tile>& tiles, const JsonCursor& scene, const Sweep& sweep) {
     struct Wanted {
         const char *name, *text;
     };
@@ -181,11 +181,11 @@ void add_changes(std::vector<Tile>& tiles, const Field& scene, const Sweep& swee
 
 }  // namespace
 
-std::optional<Section> first_section(const Field& scene) {
+std::optional<Section> first_section(const JsonCursor& scene) {
     Section section{.id = "first", .title = "In one sentence"};
     json& words = section.words;
     const auto judgement = scene.find("judgement");
-    const Field verdict = scene["verdict"];
+    const JsonCursor verdict = scene["verdict"];
     if (judgement && verdict["conclusive"].truth()) {
         const std::string found = (*judgement)["verdict"].text();
         words["sentence"] = (*judgement)["sentence"].text();
@@ -227,10 +227,10 @@ std::optional<Section> first_section(const Field& scene) {
         suspension->wheels.empty() ? "" : "; the tyre’s width is only drawn");
     group.table = {.caption = "Points",
                    .columns = {{"point", true}, {"x [mm]"}, {"y [mm]"}, {"z [mm]"}}};
-    std::vector<std::string> told;
+    std::vector<std::string> listed;
     for (const auto& point : suspension->points) {
-        if (std::ranges::find(told, point.name) != told.end()) continue;
-        told.push_back(point.name);
+        if (std::ranges::find(listed, point.name) != listed.end()) continue;
+        listed.push_back(point.name);
         group.table.rows.push_back(
             {point.name, number(point.at[0], 4), number(point.at[1], 4), number(point.at[2], 4)});
     }

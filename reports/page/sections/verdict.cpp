@@ -31,7 +31,7 @@ struct Worst {
     std::string label() const { return fmt::format("{}, worst {}", channel, reading); }
 };
 
-std::optional<Worst> worst_of(const Field& scene, const char* reading, const char* unit) {
+std::optional<Worst> worst_of(const JsonCursor& scene, const char* reading, const char* unit) {
     const auto found = scene["findings"][reading].find(unit);
     if (!found) return std::nullopt;
     const ChannelInfo channel{(*found)["channel"].text(), unit};
@@ -48,9 +48,9 @@ std::optional<Worst> worst_of(const Field& scene, const char* reading, const cha
     return worst;
 }
 
-// Place of a wheel rate: "jounce"; "travel at −80 mm", "jounce (left wheel)" if otherwise
+// Position of a wheel rate: "jounce"; "travel at −80 mm", "jounce (left wheel)" if otherwise
 // ambiguous.
-std::string end_of(const Field& scene, const Field& rate) {
+std::string end_of(const JsonCursor& scene, const JsonCursor& rate) {
     std::string text = rate["branch"].text();
     const std::string wheel = rate["wheel"].text();
     int ends = 0;
@@ -62,7 +62,7 @@ std::string end_of(const Field& scene, const Field& rate) {
 }
 
 // Wheel-rate error of the recursion for each branch that lifts a wheel: "2.9 % too soft".
-json rate_words(const Field& scene) {
+json rate_words(const JsonCursor& scene) {
     json list = json::array();
     for (const auto& rate : scene["rate_errors"].items()) {
         const double off = rate["off"].number();
@@ -77,7 +77,7 @@ json rate_words(const Field& scene) {
 
 // Force with the largest error: of a driver of a branch if it has an error at all, else of a joint.
 // Positions under a prescribed motion are exact whatever the error of the driving force.
-json force_words(const Field& scene) {
+json force_words(const JsonCursor& scene) {
     json words = nullptr;
     bool of_drive = false;
     double most = 1e-6;  // [N], [N·m]: smaller errors are rounding
@@ -99,7 +99,7 @@ json force_words(const Field& scene) {
 }
 
 // Branches on which the recursion failed.
-json failures(const Field& scene) {
+json failures(const JsonCursor& scene) {
     json list = json::array();
     for (const auto& branch : scene["branches"].items())
         for (const auto& leg : branch["legs"].items())
@@ -109,7 +109,7 @@ json failures(const Field& scene) {
     return list;
 }
 
-json gap_words(const Field& scene) {
+json gap_words(const JsonCursor& scene) {
     const auto part = scene["findings"].find("gap");
     if (!part) return nullptr;
     const double gap = (*part)["gap"].number(), share = gap / (*part)["deviation"].number();
@@ -120,7 +120,7 @@ json gap_words(const Field& scene) {
 }
 
 // Largest error, on the ladder and in the confirming run, and the reference uncertainty.
-std::string held(const Field& chosen) {
+std::string error_text(const JsonCursor& chosen) {
     std::string text;
     for (const char* unit : {"mm", "deg"}) {
         const auto found = chosen["expected_error"].find(unit),
@@ -143,14 +143,14 @@ std::string time_ratio(double ratio) {
     return fmt::format("{} times", number(ratio, 2));
 }
 
-json recommendation_words(const Field& scene, std::vector<json>& tiles) {
+json recommendation_words(const JsonCursor& scene, std::vector<json>& tiles) {
     const auto trade = scene.find("trade");
     if (!trade) return nullptr;
-    const Field tolerance = (*trade)["tolerance"];
-    std::vector<std::string> asked;
+    const JsonCursor tolerance = (*trade)["tolerance"];
+    std::vector<std::string> required;
     for (const char* unit : {"mm", "deg"})
-        if (const auto t = tolerance.find(unit)) asked.push_back(setting(t->number(), unit));
-    json words = {{"asked", enumerated(asked)}};
+        if (const auto t = tolerance.find(unit)) required.push_back(setting(t->number(), unit));
+    json words = {{"asked", enumerated(required)}};
     const auto chosen = trade->find("recommendation");
     if (!chosen) {
         words[(*trade)["inconclusive"].items().empty() ? "none" : "unjudged"] = true;
@@ -158,7 +158,7 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     }
     words["found"] = {{"text", configuration(*chosen)},
                       {"method", (*chosen)["method"].text()},
-                      {"holds", held(*chosen)},
+                      {"holds", error_text(*chosen)},
                       {"numbers", whole_number((*chosen)["confirmed_numbers"].whole())}};
     if (const auto steps = chosen->find("steps"))
         words["found"]["steps"] = whole_number(steps->whole());
@@ -167,20 +167,20 @@ json recommendation_words(const Field& scene, std::vector<json>& tiles) {
     words["found"]["factorisations"] = whole_number((*chosen)["factorisations"].whole());
     const double ratio = (*chosen)["time_ratio"].number();
     if (std::isfinite(ratio)) words["found"]["time"] = time_ratio(ratio);
-    tiles.push_back(
-        {{"key", "chosen"},
-         {"value", configuration(*chosen)},
-         {"label", fmt::format("cheapest within {}: error {}", enumerated(asked), held(*chosen))}});
+    tiles.push_back({{"key", "chosen"},
+                     {"value", configuration(*chosen)},
+                     {"label", fmt::format("cheapest within {}: error {}", enumerated(required),
+                                           error_text(*chosen))}});
     return words;
 }
 
 }  // namespace
 
-std::optional<Section> verdict_section(const Field& scene) {
+std::optional<Section> verdict_section(const JsonCursor& scene) {
     Section section{.id = "verdict", .title = "Verdict"};
     json& words = section.words;
     std::vector<json> tiles;
-    const Field verdict = scene["verdict"];
+    const JsonCursor verdict = scene["verdict"];
     words["conclusive"] = verdict["conclusive"].truth();
     words["reasons"] = verdict["reasons"].texts();
     words["numbers"] = whole_number(verdict["numbers_compared"].whole());

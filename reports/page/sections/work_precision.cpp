@@ -16,8 +16,8 @@ namespace {
 
 constexpr Colour colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
 
-Figure figure(const Field& trade, const compare::Table& points, const char* id, const char* price,
-              char front, const char* axis, const char* title) {
+Figure figure(const JsonCursor& trade, const compare::Table& points, const char* id,
+              const char* price, char front, const char* axis, const char* title) {
     Figure figure{.id = id,
                   .title = title,
                   .x = axis,
@@ -78,7 +78,7 @@ Figure figure(const Field& trade, const compare::Table& points, const char* id, 
 
 }  // namespace
 
-std::optional<Section> price_section(const Field& scene) {
+std::optional<Section> price_section(const JsonCursor& scene) {
     const auto trade = scene.find("trade");
     if (!trade) return std::nullopt;
     Section section{.id = "price", .title = "Cost of accuracy"};
@@ -114,7 +114,7 @@ std::optional<Section> price_section(const Field& scene) {
     else
         section.figures.push_back(std::move(group));
     if (const auto chosen = trade->find("recommendation")) {
-        const auto both = [](const Field& f) {
+        const auto both = [](const JsonCursor& f) {
             std::string text = quantity(f["mm"].number(), "mm");
             if (const auto deg = f.find("deg")) text += ", " + quantity(deg->number(), "deg");
             return text;

@@ -10,16 +10,16 @@
 
 namespace elastocheck::reports {
 
-const std::vector<Shown> order_columns{{"told", Digits::given},
-                                       {"order"},
-                                       {"outcome"},
-                                       {"expansions"},
-                                       {"factorisations"},
-                                       {"solves"},
-                                       {"error", Digits::size},
-                                       {"angle error", Digits::size, "error"},
-                                       {"residual", Digits::size},
-                                       {"first reach", Digits::percent}};
+const std::vector<ShownColumn> order_columns{{"told", Digits::given},
+                                             {"order"},
+                                             {"outcome"},
+                                             {"expansions"},
+                                             {"factorisations"},
+                                             {"solves"},
+                                             {"error", Digits::size},
+                                             {"angle error", Digits::size, "error"},
+                                             {"residual", Digits::size},
+                                             {"first reach", Digits::percent}};
 
 std::string order_text(const compare::Table& orders) {
     std::string all;

@@ -9,7 +9,7 @@
 namespace elastocheck::reports {
 
 // of compare::order_table, on the terminal and the page
-extern const std::vector<Shown> order_columns;
+extern const std::vector<ShownColumn> order_columns;
 
 std::string order_text(const compare::Table& orders);
 

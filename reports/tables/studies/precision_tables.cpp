@@ -8,7 +8,7 @@
 
 namespace elastocheck::reports {
 
-const std::vector<Shown> floor_columns{
+const std::vector<ShownColumn> floor_columns{
     {"method"},
     {"arithmetic"},
     {"least constraint error", Digits::size, "least |Φ|"},
@@ -33,7 +33,7 @@ std::string precision_text(const compare::PrecisionStudy& study) {
         for (auto& cell : row)
             if (cell == compare::Cell(std::string(name(Outcome::converged)))) cell = std::string();
     for (const auto& method : distinct(wide, "method")) {
-        std::vector<Shown> shown{{"steps"}};
+        std::vector<ShownColumn> shown{{"steps"}};
         for (const auto& a : arithmetics) {
             shown.push_back({a + ": outcome", {}, a});
             shown.push_back({a + ": constraint error", Digits::size, a + ": |Φ|"});

@@ -10,7 +10,7 @@
 namespace elastocheck::reports {
 
 // of compare::floor_table, on the terminal and the page
-extern const std::vector<Shown> floor_columns;
+extern const std::vector<ShownColumn> floor_columns;
 
 std::string precision_text(const compare::PrecisionStudy& study);
 

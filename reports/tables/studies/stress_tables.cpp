@@ -26,7 +26,7 @@ compare::Column words(std::string name, std::string description = {}) {
 }
 
 // NaN for an infinite or missing value.
-double told(double value) { return std::isfinite(value) ? value : std::nan(""); }
+double finite_or_nan(double value) { return std::isfinite(value) ? value : std::nan(""); }
 
 std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep,
                   const std::string& variant = {}) {
@@ -139,7 +139,8 @@ compare::Table cell_table(const Survival& survival) {
     for (const auto& c : survival.cells)
         table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome),
                               name(c.verdict), name(c.knowledge), c.digits, c.lost, 1e3 * c.apart,
-                              1e3 * c.error, told(1e3 * c.claim), 1e3 * c.range, c.why, c.detail});
+                              1e3 * c.error, finite_or_nan(1e3 * c.claim), 1e3 * c.range, c.why,
+                              c.detail});
     return table;
 }
 

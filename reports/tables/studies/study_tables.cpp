@@ -8,39 +8,39 @@
 
 namespace elastocheck::reports {
 
-const std::vector<Shown> study_columns{{"method"},
-                                       {"output"},
-                                       {"unit"},
-                                       {"behaviour"},
-                                       {"order", Digits::three},
-                                       {"order error", Digits::size, "±"},
-                                       {"finest step error", Digits::size},
-                                       {"gap", Digits::three, "gap at end"},
-                                       {"band", Digits::size, "± band"},
-                                       {"gap share", Digits::three, "of the range"},
-                                       {"gap exponent", Digits::three, "growth a^"},
-                                       {"references apart", Digits::size},
-                                       {"not studied"}};
+const std::vector<ShownColumn> study_columns{{"method"},
+                                             {"output"},
+                                             {"unit"},
+                                             {"behaviour"},
+                                             {"order", Digits::three},
+                                             {"order error", Digits::size, "±"},
+                                             {"finest step error", Digits::size},
+                                             {"gap", Digits::three, "gap at end"},
+                                             {"band", Digits::size, "± band"},
+                                             {"gap share", Digits::three, "of the range"},
+                                             {"gap exponent", Digits::three, "growth a^"},
+                                             {"references apart", Digits::size},
+                                             {"not studied"}};
 
-const std::vector<Shown> gap_columns{{"output"},
-                                     {"unit"},
-                                     {"whole", Digits::three},
-                                     {"lever", Digits::three, "stored force's lever"},
-                                     {"lever share", Digits::three, "share"},
-                                     {"axis", Digits::three, "its axis and law"},
-                                     {"axis share", Digits::three, "share"},
-                                     {"load", Digits::three, "load's lever"},
-                                     {"load share", Digits::three, "share"},
-                                     {"rest", Digits::size},
-                                     {"band", Digits::size, "± band"},
-                                     {"not attributed"}};
+const std::vector<ShownColumn> gap_columns{{"output"},
+                                           {"unit"},
+                                           {"whole", Digits::three},
+                                           {"lever", Digits::three, "stored force's lever"},
+                                           {"lever share", Digits::three, "share"},
+                                           {"axis", Digits::three, "its axis and law"},
+                                           {"axis share", Digits::three, "share"},
+                                           {"load", Digits::three, "load's lever"},
+                                           {"load share", Digits::three, "share"},
+                                           {"rest", Digits::size},
+                                           {"band", Digits::size, "± band"},
+                                           {"not attributed"}};
 
 namespace {
 
 // Levels side by side: one row per combination of `keys`, one column per step count.
 std::string over_steps(const compare::Table& levels, std::vector<std::string> keys,
                        const std::string& value) {
-    std::vector<Shown> shown;
+    std::vector<ShownColumn> shown;
     for (const auto& key : keys) shown.push_back({key});
     const std::size_t count = keys.size();
     keys.insert(keys.end(), {"steps", value});

@@ -11,8 +11,8 @@
 
 namespace elastocheck::reports {
 
-extern const std::vector<Shown> study_columns;  // displayed columns of study_table
-extern const std::vector<Shown> gap_columns;    // of gap_table
+extern const std::vector<ShownColumn> study_columns;  // displayed columns of study_table
+extern const std::vector<ShownColumn> gap_columns;    // of gap_table
 
 std::string study_text(const Model& model, const compare::Study& study,
                        const std::vector<compare::BranchAttribution>& attribution);

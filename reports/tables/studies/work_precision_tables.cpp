@@ -21,7 +21,7 @@ std::string forces(double share) {
     return fmt::format("{:.2g} % of the extent of forces and moments", 100 * share);
 }
 
-std::string asked(const compare::Tolerance& tolerance) {
+std::string tolerance_text(const compare::Tolerance& tolerance) {
     std::string text;
     const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
     if (std::isfinite(tolerance.mm)) add(fmt::format("{:g} mm", tolerance.mm));
@@ -42,13 +42,13 @@ void recommendation(const compare::Trade& trade, std::string& text) {
     for (const auto& reason : trade.inconclusive) fmt::format_to(out, "INCONCLUSIVE: {}\n", reason);
     for (const auto& line : trade.rejected) fmt::format_to(out, "Not confirmed: {}\n", line);
     if (!trade.recommendation) {
-        fmt::format_to(out, "For {}: nothing here reaches it.\n", asked(trade.tolerance));
+        fmt::format_to(out, "For {}: nothing here reaches it.\n", tolerance_text(trade.tolerance));
         return;
     }
     const auto& r = *trade.recommendation;
     const TradePoint& point = trade.points[r.point];
     fmt::format_to(out, "For {}: {}, at {:.3g} of the equilibrium leg's time.\n",
-                   asked(trade.tolerance), describe(point), point.ratio);
+                   tolerance_text(trade.tolerance), describe(point), point.ratio);
     fmt::format_to(out, "  expected error {:.2e} mm ({:.2e} to {:.2e})", r.expected.mm, r.low.mm,
                    r.high.mm);
     if (trade.angles)
@@ -62,19 +62,19 @@ void recommendation(const compare::Trade& trade, std::string& text) {
 
 }  // namespace
 
-const std::vector<Shown> trade_columns{{"method"},
-                                       {"steps"},
-                                       {"told", Digits::given},
-                                       {"error", Digits::size},
-                                       {"angle error", Digits::size, "error"},
-                                       {"solves"},
-                                       {"factorisations"},
-                                       {"evaluations"},
-                                       {"price"},
-                                       {"time", Digits::three},
-                                       {"time ratio", Digits::three, "ratio"},
-                                       {"front"},
-                                       {"not ranked"}};
+const std::vector<ShownColumn> trade_columns{{"method"},
+                                             {"steps"},
+                                             {"told", Digits::given},
+                                             {"error", Digits::size},
+                                             {"angle error", Digits::size, "error"},
+                                             {"solves"},
+                                             {"factorisations"},
+                                             {"evaluations"},
+                                             {"price"},
+                                             {"time", Digits::three},
+                                             {"time ratio", Digits::three, "ratio"},
+                                             {"front"},
+                                             {"not ranked"}};
 
 std::string trade_text(const Model& model, const compare::Trade& trade) {
     std::string text;

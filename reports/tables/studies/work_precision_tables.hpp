@@ -11,7 +11,7 @@
 namespace elastocheck::reports {
 
 // of compare::trade_table, on the terminal and the page
-extern const std::vector<Shown> trade_columns;
+extern const std::vector<ShownColumn> trade_columns;
 
 std::string trade_text(const Model& model, const compare::Trade& trade);
 

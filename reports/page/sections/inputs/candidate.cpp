@@ -12,13 +12,13 @@
 namespace elastocheck::reports {
 namespace {
 
-std::string cell(const std::optional<Field>& deviation) {
+std::string cell(const std::optional<JsonCursor>& deviation) {
     return deviation ? signed_number((*deviation)["signed_max"].number()) : "–";
 }
 
 // Deviations of every output that the candidate gives on a branch, beside those of the recursion.
-Table beside_the_recursion(const Field& scene, const std::string& who, const Field& candidate,
-                           const Field& branch) {
+Table beside_the_recursion(const JsonCursor& scene, const std::string& who,
+                           const JsonCursor& candidate, const JsonCursor& branch) {
     const std::string name = branch["name"].text(), unit = branch["unit"].text();
     const auto abscissa = branch.find("abscissa");
     const std::string load = compare::parameter_reading(unit),
@@ -31,12 +31,13 @@ Table beside_the_recursion(const Field& scene, const std::string& who, const Fie
                             {"share of the range"},
                             {"published recursion, " + load},
                             {"published recursion, " + travel}}};
-    std::optional<Field> recursion;
+    std::optional<JsonCursor> recursion;
     for (const auto& of : scene["branches"].items())
         if (of["name"].text() == name) recursion = of["deviation"];
     for (const auto& channel : candidate["channels"].items()) {
         const std::string output = channel["name"].text();
-        const auto of = [&](const Field& deviation, const char* reading) -> std::optional<Field> {
+        const auto of = [&](const JsonCursor& deviation,
+                            const char* reading) -> std::optional<JsonCursor> {
             const auto found = deviation.find(reading);
             if (!found) return std::nullopt;
             const auto channels = found->find("channels");
@@ -45,7 +46,7 @@ Table beside_the_recursion(const Field& scene, const std::string& who, const Fie
         const auto mine = of(branch, "at_equal_parameter"),
                    across = of(branch, "at_equal_abscissa");
         if (!mine && !across) continue;
-        const Field& some = mine ? *mine : *across;
+        const JsonCursor& some = mine ? *mine : *across;
         if (!channel["judged"].truth() && some["max"].number() < 1e-6) continue;
         table.rows.push_back(
             {fmt::format("{} [{}]", output, channel["unit"].text()), cell(mine), cell(across),
@@ -56,7 +57,7 @@ Table beside_the_recursion(const Field& scene, const std::string& who, const Fie
     return table;
 }
 
-double largest_of(const Field& list) {
+double largest_of(const JsonCursor& list) {
     double worst = 0;
     for (const double v : list.numbers())
         if (!(v <= worst)) worst = std::isnan(worst) ? worst : v;
@@ -64,7 +65,7 @@ double largest_of(const Field& list) {
 }
 
 // Residuals of its states in the equations of the legs.
-Table leftovers(const std::string& who, const Field& states) {
+Table leftovers(const std::string& who, const JsonCursor& states) {
     Table table{
         .caption = fmt::format(
             "Largest residuals of the states of {} in the equations of the references", who),
@@ -75,7 +76,7 @@ Table leftovers(const std::string& who, const Field& states) {
                     {"moment [N·m]"},
                     {"constraints [mm]"}}};
     for (const auto& of : states.items()) {
-        const auto row = [&](const std::string& leg, const Field& left) {
+        const auto row = [&](const std::string& leg, const JsonCursor& left) {
             table.rows.push_back(
                 {of["branch"].text(), leg, whole_number(static_cast<long>(of["a"].items().size())),
                  number(largest_of(left["force_N"]), 2), number(largest_of(left["moment_Nm"]), 2),
@@ -89,12 +90,12 @@ Table leftovers(const std::string& who, const Field& states) {
 
 }  // namespace
 
-std::optional<Section> candidate_section(const Field& scene) {
+std::optional<Section> candidate_section(const JsonCursor& scene) {
     const auto candidates = scene.find("candidates");
     if (!candidates || candidates->items().empty()) return std::nullopt;
     Section section{.id = "candidate", .title = "The candidate"};
     section.mark = Mark::pass;
-    nlohmann::ordered_json told = nlohmann::ordered_json::array();
+    nlohmann::ordered_json listed = nlohmann::ordered_json::array();
     for (const auto& candidate : candidates->items()) {
         const std::string verdict = candidate["verdict"].text();
         if (verdict == "fail")
@@ -105,7 +106,7 @@ std::optional<Section> candidate_section(const Field& scene) {
                                notes = nlohmann::ordered_json::array();
         for (const auto& reason : candidate["reasons"].texts()) reasons.push_back(reason);
         for (const auto& note : candidate["notes"].texts()) notes.push_back(note);
-        told.push_back(
+        listed.push_back(
             {{"sentence", candidate["sentence"].text()}, {"reasons", reasons}, {"notes", notes}});
         const std::string who = candidate["name"].text();
         for (const auto& branch : candidate["branches"].items())
@@ -115,11 +116,11 @@ std::optional<Section> candidate_section(const Field& scene) {
         if (!candidate["states"].items().empty())
             section.tables.push_back(leftovers(who, candidate["states"]));
     }
-    section.words = {{"candidates", told}};
+    section.words = {{"candidates", listed}};
     return section;
 }
 
-std::vector<Series> candidate_series(const Field& scene, const Sweep& sweep,
+std::vector<Series> candidate_series(const JsonCursor& scene, const Sweep& sweep,
                                      const std::string& channel, bool change, bool travel) {
     std::vector<Series> list;
     const auto candidates = scene.find("candidates");
@@ -127,15 +128,15 @@ std::vector<Series> candidate_series(const Field& scene, const Sweep& sweep,
     for (const auto& candidate : candidates->items()) {
         Series series{candidate["name"].text(), Series::Style::rings, green, 4};
         for (const auto& branch : candidate["branches"].items()) {
-            const auto of = std::ranges::find_if(sweep.branches, [&](const Field& b) {
+            const auto of = std::ranges::find_if(sweep.branches, [&](const JsonCursor& b) {
                 return b["name"].text() == branch["name"].text();
             });
             if (of == sweep.branches.end()) continue;
-            const Field curve = branch["curve"];
+            const JsonCursor curve = branch["curve"];
             const auto y = curve["outputs"].find(channel);
             const auto abscissa = branch.find("abscissa");
             const bool over_abscissa = curve["over"].text() == "abscissa";
-            std::optional<Field> x;
+            std::optional<JsonCursor> x;
             if (travel == over_abscissa)
                 x = curve["at"];
             else if (travel && abscissa)

@@ -8,7 +8,7 @@
 
 namespace elastocheck::reports {
 
-std::optional<Section> drawing_section(const Field& scene) {
+std::optional<Section> drawing_section(const JsonCursor& scene) {
     const auto suspension = suspension_of(scene);
     if (!suspension) return std::nullopt;
     const std::string noun = noun_of(*suspension);

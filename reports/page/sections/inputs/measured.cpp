@@ -15,12 +15,12 @@ namespace {
 
 bool is_of(const Sweep& sweep, const std::string& branch) {
     return std::ranges::any_of(sweep.branches,
-                               [&](const Field& b) { return b["name"].text() == branch; });
+                               [&](const JsonCursor& b) { return b["name"].text() == branch; });
 }
 
 }  // namespace
 
-bool measured_over_parameter(const Field& scene, const Sweep& sweep) {
+bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep) {
     const auto measured = scene.find("measured");
     if (!measured) return false;
     const auto abscissa = measured->find("abscissa");
@@ -35,11 +35,11 @@ bool measured_over_parameter(const Field& scene, const Sweep& sweep) {
 
 namespace {
 
-std::optional<Series> points_of(const Field& scene, const std::vector<Field>& branches,
+std::optional<Series> points_of(const JsonCursor& scene, const std::vector<JsonCursor>& branches,
                                 bool over_travel, const std::string& channel, bool change) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
-    const Field columns = (*measured)["columns"];
+    const JsonCursor columns = (*measured)["columns"];
     const auto abscissa = measured->find("abscissa");
     const auto across =
         over_travel && abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
@@ -66,19 +66,20 @@ std::optional<Series> points_of(const Field& scene, const std::vector<Field>& br
     return series;
 }
 
-bool over_travel(const Field& scene, const Sweep& sweep) {
+bool over_travel(const JsonCursor& scene, const Sweep& sweep) {
     return !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
 }
 
 }  // namespace
 
-std::optional<Series> measured_series(const Field& scene, const Sweep& sweep,
+std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& sweep,
                                       const std::string& channel, bool change) {
     return points_of(scene, sweep.branches, over_travel(scene, sweep), channel, change);
 }
 
-std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
-                                   const std::string& channel, bool change) {
+std::optional<Series> measured_for(const JsonCursor& scene, const Sweep& sweep,
+                                   const JsonCursor& branch, const std::string& channel,
+                                   bool change) {
     const auto measured = scene.find("measured");
     if (!measured || !(*measured)["branch_given"].truth())
         return measured_series(scene, sweep, channel, change);
@@ -98,7 +99,7 @@ double value_between(const Series& measured, double x) {
     return NAN;
 }
 
-std::optional<Section> measured_section(const Field& scene) {
+std::optional<Section> measured_section(const JsonCursor& scene) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
     Section section{.id = "measured", .title = "Comparison with the measurement"};

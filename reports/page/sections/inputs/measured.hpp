@@ -12,16 +12,17 @@ namespace elastocheck::reports {
 
 // Whether the points of these branches give their parameter but no travel; figures with them use
 // the parameter then.
-bool measured_over_parameter(const Field& scene, const Sweep& sweep);
+bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep);
 
 // Points of these branches for a channel (or for the parameter if `channel` is empty), drawn over
 // its curves: a change is relative to the start of the curves. Empty if it was not measured.
-std::optional<Series> measured_series(const Field& scene, const Sweep& sweep,
+std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& sweep,
                                       const std::string& channel, bool change);
 
 // The points of one branch: its own if the measurement names the branches, else all.
-std::optional<Series> measured_for(const Field& scene, const Sweep& sweep, const Field& branch,
-                                   const std::string& channel, bool change);
+std::optional<Series> measured_for(const JsonCursor& scene, const Sweep& sweep,
+                                   const JsonCursor& branch, const std::string& channel,
+                                   bool change);
 
 // Linear interpolation; NaN outside the points, and beside a point without a value.
 double value_between(const Series& measured, double x);

@@ -9,8 +9,8 @@
 
 namespace elastocheck::reports {
 
-std::optional<Section> model_section(const Field& scene) {
-    const Field model = scene["model"];
+std::optional<Section> model_section(const JsonCursor& scene) {
+    const JsonCursor model = scene["model"];
     Section section{.id = "model", .title = "The model as compiled"};
     section.words = {{"source", scene["source"].text()}, {"hash", scene["input_hash"].text()}};
     Table table{.caption = "The model", .columns = {{"what", true}, {"as compiled", true}}};

@@ -11,7 +11,7 @@
 namespace elastocheck::reports {
 namespace {
 
-Place place_of(const Field& field) {
+Position place_of(const JsonCursor& field) {
     const auto xyz = field.numbers();
     if (xyz.size() != 3) field.fail("expected three numbers");
     for (const double v : xyz)
@@ -19,13 +19,13 @@ Place place_of(const Field& field) {
     return {xyz[0], xyz[1], xyz[2]};
 }
 
-std::vector<Place> places_of(const Field& list) {
-    std::vector<Place> places;
+std::vector<Position> places_of(const JsonCursor& list) {
+    std::vector<Position> places;
     for (const auto& item : list.items()) places.push_back(place_of(item));
     return places;
 }
 
-std::size_t index_of(const Field& field, std::size_t count) {
+std::size_t index_of(const JsonCursor& field, std::size_t count) {
     const int k = field.whole();
     if (k < 0 || static_cast<std::size_t>(k) >= count) field.fail("no such point");
     return static_cast<std::size_t>(k);
@@ -33,7 +33,7 @@ std::size_t index_of(const Field& field, std::size_t count) {
 
 }  // namespace
 
-std::optional<Suspension> suspension_of(const Field& scene) {
+std::optional<Suspension> suspension_of(const JsonCursor& scene) {
     const auto drawing = scene.find("drawing");
     if (!drawing) return std::nullopt;
     Suspension s;
@@ -77,8 +77,9 @@ std::optional<Suspension> suspension_of(const Field& scene) {
     for (const auto& at : (*drawing)["positions"].items()) {
         const auto of = at.find("of");
         if (!of || at["where"].text() != "end" ||
-            std::ranges::none_of(sweep->branches,
-                                 [&](const Field& b) { return b["name"].text() == of->text(); }))
+            std::ranges::none_of(sweep->branches, [&](const JsonCursor& b) {
+                return b["name"].text() == of->text();
+            }))
             continue;
         Suspension::Moved moved;
         moved.title = fmt::format("{} at {}", sweep->lifts ? "travel" : of->text(),

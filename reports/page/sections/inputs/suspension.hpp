@@ -9,7 +9,7 @@
 namespace elastocheck::reports {
 
 // Empty if the scene has no drawing. Includes the positions at the ends of the leading branch.
-std::optional<Suspension> suspension_of(const Field& scene);
+std::optional<Suspension> suspension_of(const JsonCursor& scene);
 
 // "suspension", or "mechanism" for a scene without a wheel.
 const char* noun_of(const Suspension& suspension);
