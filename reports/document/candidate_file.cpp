@@ -16,7 +16,6 @@
 #include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "reports/document/measurement.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/json/json.hpp"
 
@@ -50,7 +49,8 @@ constexpr std::array written{Written{"mm", Unit::mm, 1},
                              Written{"N·m", Unit::newton_metre, 1},
                              Written{"Nm", Unit::newton_metre, 1},
                              Written{"Nmm", Unit::newton_metre, 1e-3},
-                             Written{"kNm", Unit::newton_metre, 1e3}};
+                             Written{"kNm", Unit::newton_metre, 1e3},
+                             Written{"percent", Unit::percent, 1}};
 
 std::optional<double> factor_of(std::string_view symbol, Unit unit) {
     if (symbol.empty() || symbol == compare::symbol(unit)) return 1;
@@ -217,7 +217,7 @@ struct Table {
 };
 
 Table read_table(std::string_view csv, const std::string& file, const Model& model,
-                 const compare::Comparison& all, const ColumnMap& map,
+                 const compare::Comparison& all, const ColumnMap& map, bool strict,
                  std::vector<std::string>& notes) {
     Table table;
     std::vector<std::string> passed_over;
@@ -245,7 +245,7 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
                 const auto own = name.substr(0, name.find(" ["));
                 const bool of_element =
                     compare::find_channel(compare::element_channels(model), own) >= 0;
-                if (map.file.empty() && !of_element)
+                if (strict || (map.file.empty() && !of_element))
                     fail_at(file, line,
                             fmt::format("unknown column {}{}", reader::quote(name),
                                         reader::did_you_mean(name, known, "allowed")));
@@ -258,8 +258,8 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
             if (std::ranges::find(table.columns, entry.theirs, &Meaning::name) ==
                 table.columns.end())
                 fail_at(file, line,
-                        fmt::format("no column {}, which {} maps", reader::quote(entry.theirs),
-                                    map.file));
+                        fmt::format("there is no column {} ({})", reader::quote(entry.theirs),
+                                    map.file.empty() ? "--branch-column" : map.file));
         table.values.resize(table.columns.size());
     };
     read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {
@@ -276,9 +276,10 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
                 case MeaningKind::nothing: break;
                 case MeaningKind::parameter:
                 case MeaningKind::output:
-                    table.values[c].push_back(number_or_none(cells[c], file, line, meaning.name) *
-                                                  meaning.factor +
-                                              meaning.offset);
+                    table.values[c].push_back(
+                        (strict ? number_in : number_or_none)(cells[c], file, line, meaning.name) *
+                            meaning.factor +
+                        meaning.offset);
                     if (std::isinf(table.values[c].back())) table.values[c].back() = INFINITY;
                     break;
             }
@@ -291,16 +292,26 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
     return table;
 }
 
-compare::Candidate from_table(std::string_view csv, const std::string& file, const Model& model,
-                              const compare::Comparison& all, const ColumnMap& map) {
-    compare::Candidate result;
-    const Table table = read_table(csv, file, model, all, map, result.notes);
+}  // namespace
+
+bool is_travel(const compare::Channel& channel) {
+    return channel.name == "travel" || channel.name.ends_with(".travel");
+}
+
+PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
+                       const compare::Comparison& all, const ColumnMap& map, bool strict) {
+    PointTable result;
+    const Table table = read_table(csv, file, model, all, map, strict, result.notes);
     auto& points = result.points;
     points.branch = table.branch;
-    const std::size_t n = table.lines.size();
+    result.count = table.lines.size();
+    const std::size_t n = result.count;
     std::vector<std::size_t> parameters;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-        if (table.columns[c].kind == MeaningKind::parameter) parameters.push_back(c);
+        if (table.columns[c].kind == MeaningKind::parameter) {
+            parameters.push_back(c);
+            result.parameters.push_back(table.columns[c].name);
+        }
     // Each point by the column in the unit of its branch, converted to that unit.
     for (const std::size_t c : parameters) {
         const Meaning& meaning = table.columns[c];
@@ -354,6 +365,8 @@ compare::Candidate from_table(std::string_view csv, const std::string& file, con
                     reader::did_you_mean("", known_columns(all), "allowed").substr(2));
     return result;
 }
+
+namespace {
 
 // ---- States.
 
@@ -637,7 +650,9 @@ compare::Candidate read_candidate(std::string_view content, const std::string& f
                 "bodies that are not solved for, and are passed over: " +
                 reader::listed({bodies.passed_over.begin(), bodies.passed_over.end()}));
     } else {
-        candidate = from_table(content, file, model, comparison, map);
+        auto table = read_points(content, file, model, comparison, map, false);
+        candidate.points = std::move(table.points);
+        candidate.notes = std::move(table.notes);
     }
     candidate.name = std::move(name);
     return candidate;

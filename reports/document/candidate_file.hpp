@@ -1,4 +1,4 @@
-// Reader of candidate files: a table of outputs, or states. Formats in reports/README.md.
+// Reader of candidate files and measurements: a table of outputs, or states. Formats in reports/README.md.
 #pragma once
 
 #include <string>
@@ -31,6 +31,21 @@ struct ColumnMap {
 };
 // Throws SceneError "file:line: field: ...".
 ColumnMap read_column_map(std::string_view yaml, const std::string& file);
+
+// A table of outputs over load or travel, from a solver or a measurement.
+struct PointTable {
+    compare::Points points;
+    std::vector<std::string> parameters;  // names of the columns with a branch parameter
+    std::vector<std::string> notes;       // for the reader, such as ignored columns
+    std::size_t count = 0;                // of points
+};
+// `strict`: an unknown column and a cell that is not a finite number are errors. Throws SheetError
+// "file:line: ...".
+PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
+                       const compare::Comparison& comparison, const ColumnMap& map, bool strict);
+
+// Whether a channel is the travel of a wheel, which gives the place of a point.
+bool is_travel(const compare::Channel& channel);
 
 // Whether the text contains states: JSON lines, or a table with a column `body`.
 bool holds_states(std::string_view content);

@@ -13,9 +13,6 @@
 
 namespace elastocheck::reports {
 
-// Whether a channel is the travel of a wheel, which may place a point on its branch.
-bool is_travel(const compare::Channel& channel);
-
 using MeasurementError = SheetError;
 
 // Mapping from the file's load cases to branches: the column, and the names in the file.
