@@ -99,10 +99,11 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
     return detail;
 }
 
-EquilibriumPath sweep(Precision precision, const Model& model, const Branch& branch,
-                      const Options& options, const Analysis& analysis, const Visit& visit,
-                      Stop& stop) {
-    switch (precision) {
+EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
+                      const Analysis& analysis, const Visit& visit, Stop& stop) {
+    if (!has_steps(options.method))
+        return sweep_adaptive(model, branch, options, analysis, visit, stop);
+    switch (options.precision) {
         case Precision::single: return sweep<float>(model, branch, options, analysis, visit, stop);
         case Precision::double_precision:
             return sweep<double>(model, branch, options, analysis, visit, stop);
@@ -117,9 +118,10 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
                       const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
+    if (options.precision != Precision::double_precision && !has_steps(options.method))
+        throw std::invalid_argument(
+            fmt::format("the method '{}' computes in double precision only", options.method.name));
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
-        if (options.precision != Precision::double_precision)
-            throw std::invalid_argument("the series is computed in double precision only");
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps
                                                : branch.steps;
@@ -136,8 +138,8 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
         if (!is_past(point.load)) visit(point);
     };
     Stop stop;
-    EquilibriumPath path = sweep(options.precision, model, branch, options, analysis,
-                                 visit && event ? until : visit, stop);
+    EquilibriumPath path =
+        sweep(model, branch, options, analysis, visit && event ? until : visit, stop);
     // If a method with the consistent tangent stopped by itself, find_event() determines the cause.
     const bool unsure = path.outcome == Outcome::singular || path.outcome == Outcome::diverged;
     if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stop.at))

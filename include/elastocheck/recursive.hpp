@@ -9,7 +9,7 @@ namespace elastocheck::recursive {
 
 struct Analysis;  // of a model, shared by its branches: recursive/diagnosis/analysis.hpp
 
-// The arithmetic: float, double, long double.
+// The arithmetic of a method with equal steps: float, double, long double.
 enum class Precision { single, double_precision, extended };
 
 struct Options {
@@ -30,10 +30,9 @@ struct Options {
 //
 // The published method takes one factorisation per step, and one more where static loads or
 // preloads require λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded
-// points between them. `series` exists in double precision only: std::invalid_argument for another
-// precision.
+// points between them, in double precision only: std::invalid_argument for another precision.
 //
-// The analysis of the model  may be passed in and shared between branches and
+// The analysis of the model may be passed in and shared between branches and
 // threads; std::invalid_argument where it is of another model.
 //
 // Thread-safe: calls keep no state and may share a model that no thread changes meanwhile.

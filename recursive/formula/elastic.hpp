@@ -322,4 +322,15 @@ Vector<Real> elastic_force(const Model& model, const Inputs<Real>& inputs, const
     return f;
 }
 
+// Instantiated in stepping/sweep_double.cpp.
+extern template Spatial<double> deformation<double>(const Bushing&, const State<double>&);
+extern template Matrix3<double> axes<double>(const Bushing&, const State<double>&);
+extern template ElementStiffness<double> element_stiffness<double>(const ElasticKind&,
+                                                                   const Rest<double>&,
+                                                                   const State<double>&);
+extern template ElementForce<double> element_force<double>(const ElasticKind&, const Rest<double>&,
+                                                           const State<double>&);
+extern template void elastic_force<double>(const Model&, const Inputs<double>&,
+                                           const State<double>&, Vector<double>&);
+
 }  // namespace elastocheck::recursive

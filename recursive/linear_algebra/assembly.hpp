@@ -51,4 +51,23 @@ void constraint_force(const Model& model, const Inputs<Real>& inputs, const Stat
     });
 }
 
+// Instantiated in stepping/sweep_double.cpp.
+extern template void add_stiffness<double>(const Model&, const Inputs<double>&,
+                                           const State<double>&, SaddleMatrix<double>&);
+extern template void add_elastic_tangent<double>(const Model&, const Inputs<double>&,
+                                                 const State<double>&, SaddleMatrix<double>&);
+extern template void add_curvature<double>(const Model&, const Inputs<double>&,
+                                           const State<double>&, const Vector<double>&,
+                                           SaddleMatrix<double>&);
+extern template void add_load_stiffness<double>(const Model&, const Branch&, const Inputs<double>&,
+                                                const State<double>&, SaddleMatrix<double>&);
+extern template void assemble<double>(const Model&, const Inputs<double>&, const State<double>&,
+                                      SaddleMatrix<double>&, Vector<double>&);
+extern template void assemble_consistent<double>(const Model&, const Branch&, const Inputs<double>&,
+                                                 const State<double>&, const Vector<double>&,
+                                                 SaddleMatrix<double>&, Vector<double>&);
+extern template void constraint_force<double>(const Model&, const Inputs<double>&,
+                                              const State<double>&, const Vector<double>&,
+                                              Vector<double>&, Vector<double>&);
+
 }  // namespace elastocheck::recursive

@@ -19,8 +19,6 @@
 // is the constraint error of the published method, and feeding it back amplifies it.
 #pragma once
 
-#include <map>
-
 #include "recursive/linear_algebra/saddle_matrix.hpp"
 #include "recursive/linear_algebra/sparse_lu.hpp"
 
@@ -82,20 +80,7 @@ struct SaddlePoint {
 
 // D of the matrix M by Ruiz equilibration (2001): every row of D M D has its largest entry in (½,
 // 2].
-template <class Real>
-Vector<Real> equilibration(const SaddleMatrix<Real>& M) {
-    Vector<Real> d = Vector<Real>::Ones(M.n + M.m), largest(M.n + M.m);
-    for (int sweep = 0; sweep < 10; ++sweep) {
-        largest.setZero();
-        for_each_entry(M, [&](int i, int j, int at) {
-            largest[i] =
-                std::max(largest[i], std::abs(M.values[static_cast<std::size_t>(at)]) * d[j]);
-        });
-        for (Eigen::Index k = 0; k < d.size(); ++k)
-            if (largest[k] > 0) d[k] /= std::sqrt(largest[k] * d[k]);
-    }
-    return d.unaryExpr([](Real value) { return std::exp2(std::round(std::log2(value))); });
-}
+Vector<double> equilibration(const SaddleMatrix<double>& M);
 
 // W² at the places of a direction.
 template <class Real>
@@ -127,34 +112,6 @@ void orthonormalise(SaddlePoint<Real>& system) {
     }
 }
 
-// Pattern of M bordered by the held directions.
-template <class Real>
-Pattern bordered(const Pattern& inner, const Held<Real>& held) {
-    const int N = inner.size, d = held.size();
-    Pattern all{N + d, {}, {}};
-    std::vector<int> of_row, first_of_row;
-    sort_into_rows(static_cast<std::size_t>(N), first_of_row, of_row, nullptr, [&](auto&& put) {
-        for (int c = 0; c < d; ++c)
-            for (int e = held.begin(c); e < held.end(c); ++e)
-                put(held.row[static_cast<std::size_t>(e)], N + c, 0);
-    });
-    const auto append = [&](const std::vector<int>& list, int from, int to) {
-        all.row.insert(all.row.end(), list.begin() + from, list.begin() + to);
-    };
-    for (int j = 0; j < N + d; ++j) {
-        all.first.push_back(static_cast<int>(all.row.size()));
-        const auto column = static_cast<std::size_t>(j);
-        if (j < N) {
-            append(inner.row, inner.first[column], inner.first[column + 1]);
-            append(of_row, first_of_row[column], first_of_row[column + 1]);
-        } else {
-            append(held.row, held.begin(j - N), held.end(j - N));
-        }
-    }
-    all.first.push_back(static_cast<int>(all.row.size()));
-    return all;
-}
-
 // Computes M̂ and its border from M and the held directions.
 template <class Real>
 void scale_entries(SaddlePoint<Real>& system) {
@@ -177,109 +134,11 @@ void scale_entries(SaddlePoint<Real>& system) {
         for (const int e : system.border_at[b]) values[e] = held.border[b];
 }
 
-// Places of the directions in the columns of `null_space`. An idle mode has the bodies that it
-// moves, at any point of the branch. A redundant combination has all rows of its loops of joints
-// (`loop` of every row: joints of different loops are independent). Directions that share a place
-// get each other's places.
-inline Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
-                           const Vector<double>& weight, int n, const std::vector<int>& loop) {
-    using Column = Eigen::SparseMatrix<double>::InnerIterator;
-    const auto at = [](auto k) { return static_cast<std::size_t>(k); };
-    const auto d = static_cast<int>(null_space.cols());
-    // A place is a body or a loop (numbered after the bodies), with the first direction found
-    // there.
-    const int bodies = n / 6, loops = loop.empty() ? 0 : *std::ranges::max_element(loop) + 1;
-    std::vector<int> leader(at(d)), first_there(at(bodies + loops), -1);
-    std::vector<std::vector<int>> of_leader(at(d));
-    const auto lead = [&](int c) {
-        while (leader[at(c)] != c) c = leader[at(c)] = leader[at(leader[at(c)])];
-        return c;
-    };
-    for (int c = 0; c < d; ++c) {
-        leader[at(c)] = c;
-        std::map<int, double> share;  // squared norm in each place
-        double whole = 0;
-        for (Column e(null_space, c); e; ++e) {
-            const auto row = static_cast<int>(e.row());
-            const int place = row < n ? row / 6 : bodies + loop[at(row - n)];
-            const double size = weight[row] * e.value();
-            share[place] += size * size;
-            whole += size * size;
-        }
-        for (const auto& [place, size] : share) {
-            if (!(size > 1e-10 * whole)) continue;
-            if (first_there[at(place)] < 0) {
-                first_there[at(place)] = c;
-            } else {
-                const int one = lead(first_there[at(place)]), other = lead(c);
-                leader[at(std::max(one, other))] = std::min(one, other);
-            }
-        }
-    }
-    const auto give = [&](int place, int row) {
-        if (first_there[at(place)] >= 0) of_leader[at(lead(first_there[at(place)]))].push_back(row);
-    };
-    for (int row = 0; row < n; ++row) give(row / 6, row);
-    for (std::size_t k = 0; k < loop.size(); ++k) give(bodies + loop[k], n + static_cast<int>(k));
-    std::vector<int> order(at(d));
-    for (int c = 0; c < d; ++c) order[at(c)] = c;
-    std::ranges::stable_sort(order, {}, lead);  // idle modes and combinations have no common places
-
-    Held<double> held;
-    held.idle = idle;
-    held.first.push_back(0);
-    for (int k = 0; k < d; ++k) {
-        const int c = order[at(k)];
-        const auto& rows = of_leader[at(lead(c))];
-        held.with.push_back(k > 0 && lead(order[at(k - 1)]) == lead(c) ? held.with.back() : k);
-        held.row.insert(held.row.end(), rows.begin(), rows.end());
-        held.first.push_back(static_cast<int>(held.row.size()));
-        held.value.resize(held.row.size(), 0);
-        for (Column e(null_space, c); e; ++e) {
-            const auto place = std::ranges::lower_bound(rows, static_cast<int>(e.row()));
-            if (place != rows.end() && *place == e.row())
-                held.value[at(held.begin(k) + (place - rows.begin()))] = e.value();
-        }
-    }
-    held.border.assign(held.row.size(), 0);
-    return held;
-}
-
 // Fixes the scaling from the matrix now in M, the held directions in the columns of `null_space`
 // [(n+m) × d] (`idle` modes first, then redundant combinations), and the elimination order. `inner`
 // is the pattern of M, `loop` the loop of joints of every row of Φ.
-inline void analyse(SaddlePoint<double>& system, int idle,
-                    const Eigen::SparseMatrix<double>& null_space, const Pattern& inner,
-                    const std::vector<int>& loop) {
-    const int N = system.n + system.m;
-    system.scale = equilibration(system.M);
-    system.held = places(idle, null_space, system.weight, system.n, loop);
-    orthonormalise(system);
-
-    const Pattern pattern = bordered(inner, system.held);
-    system.source.clear();
-    system.scaling.clear();
-    for (int j = 0; j < pattern.size; ++j)
-        for (int e = pattern.first[static_cast<std::size_t>(j)];
-             e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
-            const int i = pattern.row[static_cast<std::size_t>(e)];
-            const bool inside = i < N && j < N;
-            system.source.push_back(inside ? system.M.at(i, j) : 0);
-            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : 0);
-        }
-    system.border_at.clear();
-    for (int c = 0; c < system.borders(); ++c)
-        for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
-            const int row = system.held.row[static_cast<std::size_t>(e)];
-            system.border_at.push_back(
-                {entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)});
-        }
-    system.values.assign(pattern.entries(), 0);
-    system.rhs.setZero(N + system.borders());
-    system.solution.setZero(N + system.borders());
-    scale_entries(system);
-    analyse(system.lu, pattern, system.values.data());
-}
+void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
+             const Pattern& inner, const std::vector<int>& loop);
 
 // The same system in another arithmetic, with this elimination order; not factorised.
 template <class Real>
@@ -338,5 +197,11 @@ Real factorise(SaddlePoint<Real>& system) {
     orthonormalise(system);
     return pivot_ratio;
 }
+
+// Instantiated in stepping/sweep_double.cpp.
+extern template double factorise<double>(SaddlePoint<double>&);
+extern template void back_substitute<double>(SaddlePoint<double>&, const Vector<double>&,
+                                             const Vector<double>&, Vector<double>&);
+extern template void scale_entries<double>(SaddlePoint<double>&);
 
 }  // namespace elastocheck::recursive

@@ -354,4 +354,10 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
     for (const int own : lu.reached) lu.known[at(own)] = lu.unknown[at(own)] = 0;
 }
 
+// Instantiated in stepping/sweep_double.cpp.
+extern template void analyse<double>(SparseLU<double>&, const Pattern&, const double*);
+extern template double factorise<double>(SparseLU<double>&, const double*);
+extern template void solve<double>(SparseLU<double>&, const double*, double*);
+extern template void solve_unit<double>(SparseLU<double>&, int, const int*, int, double*);
+
 }  // namespace elastocheck::recursive

@@ -9,6 +9,7 @@
 #include "recursive/series/pieces.hpp"
 #include "recursive/stepping/recording.hpp"
 #include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/stability.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive::series {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "recursive/stepping/adaptive.hpp"
+#include "recursive/stepping/event_location.hpp"
 #include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/stability.hpp"
 #include "recursive/stepping/step_check.hpp"
 #include "recursive/stepping/stiffness.hpp"
-#include "recursive/stepping/sweep.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -203,7 +205,7 @@ std::optional<Event> find_event(const Model& model, const Branch& branch,
                                 const Analysis& analysis) {
     Stop stop;
     const Options options{.method = find_method("adaptive").value(), .steps = 1};
-    const EquilibriumPath path = sweep<double>(model, branch, options, analysis, {}, stop);
+    const EquilibriumPath path = sweep_adaptive(model, branch, options, analysis, {}, stop);
     if (!ends(path.outcome) || std::isnan(stop.at)) return std::nullopt;
     return Event{path.outcome, stop.at};
 }

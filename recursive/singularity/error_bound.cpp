@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/stability.hpp"
 #include "recursive/stepping/step_check.hpp"
 #include "recursive/stepping/stiffness.hpp"
 

@@ -180,4 +180,15 @@ Outcome why_it_ends(const Trial<Real>& trial, const Node<Real>& node, const Vect
     return Outcome::branch_lost;
 }
 
+// Instantiated in stepping/sweep_double.cpp.
+extern template void differentiate<double>(SteppingState<double>&, const Going<double>&,
+                                           Node<double>&);
+extern template Outcome correct<double>(SteppingState<double>&, const Going<double>&,
+                                        State<double>&, Vector<double>&, double, double&);
+extern template Trial<double> try_step<double>(SteppingState<double>&, const Going<double>&,
+                                               const Node<double>&, const Vector<double>&,
+                                               const Vector<double>&, Node<double>&);
+extern template bool contradict_at<double>(SteppingState<double>&, const Node<double>&,
+                                           State<double>&, Vector<double>&);
+
 }  // namespace elastocheck::recursive

@@ -6,6 +6,13 @@
 
 namespace elastocheck::recursive {
 
+// Where a sweep stopped: the parameter, NaN while settling; and whether the cause is that the
+// settled start is unstable.
+struct Stop {
+    double at = std::numeric_limits<double>::quiet_NaN();
+    bool begins_unstable = false;
+};
+
 struct Recording {
     EquilibriumPath& path;
     const Visit& visit;

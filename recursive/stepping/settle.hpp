@@ -4,9 +4,7 @@
 #pragma once
 
 #include "recursive/stepping/continuation.hpp"
-#include "recursive/stepping/idle_stability.hpp"
 #include "recursive/stepping/steps.hpp"
-#include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive {
 
@@ -165,16 +163,8 @@ Outcome settle(SteppingState<Real>& s) {
     return settled(s, settle_truly(s), Real(0));
 }
 
-// Stability of the settled start, whose matrix is in the system. Settling from a drawing far from
-// rest may lead to an unstable equilibrium, and a drawing at rest may be one.
-template <class Real>
-Outcome judge_start(SteppingState<Real>& s) {
-    // modes soft relative to the stiffest are below the rounding of is_unstable()
-    SubspaceBasis<Real> softest;
-    const LeastStiffness least = least_stiffness(s, softest);
-    s.begins_unstable = is_unstable(s) || pushed_over(s, s.q, s.lambda) < 0 ||
-                        (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
-    return s.begins_unstable ? Outcome::singular : Outcome::converged;
-}
+// Instantiated in stepping/sweep_double.cpp.
+extern template Outcome settle<double>(SteppingState<double>&);
+extern template Outcome settled<double>(const SteppingState<double>&, Outcome, double);
 
 }  // namespace elastocheck::recursive

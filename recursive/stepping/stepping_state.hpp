@@ -505,4 +505,20 @@ void record(const Model& model, const Inputs<Real>& inputs, const State<Real>& q
     point.constraint_error = static_cast<double>(std::sqrt(sum));  // (31)
 }
 
+// Instantiated in stepping/sweep_double.cpp.
+extern template struct SteppingState<double>;
+extern template void go_to<double>(SteppingState<double>&, Place<double>);
+extern template Outcome judge<double>(SteppingState<double>&, const State<double>&, double);
+extern template Outcome judge_push<double>(SteppingState<double>&, const State<double>&, double);
+extern template Outcome factorise_at<double>(SteppingState<double>&, const State<double>&,
+                                             const Vector<double>&);
+extern template void residual_at<double>(SteppingState<double>&, const State<double>&,
+                                         const Vector<double>&);
+extern template bool contradict<double>(const SteppingState<double>&, const State<double>&);
+extern template void drive_at<double>(SteppingState<double>&, Drive, double, const State<double>&,
+                                      const Vector<double>&);
+extern template void record<double>(const Model&, const Inputs<double>&, const State<double>&,
+                                    const State<double>&, const Vector<double>&, double,
+                                    Equilibrium&);
+
 }  // namespace elastocheck::recursive

@@ -11,7 +11,6 @@
 // Two eigenvalues that change sign at once are both seen, which the determinant does not show.
 #pragma once
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "recursive/stepping/stepping_state.hpp"
@@ -59,19 +58,7 @@ void orthonormalise(const Vector<Real>& weight, Matrix<Real>& U) {
 }
 
 // 1/θ for the negative eigenvalue θ of H of largest modulus, else for the largest θ.
-inline LeastStiffness least_of(const Eigen::MatrixXd& H) {
-    // If K is symmetric, H is nearly so: each θ of H = S + N is within |N| of one of S (Bauer and
-    // Fike 1960).
-    constexpr double rounding = 1e-6, may_matter = 1e-3;
-    if (H.size() == 0 || !H.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), true};
-    const Eigen::MatrixXd S = (H + H.transpose()) / 2;
-    const double size = H.norm(), skew = (H - S).norm();
-    if (!(skew <= may_matter * size)) return {1 / H.eigenvalues().cwiseAbs().maxCoeff(), false};
-    const Eigen::VectorXd theta =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S, Eigen::EigenvaluesOnly).eigenvalues();
-    const bool negative = theta[0] < -std::max(rounding * size, 2 * skew);
-    return {1 / (negative ? theta[0] : theta[theta.size() - 1]), true};
-}
+LeastStiffness least_of(const Eigen::MatrixXd& H);
 
 }  // namespace detail
 
@@ -106,5 +93,9 @@ LeastStiffness least_stiffness(SteppingState<Real>& s, SubspaceBasis<Real>& kept
     }
     return detail::least_of(H);
 }
+
+// Instantiated in stepping/sweep_double.cpp.
+extern template LeastStiffness least_stiffness<double>(SteppingState<double>&,
+                                                       SubspaceBasis<double>&);
 
 }  // namespace elastocheck::recursive

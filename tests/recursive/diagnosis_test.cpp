@@ -325,7 +325,7 @@ void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& 
     SaddleMatrix<double> M = saddle_matrix(model);
     VectorXd Phi(d.rows);
     assemble<double>(model, inputs_as_drawn<double>(model), design_state<double>(model), M, Phi);
-    const VectorXd D = equilibration<double>(M);
+    const VectorXd D = equilibration(M);
     const MatrixXd scaled = D.asDiagonal() * sparse(M).toDense() * D.asDiagonal();
     MatrixXd N = D.cwiseInverse().asDiagonal() * d.null_space.toDense();
     for (Eigen::Index c = 0; c < N.cols(); ++c) N.col(c).normalize();
@@ -357,7 +357,7 @@ TEST(Conditioning, IsThatOfTheDenseSingularValuesOnEveryBuiltInScene) {
         VectorXd Phi(d.rows);
         assemble<double>(model, inputs_as_drawn<double>(model), design_state<double>(model), M,
                          Phi);
-        const VectorXd D = equilibration<double>(M);
+        const VectorXd D = equilibration(M);
         const MatrixXd raw = sparse(M).toDense(), scaled = D.asDiagonal() * raw * D.asDiagonal();
         const auto kappa = [&](const MatrixXd& A) {
             const Eigen::JacobiSVD<Long> svd(A.cast<long double>());

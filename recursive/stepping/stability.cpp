@@ -1,7 +1,10 @@
-#include "recursive/stepping/inertia.hpp"
+#include "recursive/stepping/stability.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+
+#include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive {
 
@@ -23,8 +26,12 @@ bool has_energy(const Model& model, const Branch& branch) {
            });
 }
 
-bool is_unstable(const Eigen::SparseMatrix<double>& saddle, const Eigen::VectorXd& weight,
-                 const std::vector<int>& held) {
+namespace {
+
+// For the matrix of (24) [n + m square], in the norm |W x|, `weight` [n]. `held` lists one unknown
+// for each idle mode, large in that mode, which is fixed.
+bool has_negative_eigenvalue(const Eigen::SparseMatrix<double>& saddle,
+                             const Eigen::VectorXd& weight, const std::vector<int>& held) {
     using Sparse = Eigen::SparseMatrix<double>;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     // bound on |K - Kᵀ| / |K|: the residual asymmetry after Newton's method
@@ -55,6 +62,42 @@ bool is_unstable(const Eigen::SparseMatrix<double>& saddle, const Eigen::VectorX
             Sparse(S + rho * stiffest * forbidden + rounding * stiffest * one));
         return factors.info() == Eigen::Success && (factors.vectorD().array() < 0).any();
     });
+}
+
+}  // namespace
+
+bool is_unstable(const SteppingState<double>& s) {
+    if (s.free <= 0 || !has_energy(s.model, s.branch)) return false;
+    const Held<double>& idle = s.system.held;
+    std::vector<int> held;
+    for (int c = 0; c < idle.idle; ++c) {
+        int largest = -1;
+        double size = 0;
+        for (int e = idle.begin(c); e < idle.end(c); ++e) {
+            const auto at = static_cast<std::size_t>(e);
+            const int row = idle.row[at];
+            if (const double here = std::abs(idle.value[at] * s.system.weight[row]);
+                here > size && std::ranges::find(held, row) == held.end())
+                largest = row, size = here;
+        }
+        if (largest >= 0) held.push_back(largest);
+    }
+    return has_negative_eigenvalue(sparse(s.system.M), s.system.weight.head(s.n()), held);
+}
+
+Outcome judge_start(SteppingState<double>& s) {
+    // modes soft relative to the stiffest are below the rounding of is_unstable()
+    SubspaceBasis<double> softest;
+    const LeastStiffness least = least_stiffness(s, softest);
+    s.begins_unstable = is_unstable(s) || pushed_over(s, s.q, s.lambda) < 0 ||
+                        (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
+    return s.begins_unstable ? Outcome::singular : Outcome::converged;
+}
+
+double least_eigenvalue(const Eigen::MatrixXd& Q) {
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>((Q + Q.transpose()) / 2,
+                                                          Eigen::EigenvaluesOnly)
+        .eigenvalues()[0];
 }
 
 }  // namespace elastocheck::recursive

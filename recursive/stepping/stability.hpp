@@ -1,4 +1,10 @@
-// Stability along idle modes: negative stiffness caused by the acting forces.
+// Stability of an equilibrium: inertia of its reduced Hessian, idle modes under load, settled start.
+//
+// Inertia: with Z a basis of the motions that the joints allow, ZᵀKZ is positive definite if and
+// only if K + ρ Φ_qᵀ Φ_q is for some ρ (Finsler, Debreu). That matrix has as many negative
+// eigenvalues as its LDLᵀ has negative pivots (Sylvester). One factorisation covers every mode of
+// any stiffness. The few softest modes (stiffness.hpp) are not all, and two negative modes leave
+// the sign of the determinant unchanged.
 //
 // Idle modes are motions that nothing resists at the unloaded design position. The border of (24)
 // holds them, and the other stability tests do not cover them. Under load the acting forces may
@@ -11,19 +17,32 @@
 // K includes the curvature of the joint reactions.
 #pragma once
 
-#include <Eigen/Eigenvalues>
-
-#include "recursive/stepping/inertia.hpp"
+#include "recursive/stepping/stepping_state.hpp"
 
 namespace elastocheck::recursive {
+
+// Whether the forces derive from an energy. A load that turns with its body has none, and then the
+// symmetric part of its K does not decide stability.
+bool has_energy(const Model& model, const Branch& branch);
+
+// Whether the equilibrium whose consistent tangent is in the system has a negative eigenvalue.
+// False where the negative pivot may be round-off, which grows with ρ, and where K is not symmetric.
+bool is_unstable(const SteppingState<double>& s);
+
+// Stability of the settled start, whose matrix is in the system: `singular` if it is unstable.
+// Settling from a drawing far from rest may lead to an unstable equilibrium, and a drawing at rest
+// may be one.
+Outcome judge_start(SteppingState<double>& s);
+
+// The smallest eigenvalue of the symmetric part of Q.
+double least_eigenvalue(const Eigen::MatrixXd& Q);
 
 // The least eigenvalue of ZᵀKZ over all groups of idle modes, K of the consistent matrix in the
 // system; 0 where none is negative beyond rounding.
 template <class Real>
 double least_of_idle(const SteppingState<Real>& s) {
     constexpr double several = 256;  // multiple of the rounding of a sum
-    constexpr double epsilon = std::max(static_cast<double>(std::numeric_limits<Real>::epsilon()),
-                                        std::numeric_limits<double>::epsilon());
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const Held<Real>& held = s.system.held;
     const SaddleMatrix<Real>& M = s.system.M;
     double least = 0;
@@ -52,10 +71,8 @@ double least_of_idle(const SteppingState<Real>& s) {
                     }
             }
         if (!Q.allFinite()) continue;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver((Q + Q.transpose()) / 2,
-                                                                    Eigen::EigenvaluesOnly);
-        if (solver.eigenvalues()[0] < -several * epsilon * sizes.norm())
-            least = std::min(least, solver.eigenvalues()[0]);
+        if (const double lowest = least_eigenvalue(Q); lowest < -several * epsilon * sizes.norm())
+            least = std::min(least, lowest);
     }
     return least;
 }
@@ -69,8 +86,7 @@ double pushed_over(SteppingState<Real>& s, const State<Real>& near,
                    const Vector<Real>& lambda_near) {
     constexpr int corrections = 3;
     constexpr double noticed = 1e-6;
-    if (s.system.held.idle == 0 || sizeof(Real) < sizeof(double) || !has_energy(s.model, s.branch))
-        return 0;
+    if (s.system.held.idle == 0 || !has_energy(s.model, s.branch)) return 0;
     const auto least = [&](const State<Real>& q) {
         const double stiffness = least_of_idle(s);
         if (!(stiffness < 0)) return 0.;
@@ -96,5 +112,9 @@ double pushed_over(SteppingState<Real>& s, const State<Real>& near,
     s.counts = counts;
     return there ? least(q) : 0;
 }
+
+// Instantiated in stepping/sweep_double.cpp.
+extern template double pushed_over<double>(SteppingState<double>&, const State<double>&,
+                                           const Vector<double>&);
 
 }  // namespace elastocheck::recursive

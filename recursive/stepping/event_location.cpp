@@ -1,0 +1,181 @@
+#include "recursive/stepping/event_location.hpp"
+
+namespace elastocheck::recursive {
+
+void between(const Node<double>& from, const Node<double>& to, double t, State<double>& q,
+             Vector<double>& lambda) {
+    const double h = to.p - from.p;
+    const double h01 = t * t * (3 - 2 * t), h10 = t * (1 - t) * (1 - t) * h,
+                 h11 = t * t * (t - 1) * h;
+    lambda = from.lambda + h01 * (to.lambda - from.lambda) + h10 * from.dlambda + h11 * to.dlambda;
+    for (BodyId b = 0; b < from.q.bodies(); ++b) {
+        const auto d0 = from.dq.segment<6>(6 * b), d1 = to.dq.segment<6>(6 * b);
+        const Matrix3<double> turned = to.q[b].A * from.q[b].A.transpose();
+        const Vector3<double> pi = logarithm<double>(turned);
+        const Vector3<double> pi1 = inverse_left_jacobian<double>(pi) * d1.tail<3>();
+        q[b].r =
+            from.q[b].r + h01 * (to.q[b].r - from.q[b].r) + h10 * d0.head<3>() + h11 * d1.head<3>();
+        const Vector3<double> at = h01 * pi + h10 * d0.tail<3>() + h11 * pi1;
+        q[b].p = (exponential<double>(at) * from.q[b].p).normalized();
+        q[b].A = q[b].p.toRotationMatrix();
+    }
+}
+
+namespace {
+
+// Distance within which a deflection counts as lying on the knot, on either side [m] or [rad].
+double slack(const Going<double>& going, const CurvePlace& at) {
+    return 1e-6 * (at.angle ? going.angle_tolerance : going.length_tolerance);
+}
+
+// x(t) through x(0), x(⅓), x(⅔), x(1).
+double cubic(const std::array<double, 4>& x, double t) {
+    const double a = 3 * t, b = a - 1, c = a - 2, d = a - 3;
+    return -x[0] * b * c * d / 6 + x[1] * a * c * d / 2 - x[2] * a * b * d / 2 +
+           x[3] * a * b * c / 6;
+}
+
+// First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t of the
+// step.
+template <class At>
+KnotCrossing first_meeting(SteppingState<double>& s, const Going<double>& going, double from,
+                           double h, State<double>& q, At&& at) {
+    for (int k = 0; k < 4; ++k) {
+        const double t = static_cast<double>(k) / 3;
+        at(t, q);
+        go_to(s, going.place(from + t * h));
+        for (std::size_t c = 0; c < s.curves.size(); ++c)
+            s.along[c][static_cast<std::size_t>(k)] =
+                deflection<double>(s.model, s.inputs, q, s.curves[c]);
+    }
+    constexpr int samples = 24;
+    KnotCrossing first;
+    for (std::size_t c = 0; c < s.curves.size(); ++c) {
+        const CurvePlace& place = s.curves[c];
+        const auto& knots = place.curve->knots;
+        const auto piece = static_cast<std::size_t>(piece_of(s, place));
+        const auto& x = s.along[c];
+        const auto look = [&](double knot, int side) {
+            const auto beyond = [&](double t) { return side * (cubic(x, t) - knot); };
+            double before = 0;
+            for (int k = 1; k <= samples; ++k) {
+                const double t = static_cast<double>(k) / samples;
+                if (t >= first.t && before >= first.t) return;
+                if (!(beyond(t) > slack(going, place))) {
+                    before = t;
+                    continue;
+                }
+                double low = before, high = t;  // not beyond, beyond
+                for (int halving = 0; halving < 40; ++halving) {
+                    const double middle = (low + high) / 2;
+                    (beyond(middle) > 0 ? high : low) = middle;
+                }
+                if (high < first.t) first = {&place, side, high, knot};
+                return;
+            }
+        };
+        if (piece > 0) look(knots[piece - 1], -1);
+        if (piece < knots.size()) look(knots[piece], +1);
+    }
+    return first;
+}
+
+// Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
+// where the iteration leaves the interval between the node at p and `limit`. The factors are those
+// of `next`.
+bool land(SteppingState<double>& s, const Going<double>& going, const KnotCrossing& knot, double p,
+          double limit, Node<double>& next, State<double>& q) {
+    const CurvePlace& at = *knot.curve;
+    const double step = next.p - p;
+    for (int k = 0; k < 5; ++k) {
+        go_to(s, going.place(next.p));
+        const double x = deflection<double>(s.model, s.inputs, next.q, at);
+        if (std::abs(x - knot.knot) <= slack(going, at)) return true;
+        const double ahead = step * 1e-4;
+        q = next.q;
+        advance(q, ahead * next.dq);
+        go_to(s, going.place(next.p + ahead));
+        const double rate = (deflection<double>(s.model, s.inputs, q, at) - x) / ahead;
+        const double dp = (knot.knot - x) / rate;
+        if (!(std::abs(dp) <= std::abs(step)) || !((next.p + dp - p) * step > 0) ||
+            !((limit - next.p - dp) * step >= 0))
+            return false;
+        s.dq = dp * next.dq;
+        advance(next.q, s.dq);
+        next.lambda += dp * next.dlambda;
+        next.p += dp;
+        double size = 0;
+        if (correct(s, going, next.q, next.lambda, next.p, size) != Outcome::converged ||
+            !(size <= 0.1))
+            return false;
+        differentiate(s, going, next);
+    }
+    return false;
+}
+
+}  // namespace
+
+Trial<double> step_to_knot(SteppingState<double>& s, const Going<double>& going,
+                           const Node<double>& node, const Vector<double>& curvature,
+                           const Vector<double>& lambda_curvature, Node<double>& next,
+                           State<double>& q, Vector<double>& lambda, KnotCrossing& met) {
+    met = {};
+    if (s.curves.empty()) return try_step(s, going, node, curvature, lambda_curvature, next);
+    const double whole = next.p;
+    KnotCrossing expected =
+        first_meeting(s, going, node.p, whole - node.p, q, [&](double t, State<double>& at) {
+            const double h = t * (whole - node.p);
+            s.dq = h * node.dq + h * h / 2 * curvature;
+            at = node.q;
+            advance(at, s.dq);
+        });
+    double h = whole - node.p;
+    Trial<double> trial;
+    for (int k = 0; k < 4; ++k) {
+        next.p = expected.curve ? node.p + expected.t * h : whole;
+        if (next.p == node.p) {  // the node lies on the knot and the step leaves the piece
+            met = expected;
+            return trial;
+        }
+        trial = try_step(s, going, node, curvature, lambda_curvature, next);
+        if (trial.verdict != Verdict::believed) return trial;
+        const bool landed = expected.curve && land(s, going, expected, node.p, whole, next, q);
+        if (expected.curve && !landed && k == 0) {  // the path misses the knot of the predictor
+            expected = {};
+            continue;
+        }
+        h = next.p - node.p;
+        const KnotCrossing earlier =
+            first_meeting(s, going, node.p, h, q,
+                          [&](double t, State<double>& at) { between(node, next, t, at, lambda); });
+        if (!earlier.curve) {
+            if (landed) met = expected;
+            return trial;
+        }
+        expected = earlier;
+    }
+    trial.verdict = Verdict::unsolved;
+    return trial;
+}
+
+void take_pieces(SteppingState<double>& s, const Going<double>& going, const Node<double>& node,
+                 double ahead, State<double>& q) {
+    q = node.q;
+    s.dq = ahead * node.dq;
+    advance(q, s.dq);
+    for (const CurvePlace& at : s.curves) {
+        go_to(s, going.place(node.p));
+        const double x = deflection<double>(s.model, s.inputs, node.q, at);
+        go_to(s, going.place(node.p + ahead));
+        const bool rises = deflection<double>(s.model, s.inputs, q, at) > x;
+        const auto& knots = at.curve->knots;
+        Piece piece = piece_at(*at.curve, x);
+        for (std::size_t k = 0; k < knots.size(); ++k)
+            if (std::abs(x - knots[k]) <= slack(going, at))
+                piece = static_cast<Piece>(rises ? k + 1 : k);
+        piece_of(s, at) = piece;
+    }
+    go_to(s, going.place(node.p));
+}
+
+}  // namespace elastocheck::recursive
