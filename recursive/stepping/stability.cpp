@@ -85,11 +85,11 @@ bool is_unstable(const SteppingState<double>& s) {
     return has_negative_eigenvalue(sparse(s.system.M), s.system.weight.head(s.n()), held);
 }
 
-Outcome judge_start(SteppingState<double>& s) {
+Outcome check_start_stability(SteppingState<double>& s) {
     // modes soft relative to the stiffest are below the rounding of is_unstable()
     SubspaceBasis<double> softest;
     const LeastStiffness least = least_stiffness(s, softest);
-    s.begins_unstable = is_unstable(s) || pushed_over(s, s.q, s.lambda) < 0 ||
+    s.begins_unstable = is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
                         (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
     return s.begins_unstable ? Outcome::singular : Outcome::converged;
 }

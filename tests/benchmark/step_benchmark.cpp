@@ -72,7 +72,7 @@ bool compare(const families::Family& family, int steps) {
     std::vector<double> b(s.system.lu.size()), x(b.size());
     bool good = true;
     for (int k = 1; k <= steps; ++k) {
-        const Place<double> next{1, 1e-3 * branch.to * k / steps};
+        const Parameters<double> next{1, 1e-3 * branch.to * k / steps};
         step_time.push_back(
             seconds([&] { good = step(s, published, next) == Outcome::converged && good; }));
         values = s.system.values;
