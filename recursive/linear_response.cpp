@@ -74,7 +74,7 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
 // A held direction does not respond, so its border must carry no load. μ detects a force on an idle
 // mode, and a mode that is idle in K but not in the tangent. For a wrench, redundant combinations
 // are not checked: redundant joints carry it, in an undetermined distribution.
-Outcome judge_border(SteppingState<double>& s, const Disturbance& disturbance) {
+Outcome check_border(SteppingState<double>& s, const Disturbance& disturbance) {
     const Held<double>& held = s.system.held;
     if (held.size() == 0) return Outcome::converged;
     constraint_force(s.system.M, s.x.tail(s.m()), s.force);
@@ -136,10 +136,9 @@ std::string words(Outcome outcome, const Disturbance& disturbance, const Model& 
             }},
         disturbance);
     if (outcome == Outcome::loaded_idle_mode)
-        return what +
-               " pushes what no joint and no rate resists as drawn: " + idle_modes(diagnosis);
-    if (outcome == Outcome::inconsistent_constraints)
-        return what + " would open joints that hold the same twice";
+        return what + " acts on a motion that no joint or element resists as drawn: " +
+               idle_modes(diagnosis);
+    if (outcome == Outcome::inconsistent_constraints) return what + " would open redundant joints";
     return what;
 }
 
@@ -168,7 +167,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
         disturb(s, disturbance);
         back_substitute(s);
         const Outcome outcome =
-            s.x.allFinite() ? judge_border(s, disturbance) : Outcome::not_finite;
+            s.x.allFinite() ? check_border(s, disturbance) : Outcome::not_finite;
         if (outcome != Outcome::converged)
             return fail(outcome, words(outcome, disturbance, model, analysis.diagnosis));
         leave_out_idle_motion(s);

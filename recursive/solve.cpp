@@ -47,22 +47,21 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
     if (stop.begins_unstable)
         return fmt::format("the equilibrium that settles at {} is unstable",
                            in_unit(branch.unit, 0));
-    std::string detail = std::isnan(stop.at)
-                             ? std::string("while what is held at the start settles")
-                             : "at " + in_unit(branch.unit, stop.at);
+    std::string detail = std::isnan(stop.at) ? std::string("while the start settles")
+                                             : "at " + in_unit(branch.unit, stop.at);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
-            detail += ": the load pushes what no joint and no rate resists as drawn: " +
+            detail += ": the load acts on a motion that no joint or element resists as drawn: " +
                       idle_modes(diagnosis);
             break;
         case Outcome::singular:
-            detail += ": the branch divides, turns back or loses its stability before";
+            detail += ": the branch bifurcates, turns back or loses its stability before";
             if (diagnosis.null_space.cols() > 0)
                 detail += ", or what was idle or redundant at the design position no longer is";
             break;
         case Outcome::inconsistent_constraints:
             if (!std::isnan(stop.at))
-                detail += ": joints that say a thing twice contradict each other";
+                detail += ": redundant joints are inconsistent";
             else
                 detail = fmt::format(
                     "the joints{} cannot be closed; as drawn they are open by up to {:.3g} mm, or "
@@ -79,15 +78,16 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
             break;
         case Outcome::diverged:
             detail += std::holds_alternative<Linear>(method.kind)
-                          ? ": the stored forces turn stiffer than the elements are, the recursion "
-                            "is unstable "
-                            "from here on"
-                          : ": what a step misses is more than half of it; take more steps";
+                          ? ": the geometric stiffness of the stored forces exceeds that of the "
+                            "elements, "
+                            "the recursion is unstable from here on"
+                          : ": the error of a step exceeds half of it; take more steps";
             break;
         case Outcome::converged:
         case Outcome::iteration_limit:
             detail += fmt::format(
-                ": {} steps were not enough, nearly singular as it is or by this tolerance",
+                ": {} steps were not enough, the matrix is nearly singular or the tolerance too "
+                "small",
                 most_steps);
             break;
         case Outcome::not_finite:
@@ -174,8 +174,8 @@ void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
     point.bound.length += std::numeric_limits<double>::epsilon() * reach;
 }
 
-EquilibriumPath with_accounts(const Model& model, const Branch& branch, const Options& options,
-                              const Analysis& analysis, const Visit& visit) {
+EquilibriumPath with_error_bounds(const Model& model, const Branch& branch, const Options& options,
+                                  const Analysis& analysis, const Visit& visit) {
     if (!options.error_bound) return found(model, branch, options, analysis, visit);
     const auto* series = std::get_if<Series>(&options.method.kind);
     const auto add_error_bound =
@@ -234,14 +234,14 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
                 {},
                 {}};
     if (options.error_bound_every < 1)
-        throw std::invalid_argument("account is given of every n-th point, n from 1");
+        throw std::invalid_argument("the error bound is computed at every n-th point, n >= 1");
     bool begun = false;
     const Visit counted = [&](const Equilibrium& point) {
         begun = true;
         visit(point);
     };
     EquilibriumPath path =
-        with_accounts(model, branch, options, analysis, visit ? counted : Visit{});
+        with_error_bounds(model, branch, options, analysis, visit ? counted : Visit{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
     // Where a drawing far from rest has several equilibria, homotopies may settle at different ones: no error bound is claimed.

@@ -17,7 +17,7 @@ Coefficients reserve_coefficients(const SteppingState<double>& s, int order) {
 }
 
 double parameter(const SteppingState<double>& s, Drive drive) {
-    return drive == Drive::start ? s.place.t : s.place.a;
+    return drive == Drive::start ? s.parameters.t : s.parameters.a;
 }
 
 void expand(SteppingState<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,

@@ -55,7 +55,7 @@ std::optional<double> first_zero(Function f, double reach) {
 }
 
 // One continuation: t from 0 to 1 while the start settles, or a from 0 to the branch's end.
-struct Walk {
+struct Continuation {
     SteppingState<double>& s;
     const recursive::Series& options;
     Equations e;
@@ -79,8 +79,8 @@ struct Walk {
     Vector<double> x;  // value of the polynomial
     Path path;
 
-    Walk(SteppingState<double>& s_, std::vector<Followed>& curves_,
-         const recursive::Series& options_, Drive drive)
+    Continuation(SteppingState<double>& s_, std::vector<Followed>& curves_,
+                 const recursive::Series& options_, Drive drive)
         : s(s_),
           options(options_),
           e(equations(s.model, s.branch, options.order, drive)),
@@ -102,9 +102,9 @@ struct Walk {
     bool by_arc() const { return options.arc_length && e.drive == Drive::rate; }
     double at() const { return parameter(s, e.drive); }
     void go_to(double value) {
-        recursive::go_to(s, e.drive == Drive::start ? recursive::Place<double>{value, 0}
-                                                    : recursive::Place<double>{1, value});
-        s.a = s.place.a;
+        recursive::go_to(s, e.drive == Drive::start ? recursive::Parameters<double>{value, 0}
+                                                    : recursive::Parameters<double>{1, value});
+        s.a = s.parameters.a;
     }
 };
 
@@ -114,24 +114,24 @@ double largest_violation(const SteppingState<double>& s) {
 }
 
 // Whether redundant joints have become inconsistent by their drivers.
-bool contradicts(SteppingState<double>& s) {
+bool became_inconsistent(SteppingState<double>& s) {
     if (!has_redundancy(s)) return false;
     residual_at(s, s.q, s.lambda);
-    return contradict(s, s.q);
+    return is_inconsistent(s, s.q);
 }
 
 // Whether the forces at the present configuration load an idle mode.
-Outcome judge_push_here(Walk& w, double missed) {
+Outcome check_idle_load_here(Continuation& w, double missed) {
     if (w.s.system.held.idle == 0) return Outcome::converged;
     external_force<double>(w.s.model, w.s.branch, w.s.inputs, w.s.q, w.s.applied);
-    w.s.applied -= (1 - w.s.place.t) * w.s.R_d;
-    return judge_push(w.s, w.s.q, missed);
+    w.s.applied -= (1 - w.s.parameters.t) * w.s.R_d;
+    return check_idle_load(w.s, w.s.q, missed);
 }
 
 // Newton corrections at the present point; the last factors serve the next expansion. The first
 // correction is the error of the expansion. With arc length the parameter is corrected too, so that
 // nothing moves along the path.
-Outcome arrive(Walk& w, Certificate* judged, double& error) {
+Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
     SteppingState<double>& s = w.s;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
@@ -163,7 +163,7 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         }
         if (!s.x.allFinite()) return Outcome::not_finite;
         const double size = std::sqrt(size_of_solution(s));
-        if (const Outcome outcome = judge_push_here(w, std::max(size, slid));
+        if (const Outcome outcome = check_idle_load_here(w, std::max(size, slid));
             outcome != Outcome::converged)
             return outcome;
         if (k == 0) error = std::max(size, slid);
@@ -175,7 +175,7 @@ Outcome arrive(Walk& w, Certificate* judged, double& error) {
         // The factors belong to the point before this correction: accurate enough if it was small.
         if (size <= std::max(rounding, 1e-2 * w.options.tolerance)) break;
     }
-    return contradicts(s) ? Outcome::inconsistent_constraints : Outcome::converged;
+    return became_inconsistent(s) ? Outcome::inconsistent_constraints : Outcome::converged;
 }
 
 std::vector<Pose> poses_of(const State<double>& q) {
@@ -202,7 +202,7 @@ struct End {
 };
 
 // Shortens the range to where the first deformation leaves its piece.
-void stop_at_knots(const Walk& w, End& end) {
+void stop_at_knots(const Continuation& w, End& end) {
     const double reach = end.tau;
     std::vector<std::pair<Crossing, Leaving>> met;
     for (std::size_t k = 0; k < w.curves.size(); ++k)
@@ -222,7 +222,7 @@ void stop_at_knots(const Walk& w, End& end) {
 // belongs to polynomials that are not valid that far. Near it x_s - x ~ (1 - τ/τ_s)^½, so that a
 // deformation still moves by 2 τ_s times its present rate; the test allows twice that, for the
 // terms that the square root omits.
-bool meets_knot_before(const Walk& w, double tau_s) {
+bool meets_knot_before(const Continuation& w, double tau_s) {
     return std::ranges::any_of(w.curves, [&](const Followed& f) {
         const double rate = deformation(w.e, f.elastic, f.axis, 1);
         const auto to = to_knot(w.e, f, rate < 0 ? -1 : +1);
@@ -232,7 +232,7 @@ bool meets_knot_before(const Walk& w, double tau_s) {
 
 // Range of validity of the expansion at the parameter a_0; an outcome other than `converged` if the
 // branch does not continue.
-Outcome look_ahead(Walk& w, double a_0, const Singularity& singularity, End& end) {
+Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singularity, End& end) {
     end = {reach(w.s, w.c, w.options.tolerance, w.per_unit, singularity.radius), false, {}, {}};
     if (std::isnan(end.tau)) return Outcome::not_finite;
     const double reached = end.tau;
@@ -271,7 +271,7 @@ Vector<double> derivative(const Eigen::MatrixXd& c, double tau) {
 }
 
 // Sets the state to the polynomial about `from` at τ.
-void move_to(Walk& w, const State<double>& from, double tau) {
+void move_to(Continuation& w, const State<double>& from, double tau) {
     horner(w.c.x, tau, w.x);
     displace(from, w.x, w.s.q);
     w.s.lambda = w.x.tail(w.s.m());
@@ -280,13 +280,13 @@ void move_to(Walk& w, const State<double>& from, double tau) {
 
 // Sign of the determinant at the present point. With arc length it is multiplied by the sign of
 // `rises`, the rate of the parameter along the path: at limit points both signs change.
-int side(const Walk& w, double rises) {
+int side(const Continuation& w, double rises) {
     return w.by_arc() && rises < 0 ? -w.s.system.lu.orientation : w.s.system.lu.orientation;
 }
 // Sign of the parameter's rate at the end of the last expansion, from the factors there. The sign
 // of the polynomial's a' is not used: near a limit point it changes slightly before or after that
 // of the determinant, by rounding or by the tolerance.
-double rises_ahead(const Walk& w) {
+double rises_ahead(const Continuation& w) {
     const auto W2 = w.s.system.weight.head(w.s.n()).array().square();
     return (w.ahead.head(w.s.n()).array() * W2 * w.c.unit.head(w.s.n()).array()).sum();
 }
@@ -294,16 +294,17 @@ double rises_ahead(const Walk& w) {
 // Whether the equilibrium whose factors are in s.system is past a singular point of the path: the
 // determinant has changed its sign, or the least stiffness is negative (two modes that become
 // unstable at once leave the determinant's sign unchanged).
-bool is_past(Walk& w, double rises) {
+bool is_past(Continuation& w, double rises) {
     if (side(w, rises) != w.side) return true;
     if (!w.stable) return false;
     const LeastStiffness least = least_stiffness(w.s, w.softest);
-    return (least.of_energy && least.value < 0) || pushed_over(w.s, w.s.q, w.s.lambda) < 0;
+    return (least.of_energy && least.value < 0) ||
+           negative_idle_stiffness(w.s, w.s.q, w.s.lambda) < 0;
 }
 
 // |determinant| at the present point over that at the start of the expansion; negative if its sign
 // differs from that at the start of the path.
-double determinant(const Walk& w) {
+double determinant(const Continuation& w) {
     const double size = std::exp2(log_determinant(w.s.system.lu) - w.log_begin);
     return side(w, w.to) == w.side ? size : -size;
 }
@@ -311,7 +312,8 @@ double determinant(const Walk& w) {
 // Evaluates the expansion about `from` at its midpoint and end, corrects the end by Newton's method
 // and fills the certificate `judged`. If the error at the end is too large, the range is shortened
 // and the evaluation repeated.
-Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged) {
+Outcome accept_expansion(Continuation& w, const State<double>& from, End& end,
+                         Certificate& judged) {
     for (int shorter = 0; shorter <= 20; ++shorter) {
         move_to(w, from, end.tau / 2);
         residual_at(w.s, w.s.q, w.s.lambda);
@@ -324,7 +326,7 @@ Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged)
         move_to(w, from, end.tau);
         if (end.last && !w.by_arc()) w.go_to(w.to);
         w.ahead = w.by_arc() ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
-        const Outcome outcome = arrive(w, &judged, judged.error_end);
+        const Outcome outcome = correct_at_end(w, &judged, judged.error_end);
         const double error = judged.error_end;
         if (outcome == Outcome::converged && error <= 10 * w.options.tolerance) return outcome;
         if (outcome == Outcome::not_finite || outcome == Outcome::loaded_idle_mode ||
@@ -343,7 +345,7 @@ Outcome go_on(Walk& w, const State<double>& from, End& end, Certificate& judged)
 // Finds limit points of a(τ) in the last range. A limit point at the seam of two expansions may
 // appear at the end of one and the start of the next, or in neither. The test is therefore whether
 // the sign of a' differs from before.
-void look_for_turns(Walk& w, double reach) {
+void look_for_turns(Continuation& w, double reach) {
     constexpr int pieces = 64;
     const auto rises = [&](double t) { return slope(w.c.load, t); };
     if (w.path.expansions.empty()) w.heading = rises(0);
@@ -357,7 +359,7 @@ void look_for_turns(Walk& w, double reach) {
 }
 
 // Starts at the design position with the factors of the analysis.
-Outcome begin_at_design(Walk& w, const Analysis& analysis) {
+Outcome begin_at_design(Continuation& w, const Analysis& analysis) {
     w.go_to(0);
     // Select the piece of each curve: at a knot the analysis may have used the other piece.
     if (!w.curves.empty()) {
@@ -369,18 +371,18 @@ Outcome begin_at_design(Walk& w, const Analysis& analysis) {
         w.follow(curve);
     }
     w.go_to(w.to);  // with all forces at the end of the branch
-    if (w.e.drive == Drive::start ? pushes_idle_mode(w.s)
-                                  : judge_push_here(w, 0) != Outcome::converged)
+    if (w.e.drive == Drive::start ? loads_idle_mode(w.s)
+                                  : check_idle_load_here(w, 0) != Outcome::converged)
         return Outcome::loaded_idle_mode;
     w.go_to(0);
-    if (w.curves.empty()) return judge(w.s, w.s.q, analysis.pivot_ratio);
+    if (w.curves.empty()) return check_factors(w.s, w.s.q, analysis.pivot_ratio);
     return factorise_at(w.s, w.s.q, w.s.lambda);
 }
 
 // Changes every curve in `over` to its neighbouring piece. The matrix is factorised again if a
 // slope jumps; the direction of the motion jumps there too. With arc length the path continues on
 // the side on which the product of the determinant's sign and a' is unchanged.
-Outcome go_over(Walk& w, const std::vector<Crossing>& over) {
+Outcome cross_knots(Continuation& w, const std::vector<Crossing>& over) {
     bool jumps = false;
     for (const auto& [k, direction] : over) {
         jumps = step_over(w.curves[k], direction) || jumps;
@@ -400,7 +402,7 @@ Outcome go_over(Walk& w, const std::vector<Crossing>& over) {
 // the motion: a linear complementarity problem. All such curves change piece together, or one at a
 // time where the set of pieces would repeat. Where no set agrees with its motion, the path turns
 // back at the knot.
-Outcome set_out(Walk& w, Singularity& singularity, End& end) {
+Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
     const auto pieces = [&] {
         std::vector<Piece> all;
         for (const auto& curve : w.curves) all.push_back(curve.piece);
@@ -410,7 +412,8 @@ Outcome set_out(Walk& w, Singularity& singularity, End& end) {
     for (;;) {
         expand(w.s, w.e, w.c, w.first, w.by_arc(), w.ahead);
         singularity = nearest_singularity(w.s, w.c);
-        if (const Outcome o = look_ahead(w, w.at(), singularity, end); o != Outcome::converged)
+        if (const Outcome o = range_of_validity(w, w.at(), singularity, end);
+            o != Outcome::converged)
             return o;
         if (end.at_once.empty()) return Outcome::converged;
         tried.push_back(pieces());
@@ -424,14 +427,14 @@ Outcome set_out(Walk& w, Singularity& singularity, End& end) {
             w.path.limits.push_back(w.at());
             return Outcome::limit_point;
         }
-        if (const Outcome o = go_over(w, end.at_once); o != Outcome::converged) return o;
+        if (const Outcome o = cross_knots(w, end.at_once); o != Outcome::converged) return o;
     }
 }
 
 // Locates a bifurcation point in 0 ≤ τ ≤ reach by bisection and moves the state to it. The
 // polynomial continues smoothly past such a point. Returns the τ up to which it represents the
 // stable path; with arc length 0, since there is no bisection.
-double divide(Walk& w, const State<double>& from, double reach) {
+double divide(Continuation& w, const State<double>& from, double reach) {
     constexpr int halvings = 40;
     double before = 0, past = reach;
     for (int k = 0; k < halvings && !w.by_arc(); ++k) {
@@ -449,7 +452,7 @@ double divide(Walk& w, const State<double>& from, double reach) {
 // such τ is found. The determinant has a minimum there. The parabola through three values of it
 // predicts the minimum, and the value there replaces one of the three, until the value is negative,
 // or is positive and agrees with the prediction. If none is found, the state is left at the end.
-std::optional<double> lost_inside(Walk& w, const State<double>& from, double reach) {
+std::optional<double> lost_inside(Continuation& w, const State<double>& from, double reach) {
     // A predicted minimum below this fraction of the smaller end value is evaluated.
     constexpr double dips = 0.5;
     constexpr double foretold = 0.2;  // error of a prediction that counts as agreement, relative
@@ -506,14 +509,14 @@ std::optional<double> lost_inside(Walk& w, const State<double>& from, double rea
 
 // Maximum number of expansions: the option's number, and as many again for each crossing of a knot;
 // crossings count up to the number of knots.
-std::size_t most_expansions(const Walk& w, std::size_t gone_over) {
+std::size_t most_expansions(const Continuation& w, std::size_t gone_over) {
     std::size_t knots = 0;
     for (const auto& curve : w.curves) knots += curve.curve->knots.size();
     return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(gone_over, knots));
 }
 
 // From an equilibrium, with its factors in s.system, to the end.
-Outcome walk(Walk& w) {
+Outcome follow_to_end(Continuation& w) {
     SteppingState<double>& s = w.s;
     std::size_t gone_over = 0;
     while (w.path.expansions.size() < most_expansions(w, gone_over)) {
@@ -521,19 +524,20 @@ Outcome walk(Walk& w) {
         Singularity singularity;
         End end;
         Certificate judged;
-        if (const Outcome o = set_out(w, singularity, end); o != Outcome::converged) return o;
+        if (const Outcome o = expand_here(w, singularity, end); o != Outcome::converged) return o;
         // Crossing a knot must not have changed the sign of the determinant.
         if (const int here = side(w, w.to); w.path.expansions.empty()) {
             w.side = here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
                 const LeastStiffness least = least_stiffness(s, w.softest);
                 w.stable = least.of_energy && least.value > 0;
-                if (const Outcome o = judge_start(s); o != Outcome::converged) return o;
+                if (const Outcome o = check_start_stability(s); o != Outcome::converged) return o;
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
         w.log_begin = log_determinant(s.system.lu);
-        if (const Outcome o = go_on(w, from, end, judged); o != Outcome::converged) return o;
+        if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
+            return o;
         // The polynomial continues past a bifurcation point, and the branch past a loss of
         // stability.
         bool past = is_past(w, rises_ahead(w));
@@ -547,25 +551,25 @@ Outcome walk(Walk& w) {
         if (past) return Outcome::bifurcation_point;
         if (end.last) return Outcome::converged;
         if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
-        if (const Outcome o = go_over(w, end.over); o != Outcome::converged) return o;
+        if (const Outcome o = cross_knots(w, end.over); o != Outcome::converged) return o;
     }
     return Outcome::iteration_limit;
 }
 
-std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
+std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagnosis) {
     const bool settles = w.e.drive == Drive::start;
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
     const std::string at =
-        settles ? fmt::format("{}: settling what is held, at {:.6g} of it", branch, w.at())
+        settles ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch, w.at())
                 : fmt::format("{}: at {:.6g}", branch, w.at());
     if (w.s.begins_unstable)
         return fmt::format("{}: the equilibrium that settles at 0 is unstable", branch);
     switch (outcome) {
         case Outcome::limit_point:
             return settles ? fmt::format(
-                                 "{}: settling what is held, limit point at {:.9g} of it: from the "
-                                 "drawing "
-                                 "no equilibrium leads further",
+                                 "{}: settling the start, limit point at {:.9g} of the homotopy, "
+                                 "past it "
+                                 "no equilibrium continues it",
                                  branch, w.path.limits.back())
                            : fmt::format(
                                  "{}: limit point near {:.9g}, past it no equilibrium continues "
@@ -575,9 +579,7 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
             return at + fmt::format(": {} expansions were not enough", w.path.expansions.size());
         case Outcome::singular:
             return at +
-                   ": the matrix is singular here or was on the way: the branch divides, or loses "
-                   "its "
-                   "stability" +
+                   ": the matrix is or was singular: the branch bifurcates or loses its stability" +
                    (diagnosis.null_space.cols() > 0
                         ? ", or what was idle or redundant at the design position no longer is"
                         : "");
@@ -585,9 +587,9 @@ std::string words(const Walk& w, Outcome outcome, const Diagnosis& diagnosis) {
             return at +
                    ": another curve of equilibria crosses the branch, which is unstable past this "
                    "point";
-        case Outcome::inconsistent_constraints: return at + ": the joints contradict each other";
+        case Outcome::inconsistent_constraints: return at + ": redundant joints are inconsistent";
         case Outcome::loaded_idle_mode:
-            return at + ": the load pushes what no joint and no rate resists as drawn: " +
+            return at + ": the load acts on a motion that no joint or element resists as drawn: " +
                    idle_modes(diagnosis);
         default: return at;
     }
@@ -607,7 +609,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     s.consistent = true;
     s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
     std::vector<Followed> curves = curves_of(model);
-    const auto finish = [&](Walk& w, Outcome outcome) {
+    const auto finish = [&](Continuation& w, Outcome outcome) {
         w.path.outcome = outcome;
         if (outcome != Outcome::converged) w.path.detail = words(w, outcome, analysis.diagnosis);
         w.path.counts = s.counts;
@@ -620,21 +622,21 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
         // without the closing tolerance: the series needs an exact equilibrium
         s.Phi_d = analysis.Phi_d;
-        Walk settling(s, curves, options, Drive::start);
+        Continuation settling(s, curves, options, Drive::start);
         if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
-        const Outcome walked = walk(settling);
+        const Outcome walked = follow_to_end(settling);
         if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
         if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged)
             return finish(settling, o);
-        Walk w(s, curves, options, Drive::rate);
+        Continuation w(s, curves, options, Drive::rate);
         w.go_to(0);
-        return finish(w, walk(w));
+        return finish(w, follow_to_end(w));
     }
-    Walk w(s, curves, options, Drive::rate);
+    Continuation w(s, curves, options, Drive::rate);
     if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
         return finish(w, o);
-    return finish(w, walk(w));
+    return finish(w, follow_to_end(w));
 }
 
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options) {

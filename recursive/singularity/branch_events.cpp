@@ -29,21 +29,21 @@ Outcome settles(SteppingState<double>& s, const Branch& branch, const Analysis& 
     const auto settled = [&] {
         if (!analysis.at_rest || !starts_as_drawn(branch) || !s.curves.empty()) return settle(s);
         go_to(s, {1, 0});
-        return judge(s, s.q, analysis.pivot_ratio);
+        return check_factors(s, s.q, analysis.pivot_ratio);
     };
     const Outcome outcome = settled();
-    return outcome == Outcome::converged ? judge_start(s) : outcome;
+    return outcome == Outcome::converged ? check_start_stability(s) : outcome;
 }
 
-// Stability at the nodes of one walk. A change of the determinant's sign shows an odd number of
+// Stability at the nodes of one traversal. A change of the determinant's sign shows an odd number of
 // negative stiffnesses; the softest modes show two at once.
 struct Stability {
     SubspaceBasis<double> softest = {};
 
     // With the factors of `next` in the system.
     bool is_lost(SteppingState<double>& s, const Trial<double>& trial) {
-        if (trial.verdict == Verdict::turned_over) return true;
-        if (trial.verdict != Verdict::believed) return false;
+        if (trial.verdict == Verdict::past_singular_point) return true;
+        if (trial.verdict != Verdict::accepted) return false;
         const LeastStiffness least = least_stiffness(s, softest);
         return least.of_energy && least.value < 0;
     }
@@ -51,8 +51,9 @@ struct Stability {
 
 // Parameter at which stability is lost between a stable node and p = far, by bisection with
 // accepted steps; none if `far` is reached and stable, or if the steps do not decide.
-std::optional<double> lost_between(SteppingState<double>& s, const Going<double>& going,
-                                   Node<double> node, double far) {
+std::optional<double> lost_between(SteppingState<double>& s,
+                                   const ContinuationSettings<double>& settings, Node<double> node,
+                                   double far) {
     constexpr double resolution = 1e-6;  // of the way from the node
     constexpr int most = 100;  // steps tried: bisection takes 20, the rest is for short ones
     const Vector<double> none = Vector<double>::Zero(s.n()),
@@ -64,13 +65,13 @@ std::optional<double> lost_between(SteppingState<double>& s, const Going<double>
     double h = far - node.p;
     for (int tried = 0; tried < most && std::abs(h) > finest / 2; ++tried) {
         next.p = node.p + h;
-        const Trial<double> trial = try_step(s, going, node, none, lambda_none, next);
+        const Trial<double> trial = try_step(s, settings, node, none, lambda_none, next);
         if (stability.is_lost(s, trial)) {
             if (std::abs(h) <= finest) return next.p;
             far = next.p;
             lost = true;
             h /= 2;
-        } else if (trial.verdict == Verdict::believed) {
+        } else if (trial.verdict == Verdict::accepted) {
             std::swap(node, next);
             if (node.p == far) return std::nullopt;
             h = lost ? std::max(std::abs(far - node.p) / 2, finest) * (far > node.p ? 1 : -1)
@@ -85,7 +86,8 @@ std::optional<double> lost_between(SteppingState<double>& s, const Going<double>
 // Parameter between two stable nodes at which the determinant most likely has the other sign, or
 // at which two modes may have become unstable; none if the determinant stays away from zero. It is
 // evaluated at the midpoint, then at the minimum of the parabola through the three lowest values.
-std::optional<double> suspect_between(SteppingState<double>& s, const Going<double>& going,
+std::optional<double> suspect_between(SteppingState<double>& s,
+                                      const ContinuationSettings<double>& settings,
                                       const Node<double>& from, const Node<double>& to,
                                       double log_from, double log_to) {
     // A predicted minimum below this fraction of the lowest value is evaluated.
@@ -100,7 +102,7 @@ std::optional<double> suspect_between(SteppingState<double>& s, const Going<doub
     Vector<double> lambda = from.lambda;
     const auto at = [&](double t) {
         between(from, to, t, q, lambda);
-        go_to(s, going.place(from.p + t * (to.p - from.p)));
+        go_to(s, settings.at(from.p + t * (to.p - from.p)));
         const bool regular = factorise_at(s, q, lambda) == Outcome::converged;
         return regular && s.system.lu.orientation == from.orientation
                    ? std::exp2(log_determinant(s.system.lu) - log_from)
@@ -136,15 +138,15 @@ std::optional<double> suspect_between(SteppingState<double>& s, const Going<doub
 
 // Result of following the branch with few steps. Stability lost inside may be regained before the
 // end.
-struct Walk {
+struct Traversal {
     bool through = false;             // the end was reached and no loss of stability was found
     std::optional<double> lost = {};  // parameter at which stability is lost
 };
 
-Walk go_ahead(SteppingState<double>& s, double to) {
-    const Going<double> going{Drive::rate, tolerance * s.length, tolerance};
+Traversal follow_by_long_steps(SteppingState<double>& s, double to) {
+    const ContinuationSettings<double> settings{Drive::rate, tolerance * s.length, tolerance};
     Node<double> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
-    differentiate(s, going, node);
+    differentiate(s, settings, node);
     double log_here = log_determinant(s.system.lu);
     // The step before: its first node, the slope of the log-determinant over it, and whether its
     // interior was examined.
@@ -160,14 +162,15 @@ Walk go_ahead(SteppingState<double>& s, double to) {
     for (double gone = 0; gone < 1;) {
         const double ahead = gone + h < 1 - h / 8 ? gone + h : 1;
         next.p = to * ahead;
-        const Trial<double> trial = try_step(s, going, node, curvature, lambda_curvature, next);
-        const bool believed = trial.verdict == Verdict::believed;
-        if (believed && contradict_at(s, next, q, lambda)) return {};
-        if (believed && pushed_over(s, next.q, next.lambda) < 0) return {};
+        const Trial<double> trial = try_step(s, settings, node, curvature, lambda_curvature, next);
+        const bool accepted = trial.verdict == Verdict::accepted;
+        if (accepted && is_inconsistent_at(s, next, q, lambda)) return {};
+        if (accepted && negative_idle_stiffness(s, next.q, next.lambda) < 0) return {};
         const bool first = gone == 0, last = ahead == 1;
-        if (trial.verdict == Verdict::turned_over || (last && stability.is_lost(s, trial))) {
-            if (const auto lost = lost_between(s, going, node, next.p)) return {false, lost};
-        } else if (believed && is_straight(s, going, node, next)) {
+        if (trial.verdict == Verdict::past_singular_point ||
+            (last && stability.is_lost(s, trial))) {
+            if (const auto lost = lost_between(s, settings, node, next.p)) return {false, lost};
+        } else if (accepted && is_straight(s, settings, node, next)) {
             if (ahead == 1 && is_unstable(s)) return {};
             const double log_next = log_determinant(s.system.lu),
                          rise = (log_next - log_here) / (ahead - gone);
@@ -177,10 +180,11 @@ Walk go_ahead(SteppingState<double>& s, double to) {
                 const Node<double>&from = this_step ? node : before,
                       &to_node = this_step ? next : node;
                 const auto suspect =
-                    suspect_between(s, going, from, to_node, this_step ? log_here : log_before,
+                    suspect_between(s, settings, from, to_node, this_step ? log_here : log_before,
                                     this_step ? log_next : log_here);
                 if (!suspect) continue;
-                if (const auto lost = lost_between(s, going, from, *suspect)) return {false, lost};
+                if (const auto lost = lost_between(s, settings, from, *suspect))
+                    return {false, lost};
             }
             before = node;
             log_before = log_here;
@@ -218,12 +222,13 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
         return Event{o, std::numeric_limits<double>::quiet_NaN(), s.begins_unstable};
     else if (o != Outcome::converged)
         return std::nullopt;  // the method reports this failure itself
-    const Walk walk = go_ahead(s, branch.to);
-    if (walk.through) return std::nullopt;
+    const Traversal traversal = follow_by_long_steps(s, branch.to);
+    if (traversal.through) return std::nullopt;
     const std::optional<Event> event = find_event(model, branch, analysis);
     const bool sooner =
-        walk.lost && !(event && std::abs(event->load) <= (1 + tolerance) * std::abs(*walk.lost));
-    return sooner ? Event{Outcome::bifurcation_point, *walk.lost} : event;
+        traversal.lost &&
+        !(event && std::abs(event->load) <= (1 + tolerance) * std::abs(*traversal.lost));
+    return sooner ? Event{Outcome::bifurcation_point, *traversal.lost} : event;
 }
 
 }  // namespace elastocheck::recursive

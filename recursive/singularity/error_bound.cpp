@@ -31,7 +31,7 @@ Size size_of(const Motion& dq) {
     return size;
 }
 
-struct Accountant {
+struct ErrorEstimator {
     SteppingState<Real> s;
     bool turns_back;
     Vector<Real> lambda;
@@ -42,7 +42,7 @@ struct Accountant {
     std::optional<Node<Real>> last_found = {};  // on the branch
     Real noise = 0;                             // rounding of the evaluated forces, as |W⁻¹ f|
 
-    Accountant(const Model& model, const Branch& branch, const Analysis& analysis, bool back)
+    ErrorEstimator(const Model& model, const Branch& branch, const Analysis& analysis, bool back)
         : s(model, branch, analysis), turns_back(back), lambda(Vector<Real>::Zero(s.m())) {
         s.consistent = true;
     }
@@ -121,7 +121,7 @@ struct Accountant {
         external_force<Real>(s.model, s.branch, s.inputs, q, s.applied);
         elastic_force<Real>(s.model, s.inputs, q, s.force);
         const Real acts = size_of_force(s, s.applied) + size_of_force(s, s.force);
-        if (!(open <= std::max<Real>(1, static_cast<Real>(s.length)) * written(s, q)) ||
+        if (!(open <= std::max<Real>(1, static_cast<Real>(s.length)) * input_precision(s, q)) ||
             !(left <= 1e-9L * acts + noise))
             return none;
         // A pose is written down with the digits of a double.
@@ -139,11 +139,11 @@ struct Accountant {
         const LeastStiffness least = least_stiffness(s, softest);
         const double sign = least.of_energy || s.system.lu.orientation == orientation ? 1 : -1;
         if (first_stiffness == 0) first_stiffness = least.value;
-        const double idle = pushed_over(s, q, lambda);
+        const double idle = negative_idle_stiffness(s, q, lambda);
         return (idle < 0 ? idle : sign * least.value) / first_stiffness;
     }
 
-    Going<Real> going() const {
+    ContinuationSettings<Real> settings() const {
         constexpr Real near = 1e-4L;  // of L, or rad: tolerance of the corrector along the branch
         return {Drive::rate, near * static_cast<Real>(s.length), near};
     }
@@ -157,9 +157,9 @@ struct Accountant {
         for (Real h = way; here.p != a;) {
             next.p = std::abs(h) < std::abs(a - here.p) ? here.p + h : a;
             const Real tried = next.p - here.p;
-            if (try_step(s, going(), here, curvature, lambda_curvature, next).verdict ==
-                    Verdict::believed &&
-                is_straight(s, going(), here, next)) {
+            if (try_step(s, settings(), here, curvature, lambda_curvature, next).verdict ==
+                    Verdict::accepted &&
+                is_straight(s, settings(), here, next)) {
                 curvature = (next.dq - here.dq) / tried;
                 lambda_curvature = (next.dlambda - here.dlambda) / tried;
                 std::swap(here, next);
@@ -203,7 +203,7 @@ struct Accountant {
         if (turns_back || settle(s) != Outcome::converged) return;
         lambda = s.lambda;
         last_found = Node<Real>{s.q, lambda, {}, {}, 0, 0};
-        differentiate(s, going(), *last_found);
+        differentiate(s, settings(), *last_found);
     }
 
     // Pre: q is near the equilibrium that the branch leads to. Returns q at that equilibrium.
@@ -217,8 +217,8 @@ struct Accountant {
             const Vector<Real> lambda_there = lambda;
             const ErrorBound bound_near = bound(near, 0), apart = distance(q, near, idle_bodies());
             if (std::isfinite(bound_near.length) &&
-                apart.length <= static_cast<double>(going().length_tolerance) &&
-                apart.angle <= static_cast<double>(going().angle_tolerance)) {
+                apart.length <= static_cast<double>(settings().length_tolerance) &&
+                apart.angle <= static_cast<double>(settings().angle_tolerance)) {
                 q = near;
                 return bound_near;
             }
@@ -243,7 +243,7 @@ struct Accountant {
         if (std::isfinite(point.bound.length)) {
             point.stiffness_left = stiffness_left(q);
             last_found = Node<Real>{q, lambda, {}, {}, a, 0};
-            differentiate(s, going(), *last_found);
+            differentiate(s, settings(), *last_found);
         } else if (orientation != 0) {
             q = state_of<Real>(point.poses);
             lambda.setZero();
@@ -256,7 +256,7 @@ struct Accountant {
 
 std::function<void(Equilibrium&)> error_estimator(const Model& model, const Branch& branch,
                                                   const Analysis& analysis, bool turns_back) {
-    return [kept = std::make_shared<Accountant>(model, branch, analysis, turns_back)](
+    return [kept = std::make_shared<ErrorEstimator>(model, branch, analysis, turns_back)](
                Equilibrium& point) { (*kept)(point); };
 }
 

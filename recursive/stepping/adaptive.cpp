@@ -16,7 +16,7 @@ namespace {
 // forces at q and of stiffness times position, since the reactions may be zero. The correction of
 // the motion does not detect this error: in a driven mechanism the drivers prescribe the whole
 // motion, and all forces are in λ.
-double share_of_reactions(SteppingState<double>& s, const Going<double>& going,
+double share_of_reactions(SteppingState<double>& s, const ContinuationSettings<double>& settings,
                           const State<double>& q, const Vector<double>& one,
                           const Vector<double>& other) {
     const auto force = [&](const auto& lambda) {
@@ -27,7 +27,7 @@ double share_of_reactions(SteppingState<double>& s, const Going<double>& going,
     elastic_force<double>(s.model, s.inputs, q, s.force);
     const double acts = std::max({largest, size_of_force(s, s.applied), size_of_force(s, s.force)});
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
-    const double allowed = largest * going.length_tolerance / s.length +
+    const double allowed = largest * settings.length_tolerance / s.length +
                            guard::rounding * epsilon * acts +
                            10 * epsilon * (s.length + reach(q)) * stiffest(s.system.M);
     return allowed > 0 ? change / allowed : 0;
@@ -36,7 +36,8 @@ double share_of_reactions(SteppingState<double>& s, const Going<double>& going,
 // Records the points at equal increments of the parameter up to `to`. Pre: the state has just
 // settled.
 Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recording& recording) {
-    const Going<double> going{Drive::rate, method.length_tolerance, method.angle_tolerance};
+    const ContinuationSettings<double> settings{Drive::rate, method.length_tolerance,
+                                                method.angle_tolerance};
     const std::size_t last = recording.points - 1, &reached = recording.reached;
     const auto parameter = [&](std::size_t k) {
         return to * static_cast<double>(k) / static_cast<double>(last);
@@ -52,7 +53,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
     State<double> q = s.q;
     double size = 0;
     // The factors are those of the last correction of settling.
-    differentiate(s, going, node);
+    differentiate(s, settings, node);
     const int orientation = node.orientation;
     // A bend of the path may be sharper than a short step: an imperfect column turns aside within 1e-9
     // of its load. The reason why the branch ends is judged at the first short step that is refused; a
@@ -66,27 +67,29 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
     int changes = 0;  // of pieces since the last accepted step
     // Factorisation and derivative at the node on the present pieces.
     const auto begin_anew = [&]() -> Outcome {
-        go_to(s, going.place(node.p));
+        go_to(s, settings.at(node.p));
         external_force<double>(s.model, s.branch, s.inputs, node.q, s.applied);
         if (const Outcome outcome = factorise_at(s, node.q, node.lambda);
             outcome != Outcome::converged)
             return outcome;
-        differentiate(s, going, node);
+        differentiate(s, settings, node);
         curvature.setZero();
         lambda_curvature.setZero();
         return node.orientation == orientation ? Outcome::converged : Outcome::limit_point;
     };
     if (!s.curves.empty()) {
-        take_pieces(s, going, node, h * 1e-3, q);
+        take_pieces(s, settings, node, h * 1e-3, q);
         if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
     }
     double log_here = log_determinant(s.system.lu);
     SubspaceBasis<double> softest;
     const auto unstable = [&] {
         const LeastStiffness least = least_stiffness(s, softest);
-        return (least.of_energy && least.value < 0) || pushed_over(s, next.q, next.lambda) < 0;
+        return (least.of_energy && least.value < 0) ||
+               negative_idle_stiffness(s, next.q, next.lambda) < 0;
     };
-    if (const Outcome outcome = judge_start(s); outcome != Outcome::converged) return outcome;
+    if (const Outcome outcome = check_start_stability(s); outcome != Outcome::converged)
+        return outcome;
     keep(node.q, node.lambda, 0);
 
     for (int steps = 0; reached <= last; ++steps) {
@@ -94,7 +97,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         next.p = std::abs(to - node.p) < std::abs(h) * 1.1 ? to : node.p + h;
         KnotCrossing met;
         Trial<double> trial =
-            step_to_knot(s, going, node, curvature, lambda_curvature, next, q, lambda, met);
+            step_to_knot(s, settings, node, curvature, lambda_curvature, next, q, lambda, met);
         const double step = next.p - node.p;
         if (step == 0) {  // the node lies on a knot
             piece_of(s, *met.curve) += met.side;
@@ -104,21 +107,22 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
             continue;
         }
         double error = std::numeric_limits<double>::infinity();
-        if (trial.verdict == Verdict::believed) {
+        if (trial.verdict == Verdict::accepted) {
             const double log_next = log_determinant(s.system.lu);
-            if (unstable()) trial.verdict = Verdict::turned_over;
-            if (contradict_at(s, next, q, lambda)) return Outcome::inconsistent_constraints;
+            if (unstable()) trial.verdict = Verdict::past_singular_point;
+            if (is_inconsistent_at(s, next, q, lambda)) return Outcome::inconsistent_constraints;
             between(node, next, 0.5, q, lambda);
-            trial.outcome = correct(s, going, q, lambda, node.p + step / 2, size);
+            trial.outcome = correct(s, settings, q, lambda, node.p + step / 2, size);
             if (trial.outcome == Outcome::converged) {
-                error = std::max(
-                    {trial.left, size, share_of_reactions(s, going, q, node.lambda, next.lambda)});
+                error = std::max({trial.left, size,
+                                  share_of_reactions(s, settings, q, node.lambda, next.lambda)});
                 const bool turned = s.system.lu.orientation != node.orientation;
                 const bool dips = log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
-                if (trial.verdict == Verdict::believed && (turned || dips))
-                    trial.verdict = turned ? Verdict::turned_over : Verdict::dips;
+                if (trial.verdict == Verdict::accepted && (turned || dips))
+                    trial.verdict =
+                        turned ? Verdict::past_singular_point : Verdict::nearly_singular;
             }
-            if (trial.verdict == Verdict::believed && error <= 1) {
+            if (trial.verdict == Verdict::accepted && error <= 1) {
                 for (; reached <= last;) {
                     const double at = parameter(reached);
                     const double t = (at - node.p) / step;
@@ -134,7 +138,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
                 changes = 0;
                 if (std::abs(node.p - refused_at) > std::abs(to) * short_step) refused = false;
                 if (met.curve && reached <= last) {
-                    take_pieces(s, going, node, h * 1e-3, q);
+                    take_pieces(s, settings, node, h * 1e-3, q);
                     if (const Outcome outcome = begin_anew(); outcome != Outcome::converged)
                         return outcome;
                     log_here = log_determinant(s.system.lu);
@@ -142,7 +146,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
                 }
             }
         }
-        const bool judged = trial.verdict == Verdict::believed && std::isfinite(error);
+        const bool judged = trial.verdict == Verdict::accepted && std::isfinite(error);
         const double change = judged ? 0.85 * std::pow(std::max(error, 1e-8), -0.25) : 0.3;
         h = step * std::clamp(change, 0.1, 4.0);
         if (!(std::abs(h) > std::abs(to) * short_step) && reached <= last) {
@@ -152,7 +156,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
             }
             refused = true;
             if (!judged && ended == Outcome::branch_lost)
-                ended = why_it_ends(trial, node, curvature, step, s.length);
+                ended = end_reason(trial, node, curvature, step, s.length);
             if (!(std::abs(h) > std::abs(to) * shortest_step)) return ended;
         }
     }

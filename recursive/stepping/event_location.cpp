@@ -24,8 +24,8 @@ void between(const Node<double>& from, const Node<double>& to, double t, State<d
 namespace {
 
 // Distance within which a deflection counts as lying on the knot, on either side [m] or [rad].
-double slack(const Going<double>& going, const CurvePlace& at) {
-    return 1e-6 * (at.angle ? going.angle_tolerance : going.length_tolerance);
+double slack(const ContinuationSettings<double>& settings, const CurvePlace& at) {
+    return 1e-6 * (at.angle ? settings.angle_tolerance : settings.length_tolerance);
 }
 
 // x(t) through x(0), x(⅓), x(⅔), x(1).
@@ -38,12 +38,12 @@ double cubic(const std::array<double, 4>& x, double t) {
 // First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t of the
 // step.
 template <class At>
-KnotCrossing first_meeting(SteppingState<double>& s, const Going<double>& going, double from,
-                           double h, State<double>& q, At&& at) {
+KnotCrossing first_meeting(SteppingState<double>& s, const ContinuationSettings<double>& settings,
+                           double from, double h, State<double>& q, At&& at) {
     for (int k = 0; k < 4; ++k) {
         const double t = static_cast<double>(k) / 3;
         at(t, q);
-        go_to(s, going.place(from + t * h));
+        go_to(s, settings.at(from + t * h));
         for (std::size_t c = 0; c < s.curves.size(); ++c)
             s.along[c][static_cast<std::size_t>(k)] =
                 deflection<double>(s.model, s.inputs, q, s.curves[c]);
@@ -61,7 +61,7 @@ KnotCrossing first_meeting(SteppingState<double>& s, const Going<double>& going,
             for (int k = 1; k <= samples; ++k) {
                 const double t = static_cast<double>(k) / samples;
                 if (t >= first.t && before >= first.t) return;
-                if (!(beyond(t) > slack(going, place))) {
+                if (!(beyond(t) > slack(settings, place))) {
                     before = t;
                     continue;
                 }
@@ -83,18 +83,18 @@ KnotCrossing first_meeting(SteppingState<double>& s, const Going<double>& going,
 // Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
 // where the iteration leaves the interval between the node at p and `limit`. The factors are those
 // of `next`.
-bool land(SteppingState<double>& s, const Going<double>& going, const KnotCrossing& knot, double p,
-          double limit, Node<double>& next, State<double>& q) {
+bool land(SteppingState<double>& s, const ContinuationSettings<double>& settings,
+          const KnotCrossing& knot, double p, double limit, Node<double>& next, State<double>& q) {
     const CurvePlace& at = *knot.curve;
     const double step = next.p - p;
     for (int k = 0; k < 5; ++k) {
-        go_to(s, going.place(next.p));
+        go_to(s, settings.at(next.p));
         const double x = deflection<double>(s.model, s.inputs, next.q, at);
-        if (std::abs(x - knot.knot) <= slack(going, at)) return true;
+        if (std::abs(x - knot.knot) <= slack(settings, at)) return true;
         const double ahead = step * 1e-4;
         q = next.q;
         advance(q, ahead * next.dq);
-        go_to(s, going.place(next.p + ahead));
+        go_to(s, settings.at(next.p + ahead));
         const double rate = (deflection<double>(s.model, s.inputs, q, at) - x) / ahead;
         const double dp = (knot.knot - x) / rate;
         if (!(std::abs(dp) <= std::abs(step)) || !((next.p + dp - p) * step > 0) ||
@@ -105,25 +105,25 @@ bool land(SteppingState<double>& s, const Going<double>& going, const KnotCrossi
         next.lambda += dp * next.dlambda;
         next.p += dp;
         double size = 0;
-        if (correct(s, going, next.q, next.lambda, next.p, size) != Outcome::converged ||
+        if (correct(s, settings, next.q, next.lambda, next.p, size) != Outcome::converged ||
             !(size <= 0.1))
             return false;
-        differentiate(s, going, next);
+        differentiate(s, settings, next);
     }
     return false;
 }
 
 }  // namespace
 
-Trial<double> step_to_knot(SteppingState<double>& s, const Going<double>& going,
+Trial<double> step_to_knot(SteppingState<double>& s, const ContinuationSettings<double>& settings,
                            const Node<double>& node, const Vector<double>& curvature,
                            const Vector<double>& lambda_curvature, Node<double>& next,
                            State<double>& q, Vector<double>& lambda, KnotCrossing& met) {
     met = {};
-    if (s.curves.empty()) return try_step(s, going, node, curvature, lambda_curvature, next);
+    if (s.curves.empty()) return try_step(s, settings, node, curvature, lambda_curvature, next);
     const double whole = next.p;
     KnotCrossing expected =
-        first_meeting(s, going, node.p, whole - node.p, q, [&](double t, State<double>& at) {
+        first_meeting(s, settings, node.p, whole - node.p, q, [&](double t, State<double>& at) {
             const double h = t * (whole - node.p);
             s.dq = h * node.dq + h * h / 2 * curvature;
             at = node.q;
@@ -137,16 +137,16 @@ Trial<double> step_to_knot(SteppingState<double>& s, const Going<double>& going,
             met = expected;
             return trial;
         }
-        trial = try_step(s, going, node, curvature, lambda_curvature, next);
-        if (trial.verdict != Verdict::believed) return trial;
-        const bool landed = expected.curve && land(s, going, expected, node.p, whole, next, q);
+        trial = try_step(s, settings, node, curvature, lambda_curvature, next);
+        if (trial.verdict != Verdict::accepted) return trial;
+        const bool landed = expected.curve && land(s, settings, expected, node.p, whole, next, q);
         if (expected.curve && !landed && k == 0) {  // the path misses the knot of the predictor
             expected = {};
             continue;
         }
         h = next.p - node.p;
         const KnotCrossing earlier =
-            first_meeting(s, going, node.p, h, q,
+            first_meeting(s, settings, node.p, h, q,
                           [&](double t, State<double>& at) { between(node, next, t, at, lambda); });
         if (!earlier.curve) {
             if (landed) met = expected;
@@ -158,24 +158,24 @@ Trial<double> step_to_knot(SteppingState<double>& s, const Going<double>& going,
     return trial;
 }
 
-void take_pieces(SteppingState<double>& s, const Going<double>& going, const Node<double>& node,
-                 double ahead, State<double>& q) {
+void take_pieces(SteppingState<double>& s, const ContinuationSettings<double>& settings,
+                 const Node<double>& node, double ahead, State<double>& q) {
     q = node.q;
     s.dq = ahead * node.dq;
     advance(q, s.dq);
     for (const CurvePlace& at : s.curves) {
-        go_to(s, going.place(node.p));
+        go_to(s, settings.at(node.p));
         const double x = deflection<double>(s.model, s.inputs, node.q, at);
-        go_to(s, going.place(node.p + ahead));
+        go_to(s, settings.at(node.p + ahead));
         const bool rises = deflection<double>(s.model, s.inputs, q, at) > x;
         const auto& knots = at.curve->knots;
         Piece piece = piece_at(*at.curve, x);
         for (std::size_t k = 0; k < knots.size(); ++k)
-            if (std::abs(x - knots[k]) <= slack(going, at))
+            if (std::abs(x - knots[k]) <= slack(settings, at))
                 piece = static_cast<Piece>(rises ? k + 1 : k);
         piece_of(s, at) = piece;
     }
-    go_to(s, going.place(node.p));
+    go_to(s, settings.at(node.p));
 }
 
 }  // namespace elastocheck::recursive

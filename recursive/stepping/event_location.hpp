@@ -36,14 +36,14 @@ struct KnotCrossing {
 
 // The step of continuation.hpp from `node` to next.p on the present pieces, shortened to the first
 // knot reached, which `met` returns. q and lambda are workspace.
-Trial<double> step_to_knot(SteppingState<double>& s, const Going<double>& going,
+Trial<double> step_to_knot(SteppingState<double>& s, const ContinuationSettings<double>& settings,
                            const Node<double>& node, const Vector<double>& curvature,
                            const Vector<double>& lambda_curvature, Node<double>& next,
                            State<double>& q, Vector<double>& lambda, KnotCrossing& met);
 
 // Selects for every curve the piece that the path follows from the node on: the piece of its
 // deflection or, on a knot, the piece a little ahead.
-void take_pieces(SteppingState<double>& s, const Going<double>& going, const Node<double>& node,
-                 double ahead, State<double>& q);
+void take_pieces(SteppingState<double>& s, const ContinuationSettings<double>& settings,
+                 const Node<double>& node, double ahead, State<double>& q);
 
 }  // namespace elastocheck::recursive

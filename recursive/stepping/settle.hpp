@@ -16,7 +16,7 @@ inline bool starts_as_drawn(const Branch& branch) {
 
 // Whether the forces load an idle mode, tested as drawn, where the modes are most accurate.
 template <class Real>
-bool pushes_idle_mode(const SteppingState<Real>& s) {
+bool loads_idle_mode(const SteppingState<Real>& s) {
     Vector<Real> f_ext, f_elast;
     external_force<Real>(s.model, s.branch, s.inputs, s.q, f_ext);
     elastic_force<Real>(s.model, s.inputs, s.q, f_elast);
@@ -30,7 +30,7 @@ bool pushes_idle_mode(const SteppingState<Real>& s) {
 // Whether joints that are open as drawn are still open after settling. An angle counts as closed on
 // one side only (u_i·w = 0 has two solutions).
 template <class Real>
-bool stayed_open(const SteppingState<Real>& s, Real share) {
+bool remains_open(const SteppingState<Real>& s, Real share) {
     const Real open = s.Phi_d.norm();
     const Real rounding =
         std::max(Real(10 * guard::closed), 100 * std::numeric_limits<Real>::epsilon() *
@@ -52,7 +52,7 @@ Outcome settled(const SteppingState<Real>& s, Outcome outcome, Real share) {
     if (outcome != Outcome::converged)
         return was_open ? Outcome::inconsistent_constraints : outcome;
     // A gap that linear steps open between closed joints is a step error, not inconsistency.
-    return was_open && stayed_open(s, share) ? Outcome::inconsistent_constraints : outcome;
+    return was_open && remains_open(s, share) ? Outcome::inconsistent_constraints : outcome;
 }
 
 // Settles with the stiffness of (19): in one step where the design position is an equilibrium,
@@ -66,7 +66,7 @@ Outcome settle(SteppingState<Real>& s, const Linear& method, int steps) {
         s.q = s.before = design_state<Real>(s.model);
         s.lambda.setZero();
         go_to(s, {1, 0});
-        if (pushes_idle_mode(s)) return Outcome::loaded_idle_mode;
+        if (loads_idle_mode(s)) return Outcome::loaded_idle_mode;
         go_to(s, {0, 0});
         external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);
         s.applied -= s.R_d;
@@ -97,34 +97,35 @@ Outcome settle(SteppingState<Real>& s, const Linear& method, int steps) {
 // Settles with the consistent tangent and the true forces: variable steps, each halved until
 // accepted, and Newton corrections down to round-off at the end.
 template <class Real>
-Outcome settle_truly(SteppingState<Real>& s) {
+Outcome settle_consistently(SteppingState<Real>& s) {
     s.consistent = true;
     go_to(s, {1, 0});
-    if (pushes_idle_mode(s)) return Outcome::loaded_idle_mode;
+    if (loads_idle_mode(s)) return Outcome::loaded_idle_mode;
     const Real length = static_cast<Real>(s.length);
     // Steps before the end need only stay in the convergence region of Newton's method.
-    const Going<Real> going{Drive::start, Real(1e-4) * length, Real(1e-4)};
+    const ContinuationSettings<Real> settings{Drive::start, Real(1e-4) * length, Real(1e-4)};
     Node<Real> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     go_to(s, {0, 0});
     drive_at(s, Drive::start, Real(1), s.q, s.lambda);
     if (!s.upper.isZero(0) || !s.lower.isZero(0)) {
         if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
             return outcome;
-        differentiate(s, going, node);
+        differentiate(s, settings, node);
         Vector<Real> curvature = Vector<Real>::Zero(s.n()),
                      lambda_curvature = Vector<Real>::Zero(s.m());
         Real h = 1;
         while (node.p < Real(1)) {
             next.p = node.p + h < Real(1) - h / 8 ? node.p + h : Real(1);
-            const Trial<Real> trial = try_step(s, going, node, curvature, lambda_curvature, next);
+            const Trial<Real> trial =
+                try_step(s, settings, node, curvature, lambda_curvature, next);
             const Real tried = next.p - node.p;
-            if (trial.verdict == Verdict::believed) {
+            if (trial.verdict == Verdict::accepted) {
                 curvature = (next.dq - node.dq) / tried;
                 lambda_curvature = (next.dlambda - node.dlambda) / tried;
                 std::swap(node, next);
                 h = 2 * tried;
             } else if (h = tried / 4; h < Real(1e-6)) {
-                return why_it_ends(trial, node, curvature, tried, length);
+                return end_reason(trial, node, curvature, tried, length);
             }
         }
     }
@@ -136,8 +137,9 @@ Outcome settle_truly(SteppingState<Real>& s) {
     Real before = std::numeric_limits<Real>::infinity();
     for (int k = 0;; ++k) {
         Real unused = 0;
-        if (const Outcome outcome = correct(s, Going<Real>{Drive::start, length, Real(1)}, node.q,
-                                            node.lambda, Real(1), unused);
+        if (const Outcome outcome =
+                correct(s, ContinuationSettings<Real>{Drive::start, length, Real(1)}, node.q,
+                        node.lambda, Real(1), unused);
             outcome != Outcome::converged)
             return outcome;
         const Real size = std::sqrt(size_of_solution(s));
@@ -148,7 +150,7 @@ Outcome settle_truly(SteppingState<Real>& s) {
     if (has_redundancy(s)) {
         residual_at(s, node.q, node.lambda);
         --s.counts.evaluations;  // a check only: not counted
-        if (contradict(s, node.q)) return Outcome::inconsistent_constraints;
+        if (is_inconsistent(s, node.q)) return Outcome::inconsistent_constraints;
     }
     s.q = s.before = node.q;
     s.lambda = node.lambda;
@@ -158,7 +160,7 @@ Outcome settle_truly(SteppingState<Real>& s) {
 }
 template <class Real>
 Outcome settle(SteppingState<Real>& s) {
-    return settled(s, settle_truly(s), Real(0));
+    return settled(s, settle_consistently(s), Real(0));
 }
 
 // Instantiated in stepping/sweep_double.cpp.

@@ -9,16 +9,20 @@
 namespace elastocheck::recursive {
 
 bool has_energy(const Model& model, const Branch& branch) {
+    const auto follows = [](const LoadKind& load) {
+        return std::holds_alternative<FollowerForce>(load) ||
+               std::holds_alternative<FollowerMoment>(load);
+    };
     return std::ranges::none_of(model.static_loads,
-                                [&](const Load& load) { return is_follower(load.kind); }) &&
+                                [&](const Load& load) { return follows(load.kind); }) &&
            std::ranges::none_of(branch.drivers,
                                 [&](const Driver& driver) {
-                                    const Load* load = driven_load(driver.what);
-                                    return load != nullptr && is_follower(load->kind);
+                                    const auto* load = std::get_if<Load>(&driver.what);
+                                    return load != nullptr && follows(load->kind);
                                 }) &&
            std::ranges::all_of(model.elastics, [](const auto& element) {
-               const auto* formulation = member<Formulation>(element.kind);
-               return formulation == nullptr || elastocheck::has_energy(*formulation);
+               const auto* bushing = std::get_if<Bushing>(&element.kind);
+               return bushing == nullptr || elastocheck::has_energy(bushing->formulation);
            });
 }
 
@@ -81,11 +85,11 @@ bool is_unstable(const SteppingState<double>& s) {
     return has_negative_eigenvalue(sparse(s.system.M), s.system.weight.head(s.n()), held);
 }
 
-Outcome judge_start(SteppingState<double>& s) {
+Outcome check_start_stability(SteppingState<double>& s) {
     // modes soft relative to the stiffest are below the rounding of is_unstable()
     SubspaceBasis<double> softest;
     const LeastStiffness least = least_stiffness(s, softest);
-    s.begins_unstable = is_unstable(s) || pushed_over(s, s.q, s.lambda) < 0 ||
+    s.begins_unstable = is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
                         (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
     return s.begins_unstable ? Outcome::singular : Outcome::converged;
 }

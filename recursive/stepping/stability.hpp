@@ -32,7 +32,7 @@ bool is_unstable(const SteppingState<double>& s);
 // Stability of the settled start, whose matrix is in the system: `singular` if it is unstable.
 // Settling from a drawing far from rest may lead to an unstable equilibrium, and a drawing at rest
 // may be one.
-Outcome judge_start(SteppingState<double>& s);
+Outcome check_start_stability(SteppingState<double>& s);
 
 // The smallest eigenvalue of the symmetric part of Q.
 double least_eigenvalue(const Eigen::MatrixXd& Q);
@@ -82,8 +82,8 @@ double least_of_idle(const SteppingState<Real>& s) {
 // Unstable means below -10⁻⁶ times (forces / L), which exceeds the effect of the residual, both at
 // (q, λ) and at the equilibrium after corrections. The system is left factorised at one of the two.
 template <class Real>
-double pushed_over(SteppingState<Real>& s, const State<Real>& near,
-                   const Vector<Real>& lambda_near) {
+double negative_idle_stiffness(SteppingState<Real>& s, const State<Real>& near,
+                               const Vector<Real>& lambda_near) {
     constexpr int corrections = 3;
     constexpr double noticed = 1e-6;
     if (s.system.held.idle == 0 || !has_energy(s.model, s.branch)) return 0;
@@ -114,7 +114,7 @@ double pushed_over(SteppingState<Real>& s, const State<Real>& near,
 }
 
 // Instantiated in stepping/sweep_double.cpp.
-extern template double pushed_over<double>(SteppingState<double>&, const State<double>&,
-                                           const Vector<double>&);
+extern template double negative_idle_stiffness<double>(SteppingState<double>&, const State<double>&,
+                                                       const Vector<double>&);
 
 }  // namespace elastocheck::recursive

@@ -23,7 +23,7 @@ namespace elastocheck::recursive {
 // Φ_d is the constraint error and R_d = f_ext - f_elast the imbalance as drawn. At t = 0 the design
 // position satisfies the equations by definition, and the path to t = 1 is smooth.
 template <class Real>
-struct Place {
+struct Parameters {
     Real t = 0, a = 0;
 };
 
@@ -91,17 +91,18 @@ std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<Re
 // drifted apart.
 inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
     const bool driven = std::ranges::any_of(branch.drivers, [k](const Driver& driver) {
-        return preload(driver.what) != nullptr && driven_element(driver.what) == k;
+        const auto* preload = std::get_if<Preload>(&driver.what);
+        return preload != nullptr && preload->elastic == k;
     });
-    bool pushes = false;
-    each_member(element,
-                overloaded{[&](const ScalarLaw& law) { pushes |= curve_of(law) != nullptr; },
-                           [&](const SpatialLaw& law) { pushes |= !matrix_of(law); },
-                           [&](ForceAndMoment<const elastocheck::Vector6> preload) {
-                               pushes |= !preload.value.isZero(0);
-                           },
-                           [&](const Formulation& f) { pushes |= !has_energy(f); }});
-    return driven || pushes;
+    return driven ||
+           std::visit(overloaded{
+                          [](const AxialSpring& e) { return std::holds_alternative<Curve>(e.law); },
+                          [](const Bushing& e) {
+                              return !e.preload.isZero(0) || !has_energy(e.formulation) ||
+                                     std::holds_alternative<PerAxis>(e.law);
+                          },
+                      },
+                      element);
 }
 
 // State and workspace of a march; allocated once.
@@ -114,12 +115,12 @@ struct SteppingState {
     Counts counts;
     bool consistent = false;  // whether the matrix is the consistent tangent, else K of (19)
 
-    State<Real> q;             // qⁿ
-    State<Real> before;        // qⁿ⁻¹
-    Vector<Real> lambda;       // λⁿ⁻¹, total
-    Vector<Real> lambda_half;  // halfway to λⁿ
-    Real a = 0;                // parameter of qⁿ
-    Place<Real> place;         // of `inputs`
+    State<Real> q;                // qⁿ
+    State<Real> before;           // qⁿ⁻¹
+    Vector<Real> lambda;          // λⁿ⁻¹, total
+    Vector<Real> lambda_half;     // halfway to λⁿ
+    Real a = 0;                   // parameter of qⁿ
+    Parameters<Real> parameters;  // of `inputs`
     Inputs<Real> drawn, inputs;
     Vector<Real> R_d, Phi_d;  // imbalance and constraint error as drawn [6nb], [m]
     SaddlePoint<Real> system;
@@ -188,10 +189,9 @@ struct SteppingState {
     // tangent.
     void check_followers(const Pattern& pattern) const {
         for (const auto& driver : branch.drivers) {
-            const Load* load = driven_load(driver.what);
-            if (!load || !is_follower(load->kind) || is_moment(load->kind)) continue;
-            const BodyId body = body_of(load->kind);
-            if (!has_entry(pattern, 6 * body, 6 * body + 3))
+            const auto* load = std::get_if<Load>(&driver.what);
+            const auto* follower = load ? std::get_if<FollowerForce>(&load->kind) : nullptr;
+            if (follower && !has_entry(pattern, 6 * follower->at.body, 6 * follower->at.body + 3))
                 throw std::invalid_argument(
                     "the analysis is of a model without the branch's load '" + load->name + "'");
         }
@@ -214,9 +214,9 @@ bool beyond_a_kink(SteppingState<Real>& s, const State<Real>& q) {
 
 // Sets the inputs to those of (t, a).
 template <class Real>
-void go_to(SteppingState<Real>& s, Place<Real> place) {
-    s.place = place;
-    set_inputs<Real>(s.model, s.branch, s.drawn, place.t, place.a, s.inputs);
+void go_to(SteppingState<Real>& s, Parameters<Real> parameters) {
+    s.parameters = parameters;
+    set_inputs<Real>(s.model, s.branch, s.drawn, parameters.t, parameters.a, s.inputs);
 }
 
 // Largest work of the force on a held idle mode, as a fraction of `whole`.
@@ -345,7 +345,7 @@ bool has_diverged(SteppingState<Real>& s) {
 
 // Checks the factors in the system, of its matrix at q: finite, regular, and held modes still idle.
 template <class Real>
-Outcome judge(SteppingState<Real>& s, const State<Real>& q, Real pivot_ratio) {
+Outcome check_factors(SteppingState<Real>& s, const State<Real>& q, Real pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
     if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m())))
         return Outcome::singular;
@@ -363,7 +363,7 @@ Outcome judge(SteppingState<Real>& s, const State<Real>& q, Real pivot_ratio) {
 // load like a joint, and the result would be a false equilibrium. `missed` is the distance of q
 // from equilibrium [m], which blurs the decision as |Φ| does.
 template <class Real>
-Outcome judge_push(SteppingState<Real>& s, const State<Real>& q, Real missed) {
+Outcome check_idle_load(SteppingState<Real>& s, const State<Real>& q, Real missed) {
     if (s.system.held.idle == 0) return Outcome::converged;
     Real blur = s.Phi.norm(), whole = size_of_force(s, s.applied), share = 0;
     if (s.consistent ? s.at_idle.empty() : s.pushing.empty()) {
@@ -396,7 +396,7 @@ Outcome factorise_at(SteppingState<Real>& s, const State<Real>& q, const Vector<
         assemble<Real>(s.model, s.inputs, q, s.system.M, s.Phi);
     const Real pivot_ratio = factorise(s.system);
     ++s.counts.factorisations;
-    return judge(s, q, pivot_ratio);
+    return check_factors(s, q, pivot_ratio);
 }
 
 // Right-hand side (-G, -Φ) of a Newton correction at (q, λ) and the present inputs, with
@@ -409,7 +409,7 @@ void residual_at(SteppingState<Real>& s, const State<Real>& q, const Vector<Real
     constraint_force<Real>(s.model, s.inputs, q, lambda, s.force, s.lower);
     s.upper -= s.force;
     s.lower = -s.lower;
-    if (const Real held = 1 - s.place.t; held != Real(0)) {
+    if (const Real held = 1 - s.parameters.t; held != Real(0)) {
         s.upper -= held * s.R_d;
         s.lower += held * s.Phi_d;
     }
@@ -432,7 +432,7 @@ Real reach(const State<Real>& q) {
 // Relative precision of the input coordinates at q: 64 units of round-off of a double (or of Real,
 // if that is coarser), of the largest coordinate, as a fraction of L or of a unit direction.
 template <class Real>
-Real written(const SteppingState<Real>& s, const State<Real>& q) {
+Real input_precision(const SteppingState<Real>& s, const State<Real>& q) {
     const Real digit = std::max(std::numeric_limits<Real>::epsilon(),
                                 static_cast<Real>(std::numeric_limits<double>::epsilon()));
     return 64 * digit * (1 + reach(q) / static_cast<Real>(s.length));
@@ -444,7 +444,8 @@ Real largest_gap(const SteppingState<Real>& s, const Vector<Real>& Phi) {
     Real worst = 0;
     for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
-        const bool direction = member<Point>(kind) == nullptr;
+        const bool direction = std::holds_alternative<PerpendicularDirections>(kind) ||
+                               std::holds_alternative<DirectionAtAngle>(kind);
         const Real open =
             Phi.segment(s.inputs.row[c], static_cast<Eigen::Index>(rows(kind))).norm();
         const Real share = direction ? open : open / static_cast<Real>(s.length);
@@ -456,9 +457,9 @@ Real largest_gap(const SteppingState<Real>& s, const Vector<Real>& Phi) {
 // Whether redundant joints are inconsistent at q. Pre: the corrections have converged and
 // residual_at has set s.lower, which holds the gap that the border has absorbed.
 template <class Real>
-bool contradict(const SteppingState<Real>& s, const State<Real>& q) {
+bool is_inconsistent(const SteppingState<Real>& s, const State<Real>& q) {
     return has_redundancy(s) &&
-           !(largest_gap(s, s.lower) <= static_cast<Real>(guard::agreeing) + written(s, q));
+           !(largest_gap(s, s.lower) <= static_cast<Real>(guard::agreeing) + input_precision(s, q));
 }
 
 // amount · ∂/∂t or ∂/∂a of the same right-hand side, at (q, λ) and the present inputs.
@@ -506,14 +507,15 @@ void record(const Model& model, const Inputs<Real>& inputs, const State<Real>& q
 
 // Instantiated in stepping/sweep_double.cpp.
 extern template struct SteppingState<double>;
-extern template void go_to<double>(SteppingState<double>&, Place<double>);
-extern template Outcome judge<double>(SteppingState<double>&, const State<double>&, double);
-extern template Outcome judge_push<double>(SteppingState<double>&, const State<double>&, double);
+extern template void go_to<double>(SteppingState<double>&, Parameters<double>);
+extern template Outcome check_factors<double>(SteppingState<double>&, const State<double>&, double);
+extern template Outcome check_idle_load<double>(SteppingState<double>&, const State<double>&,
+                                                double);
 extern template Outcome factorise_at<double>(SteppingState<double>&, const State<double>&,
                                              const Vector<double>&);
 extern template void residual_at<double>(SteppingState<double>&, const State<double>&,
                                          const Vector<double>&);
-extern template bool contradict<double>(const SteppingState<double>&, const State<double>&);
+extern template bool is_inconsistent<double>(const SteppingState<double>&, const State<double>&);
 extern template void drive_at<double>(SteppingState<double>&, Drive, double, const State<double>&,
                                       const Vector<double>&);
 extern template void record<double>(const Model&, const Inputs<double>&, const State<double>&,

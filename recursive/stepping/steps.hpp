@@ -97,11 +97,11 @@ bool turns_too_far(const SteppingState<Real>& s, Drive drive, Real amount) {
 //
 // λ is the total multiplier, so that Φ_qᵀ λⁿ⁻¹ on both sides cancels.
 template <class Real>
-Outcome step(SteppingState<Real>& s, const Linear& method, Place<Real> next) {
-    const Drive drive = next.t != s.place.t ? Drive::start : Drive::rate;
-    const Real amount = drive == Drive::start ? next.t - s.place.t : next.a - s.place.a;
+Outcome step(SteppingState<Real>& s, const Linear& method, Parameters<Real> next) {
+    const Drive drive = next.t != s.parameters.t ? Drive::start : Drive::rate;
+    const Real amount = drive == Drive::start ? next.t - s.parameters.t : next.a - s.parameters.a;
     if (turns_too_far(s, drive, amount)) return Outcome::diverged;
-    const Place<Real> here = s.place;
+    const Parameters<Real> here = s.parameters;
     if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
         s.lower.setZero();
         add_constraint_rate<Real>(s.model, s.branch, s.inputs, drive, -amount, s.q, s.lower);
@@ -114,7 +114,7 @@ Outcome step(SteppingState<Real>& s, const Linear& method, Place<Real> next) {
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
     if (!method.closed) go_to(s, next);
-    if (const Outcome outcome = judge_push(s, s.q, Real(0)); outcome != Outcome::converged)
+    if (const Outcome outcome = check_idle_load(s, s.q, Real(0)); outcome != Outcome::converged)
         return outcome;
     s.upper = s.applied - s.stored;
     if (method.closed) {
@@ -141,15 +141,15 @@ Outcome step(SteppingState<Real>& s, const Linear& method, Place<Real> next) {
 // With the matrix of the other side (midpoint, or second solve) each step would be thrown back
 // before the kink.
 template <class Real>
-Outcome step(SteppingState<Real>& s, const Consistent& method, Place<Real> next) {
+Outcome step(SteppingState<Real>& s, const Consistent& method, Parameters<Real> next) {
     const int n = s.n(), m = s.m();
-    if (turns_too_far(s, Drive::rate, next.a - s.place.a)) return Outcome::diverged;
+    if (turns_too_far(s, Drive::rate, next.a - s.parameters.a)) return Outcome::diverged;
     go_to(s, next);
     // for the check of idle modes
     external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    if (const Outcome outcome = judge_push(s, s.q, s.missed); outcome != Outcome::converged)
+    if (const Outcome outcome = check_idle_load(s, s.q, s.missed); outcome != Outcome::converged)
         return outcome;
     // A determinant with another sign than at a = 0 has passed through zero: there the branch
     // turned back, bifurcated or became unstable.
@@ -199,11 +199,11 @@ Outcome step(SteppingState<Real>& s, const Consistent& method, Place<Real> next)
 // Checks the held modes at the end of the last step, as each next step does for the one before it:
 // whether they are still idle and not loaded.
 template <class Real>
-Outcome check_what_is_held(SteppingState<Real>& s) {
+Outcome check_held_modes(SteppingState<Real>& s) {
     if (s.pushing.empty()) return Outcome::converged;
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    return judge_push(s, s.q, s.consistent ? s.missed : Real(0));
+    return check_idle_load(s, s.q, s.consistent ? s.missed : Real(0));
 }
 
 // Error of the last step, by a correction with its own factors; for other steps the next step shows

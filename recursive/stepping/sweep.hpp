@@ -33,7 +33,7 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
                 return o;
             if (static_cast<long>(k) * points % N == 0) keep(stop.at);
         }
-        return check_what_is_held(s);
+        return check_held_modes(s);
     };
     stop = {};
     if (const auto* method = std::get_if<Linear>(&options.method.kind)) {

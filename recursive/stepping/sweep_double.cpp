@@ -8,8 +8,8 @@ namespace elastocheck::recursive {
 
 template void add_stiffness<double>(const Model&, const Inputs<double>&, const State<double>&,
                                     SaddleMatrix<double>&);
-template void add_elastic_tangent<double>(const Model&, const Inputs<double>&,
-                                          const State<double>&, SaddleMatrix<double>&);
+template void add_elastic_tangent<double>(const Model&, const Inputs<double>&, const State<double>&,
+                                          SaddleMatrix<double>&);
 template void add_curvature<double>(const Model&, const Inputs<double>&, const State<double>&,
                                     const Vector<double>&, SaddleMatrix<double>&);
 template void add_load_stiffness<double>(const Model&, const Branch&, const Inputs<double>&,
@@ -44,31 +44,32 @@ template void assemble_consistent<double>(const Model&, const Branch&, const Inp
 template void constraint_force<double>(const Model&, const Inputs<double>&, const State<double>&,
                                        const Vector<double>&, Vector<double>&, Vector<double>&);
 template struct SteppingState<double>;
-template void go_to<double>(SteppingState<double>&, Place<double>);
-template Outcome judge<double>(SteppingState<double>&, const State<double>&, double);
-template Outcome judge_push<double>(SteppingState<double>&, const State<double>&, double);
+template void go_to<double>(SteppingState<double>&, Parameters<double>);
+template Outcome check_factors<double>(SteppingState<double>&, const State<double>&, double);
+template Outcome check_idle_load<double>(SteppingState<double>&, const State<double>&, double);
 template Outcome factorise_at<double>(SteppingState<double>&, const State<double>&,
                                       const Vector<double>&);
 template void residual_at<double>(SteppingState<double>&, const State<double>&,
                                   const Vector<double>&);
-template bool contradict<double>(const SteppingState<double>&, const State<double>&);
+template bool is_inconsistent<double>(const SteppingState<double>&, const State<double>&);
 template void drive_at<double>(SteppingState<double>&, Drive, double, const State<double>&,
                                const Vector<double>&);
 template void record<double>(const Model&, const Inputs<double>&, const State<double>&,
                              const State<double>&, const Vector<double>&, double, Equilibrium&);
-template void differentiate<double>(SteppingState<double>&, const Going<double>&, Node<double>&);
-template Outcome correct<double>(SteppingState<double>&, const Going<double>&, State<double>&,
-                                 Vector<double>&, double, double&);
-template Trial<double> try_step<double>(SteppingState<double>&, const Going<double>&,
+template void differentiate<double>(SteppingState<double>&, const ContinuationSettings<double>&,
+                                    Node<double>&);
+template Outcome correct<double>(SteppingState<double>&, const ContinuationSettings<double>&,
+                                 State<double>&, Vector<double>&, double, double&);
+template Trial<double> try_step<double>(SteppingState<double>&, const ContinuationSettings<double>&,
                                         const Node<double>&, const Vector<double>&,
                                         const Vector<double>&, Node<double>&);
-template bool contradict_at<double>(SteppingState<double>&, const Node<double>&, State<double>&,
-                                    Vector<double>&);
+template bool is_inconsistent_at<double>(SteppingState<double>&, const Node<double>&,
+                                         State<double>&, Vector<double>&);
 template Outcome settle<double>(SteppingState<double>&);
 template Outcome settled<double>(const SteppingState<double>&, Outcome, double);
 template LeastStiffness least_stiffness<double>(SteppingState<double>&, SubspaceBasis<double>&);
-template double pushed_over<double>(SteppingState<double>&, const State<double>&,
-                                    const Vector<double>&);
+template double negative_idle_stiffness<double>(SteppingState<double>&, const State<double>&,
+                                                const Vector<double>&);
 
 template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
                                        const Visit&, Stop&);

@@ -1,12 +1,13 @@
-// What a step of the published recursion costs, over what a library asks for the linear algebra alone: one numeric
-// factorisation and one solution of the same matrix by KLU (klu_refactor, klu_solve), its analysis done beforehand. A step
-// assembles, factorises, solves, judges and moves the bodies. Processor time, in turns within one process:
-// benchmark_step [BODIES ...].
+// Cost of one step of the published recursion, of the project's sparse LU and of KLU (klu_refactor,
+// klu_solve, analysis done beforehand) for the same matrix: one numeric factorisation and one
+// solution. A step assembles, factorises, solves, checks and moves the bodies. Processor time, in
+// turns within one process: benchmark_step [SCENE | BODIES ...], by default two chains of hinges.
 #include <fmt/format.h>
 #include <klu.h>
 
 #include <algorithm>
 #include <ctime>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,8 @@ struct Klu {
     }
 };
 
-bool compare(const families::Family& family, int steps) {
-    const Model model = compile(parse_scene(families::scene(family), "family"));
+bool compare(const std::string& name, const Scene& scene, int steps) {
+    const Model model = compile(scene);
     const Branch& branch = model.branches[0];
     SteppingState<double> s(model, branch, analyse(model));
     const Linear published;
@@ -72,7 +73,7 @@ bool compare(const families::Family& family, int steps) {
     std::vector<double> b(s.system.lu.size()), x(b.size());
     bool good = true;
     for (int k = 1; k <= steps; ++k) {
-        const Place<double> next{1, 1e-3 * branch.to * k / steps};
+        const Parameters<double> next{1, 1e-3 * branch.to * k / steps};
         step_time.push_back(
             seconds([&] { good = step(s, published, next) == Outcome::converged && good; }));
         values = s.system.values;
@@ -84,8 +85,8 @@ bool compare(const families::Family& family, int steps) {
         klu_time.push_back(seconds([&] { good = klu.solve(values, b) && good; }));
         ratio.push_back(step_time.back() / klu_time.back());
     }
-    fmt::print("{:<9} {:>6} {:>9} {:>9} {:>9} {:>9.1f} {:>9.1f} {:>9.1f} {:>6.2f}\n",
-               families::name(family.hinge), family.bodies, s.system.lu.size(),
+    fmt::print("{:<16} {:>6} {:>9} {:>9} {:>9} {:>9.1f} {:>9.1f} {:>9.1f} {:>6.2f}\n", name,
+               model.bodies.size(), s.system.lu.size(),
                s.system.lu.L.size() + s.system.lu.U.size() + s.system.lu.size(),
                klu.numeric->lnz + klu.numeric->unz, 1e6 * median(step_time), 1e6 * median(own_time),
                1e6 * median(klu_time), median(ratio));
@@ -95,13 +96,22 @@ bool compare(const families::Family& family, int steps) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    std::vector<int> bodies;
-    for (int k = 1; k < argc; ++k) bodies.push_back(std::stoi(argv[k]));
-    if (bodies.empty()) bodies = {300, 1000};
-    fmt::print("chain of {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "bodies", "unknowns",
-               "entries", "KLU's", "step, us", "own LU", "KLU", "ratio");
+    std::vector<std::string> cases(argv + 1, argv + argc);
+    if (cases.empty()) cases = {"300", "1000"};
+    fmt::print("{:<16} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "scene, or chain",
+               "bodies", "unknowns", "entries", "KLU's", "step, us", "own LU", "KLU", "ratio");
     bool good = true;
-    for (const auto hinge : {families::Hinge::bushing, families::Hinge::revolute})
-        for (const int n : bodies) good = compare({families::Kind::chain, n, hinge}, 101) && good;
+    for (const std::string& at : cases) {
+        if (std::filesystem::path(at).extension() == ".yaml") {
+            good = compare(std::filesystem::path(at).stem(), read_scene(at), 1001) && good;
+            continue;
+        }
+        for (const auto hinge : {families::Hinge::bushing, families::Hinge::revolute}) {
+            const families::Family chain{families::Kind::chain, std::stoi(at), hinge};
+            good = compare(std::string(families::name(hinge)),
+                           parse_scene(families::scene(chain), "family"), 101) &&
+                   good;
+        }
+    }
     return good ? 0 : 1;
 }

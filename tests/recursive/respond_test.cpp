@@ -147,10 +147,10 @@ TEST(Respond, WhatPushesAnIdleModeIsRefusedAndTheModeNamed) {
             linear_response(way.model, way.branch, state, {&twist, 1}, method);
         EXPECT_EQ(response.outcome, Outcome::loaded_idle_mode) << method.name;
         EXPECT_TRUE(response.increments.empty());
-        EXPECT_NE(
-            response.detail.find("a wrench on 'strut' pushes what no joint and no rate resists as "
-                                 "drawn: strut: rotation about"),
-            std::string::npos)
+        EXPECT_NE(response.detail.find(
+                      "a wrench on 'strut' acts on a motion that no joint or element resists as "
+                      "drawn: strut: rotation about"),
+                  std::string::npos)
             << response.detail;
     }
 }

@@ -420,12 +420,14 @@ TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
     }
 }
 
-TEST(Series, OtherPrecisionsAreRefused) {
+TEST(Series, OtherPrecisionsAreRefusedAsByTheAdaptiveMethod) {
     const Model model = compile(support::scene("pinned_bar"));
-    EXPECT_THROW(
-        recursive::solve(model, model.branches[0],
-                         {.method = *find_method("series"), .precision = Precision::single}),
-        std::invalid_argument);
+    for (const char* name : {"series", "adaptive"})
+        for (const auto precision : {Precision::single, Precision::extended})
+            EXPECT_THROW(recursive::solve(model, model.branches[0],
+                                          {.method = *find_method(name), .precision = precision}),
+                         std::invalid_argument)
+                << name;
 }
 
 }  // namespace
