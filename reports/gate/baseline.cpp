@@ -19,10 +19,7 @@ using compare::Quantity;
 using compare::ToleranceClass;
 using json = nlohmann::ordered_json;
 
-bool is_known(const std::string& unit) {
-    return unit == "count" ||
-           std::ranges::any_of(compare::all_units, [&](auto u) { return symbol(u) == unit; });
-}
+bool is_known(const std::string& unit) { return unit == "count" || compare::find_unit(unit); }
 
 // The element of `kinds` with this name.
 template <class Kinds>
