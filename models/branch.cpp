@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck {
 namespace {
@@ -19,30 +19,21 @@ Standing standing(const Model& model, const Branch& branch) {
     for (const auto& joint : model.joints) stands.joints.push_back(!joint.active_only_where_driven);
     for (const auto& elastic : model.elastics)
         stands.elastics.push_back(!elastic.active_only_where_driven);
-    const auto element = [&](int k) { stands.elastics[static_cast<std::size_t>(k)] = true; };
-    for (const auto& driver : branch.drivers)
-        std::visit(overloaded{[](const Load&) {},
-                              [&](const Motion& m) {
-                                  stands.joints[static_cast<std::size_t>(m.joint)] = true;
-                              },
-                              [&](const FreeLength& f) { element(f.elastic); },
-                              [&](const Preload& p) { element(p.elastic); }},
-                   driver.what);
+    for (const auto& driver : branch.drivers) {
+        if (const int k = driven_joint(driver.what); k >= 0)
+            stands.joints[static_cast<std::size_t>(k)] = true;
+        if (const int k = driven_element(driver.what); k >= 0)
+            stands.elastics[static_cast<std::size_t>(k)] = true;
+    }
     return stands;
 }
 
 // The same element without law and preload.
-ElasticKind without_force(const ElasticKind& kind) {
-    return std::visit(overloaded{[](AxialSpring e) -> ElasticKind {
-                                     e.law = LinearRate{};
-                                     return e;
-                                 },
-                                 [](Bushing e) -> ElasticKind {
-                                     e.law = LinearStiffness{};
-                                     e.preload.setZero();
-                                     return e;
-                                 }},
-                      kind);
+ElasticKind without_force(ElasticKind kind) {
+    each_member(kind, overloaded{[](ScalarLaw& law) { law = LinearRate{}; },
+                                 [](SpatialLaw& law) { law = LinearStiffness{}; },
+                                 [](ForceAndMoment<Vector6> preload) { preload.value.setZero(); }});
+    return kind;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "compare/outputs/positions.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -517,8 +517,7 @@ const std::array table{
 
 bool turns(const Model& model, int joint) {
     const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
-    return driven >= 0 && std::holds_alternative<DirectionAtAngle>(
-                              model.constraints[static_cast<std::size_t>(driven)].kind);
+    return driven >= 0 && is_angle(model.constraints[static_cast<std::size_t>(driven)].kind);
 }
 
 // Number of owners of a kind.
@@ -557,7 +556,7 @@ std::optional<std::string> owner(const Model& model, Of of, std::size_t k) {
         case Of::wheel_of_axle: return model.wheels[k].name;
         case Of::wheels: return "";
         case Of::spring:
-            if (!std::holds_alternative<AxialSpring>(model.elastics[k].kind) ||
+            if (member<ScalarLaw>(model.elastics[k].kind) == nullptr ||
                 model.elastics[k].written_as == WrittenAs::stop)
                 return std::nullopt;
             return model.elastics[k].name;

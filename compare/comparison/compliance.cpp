@@ -6,6 +6,7 @@
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
 #include "models/branch.hpp"
+#include "models/kinds.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/linear_response.hpp"
 #include "reference/energy/linear_response.hpp"
@@ -42,9 +43,9 @@ double tyre_force(const Bushing& tyre, std::size_t element, const Branch& branch
                   const Equilibrium& state) {
     double stress = tyre.preload.z();
     for (const auto& driver : branch.drivers)
-        if (const auto* preload = std::get_if<Preload>(&driver.what);
-            preload != nullptr && preload->elastic == static_cast<int>(element))
-            stress += (driver.start + driver.rate * state.load) * preload->direction.z();
+        if (const Vector6* direction = preload(driver.what);
+            direction != nullptr && driven_element(driver.what) == static_cast<int>(element))
+            stress += (driver.start + driver.rate * state.load) * direction->z();
     const auto& K = std::get<LinearStiffness>(tyre.law).K;
     return -(stress + K(2, 2) * deformation(tyre, state).z());
 }
@@ -61,8 +62,8 @@ Stand freed(const BranchSide& way, const Equilibrium& state) {
         free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
     };
     std::erase_if(free.branch.drivers, [&](const Driver& driver) {
-        const auto* motion = std::get_if<Motion>(&driver.what);
-        return motion != nullptr && is_jack(way.model, static_cast<std::size_t>(motion->joint));
+        const int joint = driven_joint(driver.what);
+        return joint >= 0 && is_jack(way.model, static_cast<std::size_t>(joint));
     });
     for (std::size_t k = 0; k < way.model.joints.size(); ++k)
         if (is_jack(way.model, k)) {
@@ -73,8 +74,7 @@ Stand freed(const BranchSide& way, const Equilibrium& state) {
         if (const Bushing* at = tyre(way.model.elastics[k])) {
             push({at->j.body, at->j.s_local}, tyre_force(*at, k, way.branch, state));
             std::erase_if(free.branch.drivers, [&](const Driver& driver) {
-                const auto* preload = std::get_if<Preload>(&driver.what);
-                return preload != nullptr && preload->elastic == static_cast<int>(k);
+                return driven_element(driver.what) == static_cast<int>(k);
             });
         }
     free.model = on_branch(free.model, free.branch);
@@ -131,10 +131,9 @@ std::string told(const Response& response) {
 int steering_joint(const Model& model) {
     for (const auto& branch : model.branches)
         for (const auto& driver : branch.drivers)
-            if (const auto* motion = std::get_if<Motion>(&driver.what);
-                motion != nullptr && driver.rate != 0 &&
-                !is_jack(model, static_cast<std::size_t>(motion->joint)))
-                return motion->joint;
+            if (const int joint = driven_joint(driver.what);
+                joint >= 0 && driver.rate != 0 && !is_jack(model, static_cast<std::size_t>(joint)))
+                return joint;
     return -1;
 }
 

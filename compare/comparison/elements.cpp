@@ -10,7 +10,7 @@
 
 #include "compare/comparison/compare.hpp"
 #include "compare/outputs/deformation.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -23,43 +23,22 @@ const Elastic& elastic_of(const Model& model, int k) {
     return model.elastics[static_cast<std::size_t>(k)];
 }
 
+bool is_spring(const Elastic& elastic) { return member<ScalarLaw>(elastic.kind) != nullptr; }
+
 // ---- Evaluation
 
 bool stands(const Elastic& elastic, int k, const Branch& branch) {
     return !elastic.active_only_where_driven ||
            std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
-               return std::visit(overloaded{[](const Load&) { return false; },
-                                            [](const Motion&) { return false; },
-                                            [&](const FreeLength& f) { return f.elastic == k; },
-                                            [&](const Preload& p) { return p.elastic == k; }},
-                                 driver.what);
+               return driven_element(driver.what) == k;
            });
 }
 
-// s = ∂u/∂e + preload, with the driven part of the branch.
-Vector6 stress(const Bushing& bushing, int k, const Branch& branch, const Equilibrium& state,
-               const Vector6& e) {
-    Vector6 s = std::visit(overloaded{[&](const LinearStiffness& u) { return Vector6(u.K * e); },
-                                      [&](const PerAxis& u) {
-                                          Vector6 f;
-                                          for (Eigen::Index n = 0; n < 6; ++n)
-                                              f[n] =
-                                                  force(u.axis[static_cast<std::size_t>(n)], e[n]);
-                                          return f;
-                                      }},
-                           bushing.law);
-    s += bushing.preload;
-    for (const auto& driver : branch.drivers)
-        if (const auto* preload = std::get_if<Preload>(&driver.what);
-            preload != nullptr && preload->elastic == k)
-            s += (driver.start + driver.rate * state.load) * preload->direction;
-    return s;
-}
-
 // With s_z = k d_z - P - k h the tyre pushes the wheel up by -s_z, and its deflection is -s_z / k.
-double of_tyre(const Bushing& tyre, double s_z, bool is_force) {
-    const auto* law = std::get_if<LinearStiffness>(&tyre.law);
-    return is_force ? -s_z : law != nullptr && law->K(2, 2) > 0 ? -s_z / law->K(2, 2) : nan;
+double of_tyre(const ElasticKind& tyre, double s_z, bool is_force) {
+    const auto* law = member<SpatialLaw>(tyre);
+    const Matrix6* K = law != nullptr ? matrix_of(*law) : nullptr;
+    return is_force ? -s_z : K != nullptr && (*K)(2, 2) > 0 ? -s_z / (*K)(2, 2) : nan;
 }
 
 double read(const Model& model, const Branch& branch, const Equilibrium& state,
@@ -67,27 +46,18 @@ double read(const Model& model, const Branch& branch, const Equilibrium& state,
     const Elastic& elastic = elastic_of(model, c.element);
     if (!stands(elastic, c.element, branch)) return nan;
     const bool is_force = c.component >= 6;
-    return std::visit(overloaded{[&](const AxialSpring& spring) {
-                                     const double x =
-                                         deformation(spring, static_cast<std::size_t>(c.element),
-                                                     branch, state);
-                                     return is_force ? -force(spring.law, x) : -x;
-                                 },
-                                 [&](const Bushing& bushing) {
-                                     const Vector6 e = deformation(bushing, state);
-                                     const Vector6 s = stress(bushing, c.element, branch, state, e);
-                                     if (elastic.written_as == WrittenAs::tyre)
-                                         return of_tyre(bushing, s[2], is_force);
-                                     return (elastic.markers_swapped ? -1 : 1) *
-                                            (is_force ? s : e)[c.component % 6];
-                                 }},
-                      elastic.kind);
+    const auto k = static_cast<std::size_t>(c.element);
+    const Vector6 e = deformation(elastic.kind, k, branch, state);
+    const Vector6 s = stress(elastic.kind, k, branch, state, e);
+    if (elastic.written_as == WrittenAs::tyre) return of_tyre(elastic.kind, s[2], is_force);
+    const bool reversed = elastic.markers_swapped || is_spring(elastic);  // positive in compression
+    return (reversed ? -1 : 1) * (is_force ? s : e)[c.component % 6];
 }
 
 // ---- Names
 
 std::vector<int> components(const Elastic& elastic) {
-    if (std::holds_alternative<AxialSpring>(elastic.kind)) return {0, 6};
+    if (is_spring(elastic)) return {0, 6};
     if (elastic.written_as == WrittenAs::tyre) return {2, 8};
     if (elastic.written_as == WrittenAs::torsion_spring) return {5, 11};
     return {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
@@ -106,7 +76,7 @@ struct Told {
 Told told(const Elastic& elastic, int component) {
     const bool is_force = component >= 6, turns = component % 6 >= 3;
     const std::string who = "'" + elastic.name + "'";
-    if (std::holds_alternative<AxialSpring>(elastic.kind))
+    if (is_spring(elastic))
         return is_force
                    ? Told{"force", fmt::format("force of {}, positive in compression", who)}
                    : Told{"deflection",

@@ -255,10 +255,9 @@ std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Prob
                 const auto& spring =
                     std::get<AxialSpring>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind);
                 const auto element = static_cast<std::size_t>(std::get<FreeLength>(driven).elastic);
-                const auto& standing =
-                    std::get<AxialSpring>(problem.way.model.elastics[element].kind);
+                const ElasticKind& standing = problem.way.model.elastics[element].kind;
                 const double f =
-                    force(standing.law, deformation(standing, element, held.branch, state));
+                    force(standing, deformation(standing, element, held.branch, state))[0];
                 return fmt::format("force {:.6g} N in {}, free length {:.6g} mm", std::abs(f),
                                    f < 0 ? "compression" : "tension", 1e3 * spring.free_length);
             },

@@ -9,7 +9,7 @@
 
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -23,16 +23,8 @@ constexpr double metre = 1;         // least size for the share of a length
 
 double larger(double a, double b) { return std::isnan(b) || b > a ? b : a; }
 
-// ---- Elastic laws, one function each: the force at a deformation, and the largest stiffness.
+// ---- Elastic laws, one function each: the largest stiffness.
 
-Vector6 force(const LinearStiffness& u, const Vector6& e) { return u.K * e; }
-Vector6 force(const PerAxis& u, const Vector6& e) {
-    Vector6 F;
-    for (std::size_t k = 0; k < 6; ++k)
-        F[static_cast<Eigen::Index>(k)] =
-            compare::force(u.axis[k], e[static_cast<Eigen::Index>(k)]);
-    return F;
-}
 // [N/m]: rotating the lever L by an angle moves its end by L times the angle.
 double stiffness(const LinearStiffness& u, double L) {
     const double K_T = u.K.topLeftCorner<3, 3>().cwiseAbs().maxCoeff(),
@@ -49,39 +41,18 @@ double stiffness(const PerAxis& u, double L) {
 
 double value(const Driver& driver, double a) { return driver.start + driver.rate * a; }
 
-// Sum over the drivers of the branch that move element k: f(driver's kind, value).
-template <class Kind, class Sink>
-void moved(const Branch& branch, std::size_t k, double a, Sink&& sink) {
-    for (const auto& driver : branch.drivers)
-        if (const auto* kind = std::get_if<Kind>(&driver.what);
-            kind && kind->elastic == static_cast<int>(k))
-            sink(*kind, value(driver, a));
-}
-
 double as_force(const Vector3d& f, const Vector3d& m, double L) {
     return larger(f.norm(), m.norm() / L);
 }
 
-double stored(const AxialSpring& e, std::size_t k, const Branch& branch, const Equilibrium& state,
-              double) {
-    return std::abs(compare::force(e.law, deformation(e, k, branch, state)));
-}
-double stored(const Bushing& e, std::size_t k, const Branch& branch, const Equilibrium& state,
-              double L) {
-    const Vector6 x = deformation(e, state);
-    Vector6 F = e.preload + std::visit([&](const auto& law) { return force(law, x); }, e.law);
-    moved<Preload>(branch, k, state.load,
-                   [&](const Preload& p, double v) { F += v * p.direction; });
+double stored(const ElasticKind& kind, std::size_t k, const Branch& branch,
+              const Equilibrium& state, double L) {
+    const Vector6 F = stress(kind, k, branch, state, deformation(kind, k, branch, state));
     return as_force(F.head<3>(), F.tail<3>(), L);
 }
 
 double acting(const LoadKind& load, double factor, double L) {
-    return std::abs(factor) *
-           std::visit(overloaded{[](const DeadForce& l) { return l.f.norm(); },
-                                 [&](const DeadMoment& l) { return l.m.norm() / L; },
-                                 [](const FollowerForce& l) { return l.f_local.norm(); },
-                                 [&](const FollowerMoment& l) { return l.m_local.norm() / L; }},
-                      load);
+    return std::abs(factor) * (load_vector(load).norm() / (is_moment(load) ? L : 1));
 }
 
 // Attachment points in the design position.
@@ -92,8 +63,7 @@ std::vector<Vector3d> attachments(const Model& model) {
     const auto add = [&](const auto& p) { points.push_back(position(design, p.body, p.s_local)); };
     for (const auto& body : model.bodies) points.push_back(body.design.r);
     for (const auto& joint : model.joints) add(joint.at);
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { add(e.i), add(e.j); }, elastic.kind);
+    for (const auto& elastic : model.elastics) each_point(elastic.kind, add);
     for (const auto& wheel : model.wheels)
         points.push_back(position(design, wheel.body, wheel.centre_local));
     for (const auto& probe : model.probes) add(probe.at);
@@ -118,24 +88,21 @@ Scale scale_of(const Model& model, const Branch& branch, std::span<const Equilib
 
     double k = 0;
     for (const auto& elastic : model.elastics)
-        k = larger(k, std::visit(overloaded{[](const AxialSpring& e) { return steepest(e.law); },
-                                            [&](const Bushing& e) {
-                                                return std::visit(
-                                                    [&](const auto& u) { return stiffness(u, L); },
-                                                    e.law);
-                                            }},
-                                 elastic.kind));
+        each_member(
+            elastic.kind,
+            overloaded{[&](const ScalarLaw& law) { k = larger(k, steepest(law)); },
+                       [&](const SpatialLaw& law) {
+                           k = larger(
+                               k, std::visit([&](const auto& u) { return stiffness(u, L); }, law));
+                       }});
     for (const auto& load : model.static_loads)
         scale.force = larger(scale.force, acting(load.kind, 1, L));
     for (const auto& state : states) {
         for (const auto& driver : branch.drivers)
-            if (const auto* load = std::get_if<Load>(&driver.what))
+            if (const Load* load = driven_load(driver.what))
                 scale.force = larger(scale.force, acting(load->kind, value(driver, state.load), L));
         for (std::size_t e = 0; e < model.elastics.size(); ++e)
-            scale.force = larger(
-                scale.force,
-                std::visit([&](const auto& kind) { return stored(kind, e, branch, state, L); },
-                           model.elastics[e].kind));
+            scale.force = larger(scale.force, stored(model.elastics[e].kind, e, branch, state, L));
         for (const auto& w : state.reactions)
             scale.force = larger(scale.force, as_force(w.force, w.moment, L));
         for (const auto& body : state.poses) reach = larger(reach, body.r.norm());

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "compare/outputs/positions.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -317,8 +317,7 @@ void add_wrench(std::vector<Channel>& list, const std::string& stem, const std::
 void add_effort(std::vector<Channel>& list, const Model& model, int k) {
     const ModelJoint& joint = joint_of(model, k);
     if (joint.driven < 0) return;
-    const bool turns = std::holds_alternative<DirectionAtAngle>(
-        model.constraints[static_cast<std::size_t>(joint.driven)].kind);
+    const bool turns = is_angle(model.constraints[static_cast<std::size_t>(joint.driven)].kind);
     // The driver of joint `rack` is a separate joint, `rack.drive`; its effort is reported for the
     // rack.
     const std::string stem =
@@ -338,7 +337,7 @@ std::set<int> joints_moved(const Model& model) {
     std::set<int> moved;
     for (const auto& branch : model.branches)
         for (const auto& driver : branch.drivers)
-            if (const auto* motion = std::get_if<Motion>(&driver.what)) moved.insert(motion->joint);
+            if (const int joint = driven_joint(driver.what); joint >= 0) moved.insert(joint);
     return moved;
 }
 
@@ -430,9 +429,9 @@ std::vector<Channel> channels(const Model& model) {
     for (const auto& probe : model.probes)
         add_position(list, probe.name, "'" + probe.name + "'", probe.at);
     for (const auto& elastic : model.elastics)
-        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind);
-            spring != nullptr && elastic.written_as == WrittenAs::itself)
-            add_compression(list, model, elastic.name, "spring", spring->i, spring->j);
+        if (const auto ends = points_of(elastic.kind);
+            ends.size() == 2 && elastic.written_as == WrittenAs::itself)
+            add_compression(list, model, elastic.name, "spring", ends[0], ends[1]);
     for (const auto& damper : model.dampers)
         add_compression(list, model, damper.name, "damper", damper.i, damper.j);
     for (const int k : joints_moved(model)) add_effort(list, model, k);

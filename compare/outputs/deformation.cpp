@@ -9,7 +9,7 @@
 
 #include "compare/outputs/channels.hpp"
 #include "compare/outputs/positions.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -53,26 +53,23 @@ double slope(const std::array<double, 4>& c, double h) {
 }
 
 // The end of the table that x exceeds, or NaN.
-double end_passed(const ScalarLaw& law, double x) {
-    const auto* curve = std::get_if<elastocheck::Curve>(&law);
-    if (curve == nullptr || curve->known_outside) return std::nan("");
-    if (x < curve->knots.front()) return curve->knots.front();
-    if (x > curve->knots.back()) return curve->knots.back();
+double end_passed(const elastocheck::Curve& curve, double x) {
+    if (curve.known_outside) return std::nan("");
+    if (x < curve.knots.front()) return curve.knots.front();
+    if (x > curve.knots.back()) return curve.knots.back();
     return std::nan("");
 }
 
 constexpr double at_a_knot = 1e-9;    // [m, rad], larger than the error of a state
 constexpr double slopes_jump = 1e-6;  // of the steeper slope: beyond rounding
 
-bool is_corner(const ScalarLaw& law, double x) {
-    const auto* curve = std::get_if<elastocheck::Curve>(&law);
-    if (curve == nullptr) return false;
-    const auto& knots = curve->knots;
+bool is_corner(const elastocheck::Curve& curve, double x) {
+    const auto& knots = curve.knots;
     const auto near =
         static_cast<std::size_t>(std::ranges::lower_bound(knots, x - at_a_knot) - knots.begin());
     if (near == knots.size() || knots[near] > x + at_a_knot) return false;
     const double h = near == 0 ? 0 : knots[near] - knots[near - 1];
-    const double before = slope(curve->pieces[near], h), behind = slope(curve->pieces[near + 1], 0);
+    const double before = slope(curve.pieces[near], h), behind = slope(curve.pieces[near + 1], 0);
     return std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind));
 }
 
@@ -84,16 +81,6 @@ std::string told(const std::string& what, double x, double end, Unit unit) {
 }
 
 }  // namespace
-
-double deformation(const AxialSpring& spring, std::size_t element, const Branch& branch,
-                   const Equilibrium& state) {
-    double free_length = spring.free_length;
-    for (const auto& driver : branch.drivers)
-        if (const auto* moved = std::get_if<FreeLength>(&driver.what);
-            moved != nullptr && moved->elastic == static_cast<int>(element))
-            free_length += driver.start + driver.rate * state.load;
-    return (position(state.poses, spring.j) - position(state.poses, spring.i)).norm() - free_length;
-}
 
 Vector6 deformation(const Bushing& bushing, const Equilibrium& state) {
     const Eigen::Quaterniond A_i = pose(state.poses, bushing.i.body).p * bushing.i.A_local,
@@ -110,6 +97,23 @@ Vector6 deformation(const Bushing& bushing, const Equilibrium& state) {
     return e - bushing.undeformed;
 }
 
+Vector6 deformation(const ElasticKind& kind, std::size_t element, const Branch& branch,
+                    const Equilibrium& state) {
+    const auto of_spring = [&](const AxialSpring& spring) {
+        double free_length = spring.free_length;
+        for (const auto& driver : branch.drivers)
+            if (driven_element(driver.what) == static_cast<int>(element))
+                free_length += driver.start + driver.rate * state.load;
+        Vector6 e = Vector6::Zero();
+        e[0] = (position(state.poses, spring.j) - position(state.poses, spring.i)).norm() -
+               free_length;
+        return e;
+    };
+    return std::visit(
+        overloaded{of_spring, [&](const Bushing& bushing) { return deformation(bushing, state); }},
+        kind);
+}
+
 double force(const ScalarLaw& law, double x) {
     return std::visit(overloaded{[&](const LinearRate& u) { return u.k * x; },
                                  [&](const elastocheck::Curve& u) {
@@ -117,6 +121,33 @@ double force(const ScalarLaw& law, double x) {
                                      return (*c)[0] + h * ((*c)[1] + h * ((*c)[2] + h * (*c)[3]));
                                  }},
                       law);
+}
+
+Vector6 force(const ElasticKind& kind, const Vector6& e) {
+    Vector6 f = Vector6::Zero();
+    const auto per_axis = [&](const PerAxis& u) {
+        for (std::size_t k = 0; k < 6; ++k)
+            f[static_cast<Eigen::Index>(k)] = force(u.axis[k], e[static_cast<Eigen::Index>(k)]);
+    };
+    each_member(kind, overloaded{[&](const ScalarLaw& law) { f[0] = force(law, e[0]); },
+                                 [&](const SpatialLaw& law) {
+                                     std::visit(
+                                         overloaded{[&](const LinearStiffness& u) { f = u.K * e; },
+                                                    per_axis},
+                                         law);
+                                 }});
+    return f;
+}
+
+Vector6 stress(const ElasticKind& kind, std::size_t element, const Branch& branch,
+               const Equilibrium& state, const Vector6& e) {
+    Vector6 s = force(kind, e);
+    if (const Vector6* drawn = preload(kind)) s += *drawn;
+    for (const auto& driver : branch.drivers)
+        if (const Vector6* direction = preload(driver.what);
+            direction != nullptr && driven_element(driver.what) == static_cast<int>(element))
+            s += (driver.start + driver.rate * state.load) * *direction;
+    return s;
 }
 
 double steepest(const ScalarLaw& law) {
@@ -140,21 +171,11 @@ double steepest(const ScalarLaw& law) {
 
 bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state) {
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
-        const bool found = std::visit(
-            overloaded{[&](const AxialSpring& e) {
-                           return std::holds_alternative<elastocheck::Curve>(e.law) &&
-                                  is_corner(e.law, deformation(e, k, branch, state));
-                       },
-                       [&](const Bushing& e) {
-                           const auto* law = std::get_if<PerAxis>(&e.law);
-                           if (law == nullptr) return false;
-                           const Vector6 x = deformation(e, state);
-                           for (std::size_t axis = 0; axis < 6; ++axis)
-                               if (is_corner(law->axis[axis], x[static_cast<Eigen::Index>(axis)]))
-                                   return true;
-                           return false;
-                       }},
-            model.elastics[k].kind);
+        bool found = false;
+        each_curve(model.elastics[k].kind, [&](std::size_t axis, const elastocheck::Curve& curve) {
+            const Vector6 x = deformation(model.elastics[k].kind, k, branch, state);
+            found |= is_corner(curve, x[static_cast<Eigen::Index>(axis)]);
+        });
         if (found) return true;
     }
     return false;
@@ -163,29 +184,18 @@ bool at_corner(const Model& model, const Branch& branch, const Equilibrium& stat
 std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state) {
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& elastic = model.elastics[k];
-        std::string found = std::visit(
-            overloaded{
-                [&](const AxialSpring& e) -> std::string {
-                    if (std::holds_alternative<LinearRate>(e.law)) return {};
-                    const double x = deformation(e, k, branch, state), end = end_passed(e.law, x);
-                    if (std::isnan(end)) return {};
-                    return told(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm);
-                },
-                [&](const Bushing& e) -> std::string {
-                    const auto* law = std::get_if<PerAxis>(&e.law);
-                    if (law == nullptr) return {};
-                    const Vector6 x = deformation(e, state);
-                    for (std::size_t axis = 0; axis < 6; ++axis) {
-                        const double value = x[static_cast<Eigen::Index>(axis)],
-                                     end = end_passed(law->axis[axis], value);
-                        if (std::isnan(end)) continue;
-                        return told(fmt::format("bushing '{}' {} {}", elastic.name,
-                                                axis < 3 ? "along" : "about", axes[axis % 3]),
-                                    value, end, axis < 3 ? Unit::mm : Unit::deg);
-                    }
-                    return {};
-                }},
-            elastic.kind);
+        const bool is_spring = member<ScalarLaw>(elastic.kind) != nullptr;
+        std::string found;
+        each_curve(elastic.kind, [&](std::size_t axis, const elastocheck::Curve& curve) {
+            const double x = deformation(elastic.kind, k, branch,
+                                         state)[static_cast<Eigen::Index>(axis)],
+                         end = end_passed(curve, x);
+            if (std::isnan(end) || !found.empty()) return;
+            found = is_spring ? told(fmt::format("spring '{}'", elastic.name), x, end, Unit::mm)
+                              : told(fmt::format("bushing '{}' {} {}", elastic.name,
+                                                 axis < 3 ? "along" : "about", axes[axis % 3]),
+                                     x, end, axis < 3 ? Unit::mm : Unit::deg);
+        });
         if (!found.empty()) return found;
     }
     return {};

@@ -10,10 +10,15 @@
 
 namespace elastocheck::compare {
 
-// ℓ - ℓ₀ [m], with the branch's part of ℓ₀ at state.load; `element` is the position in
-// Model::elastics.
-double deformation(const AxialSpring& spring, std::size_t element, const Branch& branch,
-                   const Equilibrium& state);
+// Deformation of an element as its law takes it: ℓ - ℓ₀ first [m], with the branch's part of ℓ₀ at
+// state.load, or e - e₀ [m, rad]; `element` is the position in Model::elastics.
+Vector6 deformation(const ElasticKind& kind, std::size_t element, const Branch& branch,
+                    const Equilibrium& state);
+// ∂u/∂e at a deformation, without a preload [N, N·m].
+Vector6 force(const ElasticKind& kind, const Vector6& deformation);
+// The same with the preload and the branch's part of it at state.load.
+Vector6 stress(const ElasticKind& kind, std::size_t element, const Branch& branch,
+               const Equilibrium& state, const Vector6& deformation);
 
 // e - e₀ = (d, θ) - e₀ [m, rad], in the frame and angles of the bushing's formulation, frame on i
 // or in the middle. Pre: frame not on j; compile() exchanges the markers of such a bushing.

@@ -7,6 +7,7 @@
 
 #include "compare/stress/stress.hpp"
 #include "compare/stress/transforms.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -29,13 +30,13 @@ Scene driven(const Scene& scene, double factor) {
 
 std::vector<Variant> itself(const Scene& scene) { return {{"as it is", scene}}; }
 
-double drawn_length(const Scene& scene, const AxialSpring& spring) {
+double drawn_length(const Scene& scene, const std::vector<Point>& ends) {
     const auto drawn = [&](const Point& at) -> Vector3d {
         if (at.body == ground) return at.s_local;
         const Pose& body = scene.bodies[static_cast<std::size_t>(at.body)].design;
         return body.r + body.p * at.s_local;
     };
-    return (drawn(spring.j) - drawn(spring.i)).norm();
+    return (drawn(ends[1]) - drawn(ends[0])).norm();
 }
 
 // First element much softer or stiffer than the others; a spring keeps its force in the design
@@ -47,10 +48,10 @@ std::vector<Variant> stiffness(const Scene& scene) {
         Scene varied = first_branch(scene);
         Elastic& element = varied.elastics.front();
         element = stiffened(element, factor);
-        if (auto* spring = std::get_if<AxialSpring>(&element.kind);
-            spring != nullptr && factor > 0 && std::holds_alternative<LinearRate>(spring->law)) {
-            const double length = drawn_length(varied, *spring);
-            spring->free_length = length + (spring->free_length - length) / factor;
+        double* free_length = driven_number(element.kind);
+        if (free_length != nullptr && factor > 0 && curve_of(element.kind, 0) == nullptr) {
+            const double length = drawn_length(varied, points_of(element.kind));
+            *free_length = length + (*free_length - length) / factor;
         }
         variants.push_back({fmt::format("rates of '{}' times {:g}", element.name, factor), varied});
     }

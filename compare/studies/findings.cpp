@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compare/outputs/positions.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -54,13 +54,13 @@ struct Lifted {
 
 // Road height per unit of the driven preload, if the element is the tyre under this wheel, which
 // pushes the wheel up by P - k_t (d_z - h): its preload is -P - k_t h.
-double road_height(const Elastic& elastic, const Preload& driven, const Wheel& wheel) {
+double road_height(const Elastic& elastic, const Vector6& driven, const Wheel& wheel) {
     const auto* tyre = std::get_if<Bushing>(&elastic.kind);
     const bool is_tyre = tyre != nullptr && elastic.active_only_where_driven &&
                          wheel.tyre_rate > 0 && tyre->i.body == ground &&
                          tyre->j.body == wheel.body &&
                          (tyre->j.s_local - wheel.contact_local).norm() <= 1e-9;
-    return is_tyre ? -driven.direction[2] / wheel.tyre_rate : 0;
+    return is_tyre ? -driven[2] / wheel.tyre_rate : 0;
 }
 
 // The only driver that moves, if it is vertical and acts on this wheel's body.
@@ -68,10 +68,10 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
     Lifted found;
     for (const auto& driver : branch.drivers) {
         if (driver.rate == 0) {  // held
-            const auto* road = std::get_if<Preload>(&driver.what);
+            const Vector6* road = preload(driver.what);
             if (road != nullptr &&
-                road_height(model.elastics[static_cast<std::size_t>(road->elastic)], *road,
-                            wheel) != 0)
+                road_height(model.elastics[static_cast<std::size_t>(driven_element(driver.what))],
+                            *road, wheel) != 0)
                 return {};  // a wheel lifted off its tyre also carries the tyre force
             continue;
         }

@@ -7,8 +7,8 @@
 
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
-#include "models/curve.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
+#include "models/laws.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -65,9 +65,9 @@ std::optional<FormulationSpread> spread_of(const std::vector<Solved>& all, std::
 }  // namespace
 
 bool is_reformulated(const Elastic& elastic) {
-    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-    return bushing != nullptr && bushing->formulation.frame != Formulation::Frame::middle &&
-           axes_resisted(bushing->law) > 1;
+    const auto* formulation = member<Formulation>(elastic.kind);
+    return formulation != nullptr && formulation->frame != Formulation::Frame::middle &&
+           axes_resisted(*member<SpatialLaw>(elastic.kind)) > 1;
 }
 
 Scene reformulated(const Scene& scene, const Formulation& formulation) {

@@ -4,9 +4,8 @@
 
 #include "models/compile/parts.hpp"
 #include "models/compile/passes.hpp"
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "models/lowering.hpp"
-#include "models/overloaded.hpp"
 
 namespace elastocheck {
 namespace {
@@ -16,25 +15,15 @@ Point place(const Point& end) { return end; }
 Point place(const Direction& end) { return {end.body, Eigen::Vector3d::Zero()}; }
 
 ModelJoint summary(const Joint& joint) {
-    const auto [i, j] = reduce::ends(joint.kind);
+    const auto [i, j] = ends(joint.kind);
     const Point at = std::visit([](const auto& s) { return place(s.i); }, joint.kind);
     return {joint.name, i, j, at, -1, joint.active_only_where_driven};
 }
 
-// Whether a driver can move the constraint's offset, length or angle.
-bool can_be_driven(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
-                                 [](const PointInPlane&) { return true; },
-                                 [](const PerpendicularDirections&) { return false; },
-                                 [](const DistanceBetween&) { return true; },
-                                 [](const DirectionAtAngle&) { return true; }},
-                      kind);
-}
-
 // Whether compile() must swap the element's markers.
 bool is_framed_on_j(const ElasticKind& elastic) {
-    const auto* bushing = std::get_if<Bushing>(&elastic);
-    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::on_j;
+    const auto* formulation = member<Formulation>(elastic);
+    return formulation != nullptr && formulation->frame == Formulation::Frame::on_j;
 }
 
 Size size_of(const Scene& scene) {
@@ -63,7 +52,7 @@ void lower_joints(const Scene& scene, Model& model) {
         ModelJoint& lowered = model.joints.emplace_back(summary(joint));
         const auto kinds = lower(joint.kind, scene.bodies);
         for (const ConstraintKind& kind : kinds) {
-            if (kinds.size() == 1 && can_be_driven(kind))
+            if (kinds.size() == 1 && driven_number(kind) != nullptr)
                 lowered.driven = static_cast<int>(model.constraints.size());
             model.constraints.push_back({id, kind});
         }
@@ -77,9 +66,9 @@ void turn_round(Model& model) {
     };
     for (Branch& branch : model.branches)
         for (Driver& driver : branch.drivers)
-            if (auto* preload = std::get_if<Preload>(&driver.what);
-                preload != nullptr && is_framed_on_j(element(preload->elastic)))
-                preload->direction = (-preload->direction).eval();
+            if (Vector6* direction = preload(driver.what);
+                direction != nullptr && is_framed_on_j(element(driven_element(driver.what))))
+                *direction = (-*direction).eval();
     for (Elastic& elastic : model.elastics)
         if (is_framed_on_j(elastic.kind)) {
             elastic.kind = markers_swapped(std::get<Bushing>(elastic.kind));
@@ -92,9 +81,9 @@ void turn_round(Model& model) {
 void name_what_cannot_move(Model& model) {
     for (Branch& branch : model.branches) {
         std::erase_if(branch.drivers, [&](const Driver& driver) {
-            const auto* motion = std::get_if<Motion>(&driver.what);
-            if (motion == nullptr) return false;
-            const ModelJoint& joint = model.joints[static_cast<std::size_t>(motion->joint)];
+            const int moved = driven_joint(driver.what);
+            if (moved < 0) return false;
+            const ModelJoint& joint = model.joints[static_cast<std::size_t>(moved)];
             if (joint.driven >= 0) return false;
             model.omitted.push_back(
                 {reduce::named("motion of joint", joint.name),

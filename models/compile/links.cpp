@@ -46,7 +46,7 @@ Attached attached(const Scene& scene) {
     }
     for (const Load& load : scene.static_loads) more(body_of(load.kind));
     each_driven(scene, [&](const Driven& driven) {
-        if (const auto* load = std::get_if<Load>(&driven)) more(body_of(load->kind));
+        if (const Load* load = driven_load(driven)) more(body_of(load->kind));
     });
     each_output_body(scene, more);
     return result;

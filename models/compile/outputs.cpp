@@ -33,17 +33,12 @@ Graph graph_of(const Scene& scene) {
     each_output_body(scene, [&](BodyId body) { graph.outputs.insert(body); });
     for (const auto& load : scene.static_loads) graph.loaded.insert(body_of(load.kind));
     const auto both = [&](Ends e) { graph.loaded.insert({e.i, e.j}); };
-    const auto element = [&](int k) {
-        both(ends(scene.elastics[static_cast<std::size_t>(k)].kind));
-    };
     each_driven(scene, [&](const Driven& driven) {
-        std::visit(overloaded{[&](const Load& load) { graph.loaded.insert(body_of(load.kind)); },
-                              [&](const Motion& m) {
-                                  both(ends(scene.joints[static_cast<std::size_t>(m.joint)].kind));
-                              },
-                              [&](const FreeLength& f) { element(f.elastic); },
-                              [&](const Preload& p) { element(p.elastic); }},
-                   driven);
+        if (const Load* load = driven_load(driven)) graph.loaded.insert(body_of(load->kind));
+        if (const int k = driven_joint(driven); k >= 0)
+            both(ends(scene.joints[static_cast<std::size_t>(k)].kind));
+        if (const int k = driven_element(driven); k >= 0)
+            both(ends(scene.elastics[static_cast<std::size_t>(k)].kind));
     });
     return graph;
 }

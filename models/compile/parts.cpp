@@ -3,30 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/curve.hpp"
+#include "models/laws.hpp"
+#include "models/lowering.hpp"
 
 namespace elastocheck::reduce {
 namespace {
 
 using Eigen::Vector3d;
-
-bool is_zero(const ScalarLaw& law) {
-    const auto nothing = [](const std::array<double, 4>& c) {
-        return std::ranges::all_of(c, [](double c_n) { return c_n == 0; });
-    };
-    return std::visit(
-        overloaded{[](const LinearRate& u) { return u.k == 0; },
-                   [&](const Curve& u) { return std::ranges::all_of(u.pieces, nothing); }},
-        law);
-}
-bool is_zero(const SpatialLaw& law) {
-    return std::visit(overloaded{[](const LinearStiffness& u) { return u.K.isZero(0); },
-                                 [](const PerAxis& u) {
-                                     return std::ranges::all_of(
-                                         u.axis, [](const ScalarLaw& l) { return is_zero(l); });
-                                 }},
-                      law);
-}
 
 // Whether the law has zero force at x within the rounding of a position [m] or [rad].
 bool is_free(const ScalarLaw& law, double x, double rounding) {
@@ -66,39 +49,16 @@ void compact(std::vector<T>& list, const std::vector<bool>& kept) {
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(next), list.end());
 }
 
-BodyId& body_of(LoadKind& load) {
-    return std::visit(overloaded{[](DeadForce& l) -> BodyId& { return l.at.body; },
-                                 [](DeadMoment& l) -> BodyId& { return l.body; },
-                                 [](FollowerForce& l) -> BodyId& { return l.at.body; },
-                                 [](FollowerMoment& l) -> BodyId& { return l.body; }},
-                      load);
-}
-
 }  // namespace
-
-Ends ends(const JointKind& joint) {
-    return std::visit([](const auto& s) { return Ends{s.i.body, s.j.body}; }, joint);
-}
-Ends ends(const ElasticKind& elastic) {
-    return std::visit([](const auto& s) { return Ends{s.i.body, s.j.body}; }, elastic);
-}
-BodyId body_of(const LoadKind& load) {
-    LoadKind copy = load;
-    return body_of(copy);
-}
 
 DrivenParts driven_parts(const Scene& scene) {
     DrivenParts parts{std::vector<bool>(scene.joints.size()),
                       std::vector<bool>(scene.elastics.size())};
-    const auto element = [&](int k) { parts.elastics[static_cast<std::size_t>(k)] = true; };
     each_driven(scene, [&](const Driven& driven) {
-        std::visit(overloaded{[](const Load&) {},
-                              [&](const Motion& m) {
-                                  parts.joints[static_cast<std::size_t>(m.joint)] = true;
-                              },
-                              [&](const FreeLength& f) { element(f.elastic); },
-                              [&](const Preload& p) { element(p.elastic); }},
-                   driven);
+        if (const int k = driven_joint(driven); k >= 0)
+            parts.joints[static_cast<std::size_t>(k)] = true;
+        if (const int k = driven_element(driven); k >= 0)
+            parts.elastics[static_cast<std::size_t>(k)] = true;
     });
     return parts;
 }
@@ -115,32 +75,26 @@ Vector3d direction(const Scene& scene, const Direction& u) {
 }
 
 bool is_strained_at_design(const JointKind& joint, const Scene& scene) {
-    const auto never = [](const auto&) { return false; };
+    const std::vector<ConstraintKind> rows = lower(joint, scene.bodies);
+    if (rows.size() != 1) return false;  // has no length, offset or angle
     return std::visit(
-        overloaded{
-            [&](const Distance& s) {
-                const double drawn = (position(scene, s.j) - position(scene, s.i)).norm();
-                return !(std::abs(drawn - s.length) <= as_drawn * s.length);
-            },
-            [&](const InPlane& s) {
-                const Vector3d d = position(scene, s.i) - position(scene, s.j);
-                return !(std::abs(direction(scene, s.normal_j).dot(d) - s.offset) <= as_drawn);
-            },
-            [&](const Angle& s) {
-                const Vector3d u = std::cos(s.angle) * direction(scene, s.y_j) -
-                                   std::sin(s.angle) * direction(scene, s.j);
-                return !(std::abs(direction(scene, s.i).dot(u)) <= as_drawn);
-            },
-            [&](const Spherical& s) { return never(s); },
-            [&](const Revolute& s) { return never(s); },
-            [&](const Universal& s) { return never(s); },
-            [&](const Cylindrical& s) { return never(s); },
-            [&](const Translational& s) { return never(s); },
-            [&](const Planar& s) { return never(s); }, [&](const Fixed& s) { return never(s); },
-            [&](const InLine& s) { return never(s); },
-            [&](const Perpendicular& s) { return never(s); },
-            [&](const Parallel& s) { return never(s); }},
-        joint);
+        overloaded{[](const CoincidentPoints&) { return false; },
+                   [&](const PointInPlane& c) {
+                       const Vector3d d = position(scene, c.i) - position(scene, c.j);
+                       return !(std::abs(direction(scene, c.normal_j).dot(d) - c.offset) <=
+                                as_drawn);
+                   },
+                   [](const PerpendicularDirections&) { return false; },
+                   [&](const DistanceBetween& c) {
+                       const double drawn = (position(scene, c.j) - position(scene, c.i)).norm();
+                       return !(std::abs(drawn - c.length) <= as_drawn * c.length);
+                   },
+                   [&](const DirectionAtAngle& c) {
+                       const Vector3d u = std::cos(c.angle) * direction(scene, c.y_j) -
+                                          std::sin(c.angle) * direction(scene, c.j);
+                       return !(std::abs(direction(scene, c.i).dot(u)) <= as_drawn);
+                   }},
+        rows.front());
 }
 
 bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
@@ -161,18 +115,16 @@ bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
         elastic);
 }
 
-bool is_zero(const LoadKind& load) {
-    return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },
-                                 [](const DeadMoment& l) { return l.m.isZero(0); },
-                                 [](const FollowerForce& l) { return l.f_local.isZero(0); },
-                                 [](const FollowerMoment& l) { return l.m_local.isZero(0); }},
-                      load);
-}
+bool is_zero(const LoadKind& load) { return load_vector(load).isZero(0); }
 bool is_zero(const ElasticKind& elastic) {
-    return std::visit(
-        overloaded{[](const AxialSpring& e) { return is_zero(e.law); },
-                   [](const Bushing& e) { return is_zero(e.law) && e.preload.isZero(0); }},
-        elastic);
+    bool zero = true;
+    each_member(elastic,
+                overloaded{[&](const ScalarLaw& law) { zero &= elastocheck::is_zero(law); },
+                           [&](const SpatialLaw& law) { zero &= elastocheck::is_zero(law); },
+                           [&](ForceAndMoment<const Vector6> preload) {
+                               zero &= preload.value.isZero(0);
+                           }});
+    return zero;
 }
 
 std::string named(const char* kind, const std::string& name) {
@@ -208,18 +160,19 @@ void keep_only(Scene& scene, Kept kept) {
             leave_out(scene, named("load", load.name), "its body is left out" + where);
             return false;
         }
-        renumber(body_of(load.kind));
+        each_body(load.kind, renumber);
         return true;
     };
     const auto renumber_driven = [&](Driven& driven, const std::string& where) {
         const auto part = [](int& id, const std::vector<int>& ids) {
             return (id = ids[static_cast<std::size_t>(id)]) >= 0;
         };
-        return std::visit(overloaded{[&](Load& load) { return renumber_load(load, where); },
-                                     [&](Motion& m) { return part(m.joint, joint); },
-                                     [&](FreeLength& f) { return part(f.elastic, elastic); },
-                                     [&](Preload& p) { return part(p.elastic, elastic); }},
-                          driven);
+        bool stay = true;
+        each_member(driven,
+                    overloaded{[&](Load& load) { stay = renumber_load(load, where); },
+                               [&](JointIndex<int> k) { stay = part(k.value, joint); },
+                               [&](ElasticIndex<int> k) { stay = part(k.value, elastic); }});
+        return stay;
     };
     std::erase_if(scene.static_loads, [&](Load& load) { return !renumber_load(load, ""); });
     for (Branch& branch : scene.branches)
@@ -233,9 +186,8 @@ void keep_only(Scene& scene, Kept kept) {
     compact(scene.bodies, kept.bodies);
     compact(scene.joints, kept.joints);
     compact(scene.elastics, kept.elastics);
-    const auto renumber_place = [&](auto& place) { renumber(place.body); };
-    for (Joint& j : scene.joints) each_place(j.kind, renumber_place);
-    for (Elastic& e : scene.elastics) each_place(e.kind, renumber_place);
+    for (Joint& j : scene.joints) each_body(j.kind, renumber);
+    for (Elastic& e : scene.elastics) each_body(e.kind, renumber);
     each_output_body(scene, renumber);
 }
 

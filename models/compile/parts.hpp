@@ -5,34 +5,9 @@
 #include <vector>
 
 #include "elastocheck/scene.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::reduce {
-
-// ---- Calls f(Point&), f(Direction&) or f(Marker&) for every point, direction and marker of a
-// part, i first, then j.
-
-template <class F>
-void each_place(JointKind& joint, F f) {
-    const auto all = [&](auto&... places) { (f(places), ...); };
-    std::visit(
-        overloaded{
-            [&](Spherical& s) { all(s.i, s.j); },
-            [&](Revolute& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
-            [&](Universal& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
-            [&](Cylindrical& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
-            [&](Translational& s) { all(s.i, s.j, s.axis_i, s.axis_j); },
-            [&](Planar& s) { all(s.i, s.j, s.normal_i, s.normal_j); },
-            [&](Fixed& s) { all(s.i, s.j, s.x_i, s.y_i, s.x_j, s.y_j); },
-            [&](Distance& s) { all(s.i, s.j); }, [&](InPlane& s) { all(s.i, s.j, s.normal_j); },
-            [&](InLine& s) { all(s.i, s.j, s.axis_j); }, [&](Perpendicular& s) { all(s.i, s.j); },
-            [&](Parallel& s) { all(s.i, s.j); }, [&](Angle& s) { all(s.i, s.j, s.y_j); }},
-        joint);
-}
-template <class F>
-void each_place(ElasticKind& elastic, F f) {
-    std::visit([&](auto& e) { f(e.i), f(e.j); }, elastic);
-}
 
 // Calls f(BodyId&) (const Scene: f(const BodyId&)) for every body that an output reads, ground
 // included.
@@ -46,13 +21,6 @@ void each_output_body(S& scene, F f) {
     for (auto& probe : scene.probes) f(probe.at.body);
     for (auto& damper : scene.dampers) f(damper.i.body), f(damper.j.body);
 }
-
-struct Ends {
-    BodyId i, j;
-};
-Ends ends(const JointKind& joint);
-Ends ends(const ElasticKind& elastic);
-BodyId body_of(const LoadKind& load);
 
 // Calls f for every input that a branch drives or the trim adjusts.
 template <class F>

@@ -56,10 +56,12 @@ class Sets {
     std::vector<bool> has_output_;
 };
 
-struct Told {  // transforms to the representative body c
+// Expresses a member in the axes of the body that represents its own.
+struct OnMerged {
     const Scene& scene;
     Sets& sets;
 
+    void operator()(BodyId& body) const { body = sets.first(body); }
     void operator()(Point& p) const {
         const BodyId c = sets.first(p.body);
         if (c == p.body) return;
@@ -78,29 +80,16 @@ struct Told {  // transforms to the representative body c
         m = {c, at.s_local,
              (design(scene, c).p.conjugate() * design(scene, m.body).p * m.A_local).normalized()};
     }
-    // Transforms the components of a vector that is not a unit vector.
-    Vector3d turned(BodyId body, const Vector3d& v_local) const {
-        Direction u{body, v_local};
+    void operator()(LoadVector<Vector3d> v) const {
+        Direction u{v.axes, v.value};
         (*this)(u);
-        return u.u_local;
-    }
-    void operator()(LoadKind& load) const {
-        std::visit(overloaded{[&](DeadForce& l) { (*this)(l.at); },
-                              [&](DeadMoment& l) { l.body = sets.first(l.body); },
-                              [&](FollowerForce& l) {
-                                  l.f_local = turned(l.at.body, l.f_local);
-                                  (*this)(l.at);
-                              },
-                              [&](FollowerMoment& l) {
-                                  l.m_local = turned(l.body, l.m_local);
-                                  l.body = sets.first(l.body);
-                              }},
-                   load);
+        v.value = u.u_local;
     }
     void operator()(Wheel& wheel) const {
         Point centre{wheel.body, wheel.centre_local}, contact{wheel.body, wheel.contact_local};
-        (*this)(centre), (*this)(contact);
-        wheel.spin_axis_local = turned(wheel.body, wheel.spin_axis_local);
+        Direction spin{wheel.body, wheel.spin_axis_local};
+        (*this)(centre), (*this)(contact), (*this)(spin);
+        wheel.spin_axis_local = spin.u_local;
         wheel.centre_local = centre.s_local;
         wheel.contact_local = contact.s_local;
         wheel.body = centre.body;
@@ -150,20 +139,17 @@ void weld(Scene& scene) {
                   [&](const Load& load) { return falls_on_ground(scene, load, sets, ""); });
     for (Branch& branch : scene.branches)
         std::erase_if(branch.drivers, [&](const Driver& driver) {
-            const auto* load = std::get_if<Load>(&driver.what);
+            const Load* load = driven_load(driver.what);
             return load != nullptr &&
                    falls_on_ground(scene, *load, sets, " (branch '" + branch.name + "')");
         });
-    const Told told{scene, sets};
-    for (Joint& joint : scene.joints) each_place(joint.kind, told);
-    for (Elastic& elastic : scene.elastics) each_place(elastic.kind, told);
-    for (Load& load : scene.static_loads) told(load.kind);
-    for (Branch& branch : scene.branches)
-        for (Driver& driver : branch.drivers)
-            if (auto* load = std::get_if<Load>(&driver.what)) told(load->kind);
-    for (Wheel& wheel : scene.wheels) told(wheel);
-    for (Probe& probe : scene.probes) told(probe.at);
-    for (Damper& damper : scene.dampers) told(damper.i), told(damper.j);
+    const OnMerged express{scene, sets};
+    for (Joint& joint : scene.joints) each_member(joint.kind, express);
+    for (Elastic& elastic : scene.elastics) each_member(elastic.kind, express);
+    each_load(scene, [&](LoadKind& load) { each_member(load, express); });
+    for (Wheel& wheel : scene.wheels) express(wheel);
+    for (Probe& probe : scene.probes) express(probe.at);
+    for (Damper& damper : scene.dampers) express(damper.i), express(damper.j);
     keep_only(scene, kept);
 }
 

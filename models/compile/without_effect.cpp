@@ -15,7 +15,7 @@ std::string idle(const Driver& driver, const Scene& scene) {
             [](const Motion&) { return ""; },
             [&](const FreeLength& f) {
                 const auto& kind = scene.elastics[static_cast<std::size_t>(f.elastic)].kind;
-                const bool is_moved = std::holds_alternative<AxialSpring>(kind) && !is_zero(kind);
+                const bool is_moved = driven_number(kind) != nullptr && !is_zero(kind);
                 return is_never || !is_moved ? "it moves nothing" : "";
             },
             [&](const Preload& p) {
@@ -94,8 +94,8 @@ void drop_what_is_within_one_body(Scene& scene) {
         const ElasticKind& kind = scene.elastics[k].kind;
         const auto [i, j] = ends(kind);
         // An element without energy may exert a net moment on its body if it is loaded.
-        const auto* bushing = std::get_if<Bushing>(&kind);
-        const bool turns = i != ground && bushing != nullptr && !has_energy(bushing->formulation) &&
+        const auto* formulation = member<Formulation>(kind);
+        const bool turns = i != ground && formulation != nullptr && !has_energy(*formulation) &&
                            (driven.elastics[k] || is_loaded_at_design(kind, scene));
         if (i != j || turns) continue;
         kept.elastics[k] = false;

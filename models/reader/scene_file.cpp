@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "models/kinds.hpp"
 #include "models/reader/definitions/beams.hpp"
 #include "models/reader/definitions/mirror.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -42,9 +43,8 @@ void check_all_held(const Cursor& scene, const Scene& result) {
     const auto hold = [&](BodyId body) {
         if (body != ground) held[static_cast<std::size_t>(body)] = true;
     };
-    const auto hold_both = [&](const auto& part) { hold(part.i.body), hold(part.j.body); };
-    for (const Joint& joint : result.joints) std::visit(hold_both, joint.kind);
-    for (const Elastic& elastic : result.elastics) std::visit(hold_both, elastic.kind);
+    for (const Joint& joint : result.joints) each_body(joint.kind, hold);
+    for (const Elastic& elastic : result.elastics) each_body(elastic.kind, hold);
     const Cursor bodies = scene.require("bodies");
     for (std::size_t b = 0; b < held.size(); ++b)
         if (!held[b])
@@ -195,7 +195,7 @@ void require_own_names(const Cursor& scene, const Scene& result) {
     for (const Damper& damper : result.dampers)
         for (const Elastic& elastic : result.elastics) {
             if (elastic.name != damper.name || elastic.written_as != WrittenAs::itself ||
-                !std::holds_alternative<AxialSpring>(elastic.kind))
+                driven_number(elastic.kind) == nullptr)
                 continue;
             const Cursor section = scene.require("dampers");
             section.optional(damper.name)

@@ -30,11 +30,6 @@ constexpr double stiffness_threshold = 1e-13;
 constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
 constexpr double part_threshold = 1e-7;  // smallest entry of a unit combination that counts
 
-// Attachment point of a constraint or element on its body; a direction has none.
-const Vector3d* lever(const Point& end) { return &end.s_local; }
-const Vector3d* lever(const Marker& end) { return &end.s_local; }
-const Vector3d* lever(const Direction&) { return nullptr; }
-
 // Root mean square lever of all attachments: invariant under motions of the ground frame.
 double characteristic_length(const Model& model) {
     double sum = 0;
@@ -43,14 +38,12 @@ double characteristic_length(const Model& model) {
         return model.bodies[static_cast<std::size_t>(b)].design.r.norm();
     };
     const auto take = [&](const auto& end) {
-        const Vector3d* s = lever(end);
-        if (!s || end.body == ground || s->norm() <= lever_rounding * where(end.body)) return;
-        sum += s->squaredNorm();
+        if (end.body == ground || end.s_local.norm() <= lever_rounding * where(end.body)) return;
+        sum += end.s_local.squaredNorm();
         ++count;
     };
-    const auto both = [&](const auto& e) { take(e.i), take(e.j); };
-    for (const auto& c : model.constraints) std::visit(both, c.kind);
-    for (const auto& e : model.elastics) std::visit(both, e.kind);
+    for (const auto& c : model.constraints) each_point(c.kind, take);
+    for (const auto& e : model.elastics) each_point(e.kind, take);
     return count > 0 ? std::sqrt(sum / count) : 1.0;
 }
 
@@ -212,19 +205,15 @@ struct Attachment {
 };
 std::vector<std::vector<Attachment>> attachments(const Model& model) {
     std::vector<std::vector<Attachment>> on(model.bodies.size());
-    const auto both = [&](const std::string& name, const auto& e) {
-        const auto take = [&](const auto& end) {
-            if (const Vector3d* s = lever(end); s && end.body != ground)
-                on[static_cast<std::size_t>(end.body)].push_back({&name, *s});
-        };
-        take(e.i), take(e.j);
+    const auto note = [&](const std::string& name, const auto& kind) {
+        each_point(kind, [&](const auto& end) {
+            if (end.body != ground)
+                on[static_cast<std::size_t>(end.body)].push_back({&name, end.s_local});
+        });
     };
     for (const auto& c : model.constraints)
-        std::visit(
-            [&](const auto& e) { both(model.joints[static_cast<std::size_t>(c.joint)].name, e); },
-            c.kind);
-    for (const auto& e : model.elastics)
-        std::visit([&](const auto& kind) { both(e.name, kind); }, e.kind);
+        note(model.joints[static_cast<std::size_t>(c.joint)].name, c.kind);
+    for (const auto& e : model.elastics) note(e.name, e.kind);
     return on;
 }
 

@@ -13,16 +13,11 @@ bool is_finite(const Row<double>& row) {
     return std::isfinite(row.on_i().norm()) && std::isfinite(row.on_j().norm()) &&
            std::isfinite(row.Phi);
 }
-bool is_finite(const AxialSpring& e, const Rest<double>& rest, const State<double>& q) {
-    const Axial<double> g = deformation<double>(e, q);
-    return std::isfinite(g.length) &&
-           std::isfinite(hessian<double>(e.law, [&] { return g.length - rest.free_length; }));
-}
-bool is_finite(const Bushing& e, const Rest<double>&, const State<double>& q) {
-    const Spatial<double> g = deformation<double>(e, q);
-    const Vector6<double> deformed = strain<double>(e, g);
-    return deformed.allFinite() && axes<double>(e, q).allFinite() &&
-           hessian<double>(e.law, [&] { return deformed; }).allFinite();
+bool is_finite(const ElasticKind& e, const Rest<double>& rest, const State<double>& q) {
+    bool finite = deflections<double>(e, rest, q).allFinite() &&
+                  element_stiffness<double>(e, rest, q).K.allFinite();
+    each_point(e, [&](const auto& at) { finite &= q[at.body].lever(at.s_local).allFinite(); });
+    return finite;
 }
 
 }  // namespace
@@ -42,14 +37,8 @@ std::string not_finite(const Model& model) {
                      model.joints[static_cast<std::size_t>(model.constraints[c].joint)].name);
         });
     for (std::size_t at = 0; at < model.elastics.size(); ++at)
-        std::visit(
-            [&](const auto& e) {
-                if (!q[e.i.body].lever(e.i.s_local).allFinite() ||
-                    !q[e.j.body].lever(e.j.s_local).allFinite() ||
-                    !is_finite(e, inputs.rest[at], q))
-                    name("element", model.elastics[at].name);
-            },
-            model.elastics[at].kind);
+        if (!is_finite(model.elastics[at].kind, inputs.rest[at], q))
+            name("element", model.elastics[at].name);
     std::string all;
     for (const auto& one : names)
         all += (all.empty() ? "as drawn a number is not finite in " : ", ") + one;

@@ -21,11 +21,7 @@ std::vector<int> loops(const Model& model) {
     std::vector<int> block(model.constraints.size(), -1);
     int time = 0, blocks = 0;
     for (std::size_t c = 0; c < model.constraints.size(); ++c) {
-        const auto [i, j] = std::visit(
-            [](const auto& kind) {
-                return std::pair{kind.i.body, kind.j.body};
-            },
-            model.constraints[c].kind);
+        const auto [i, j] = elastocheck::ends(model.constraints[c].kind);
         if (i == j) {  // on one body, or between ground and ground: a loop by itself
             block[c] = blocks++;
             continue;

@@ -20,15 +20,8 @@ template <class Real>
 void add_load_rate(const Branch& branch, Drive drive, Real amount, const State<Real>& q,
                    Vector<Real>& force) {
     for (const auto& driver : branch.drivers)
-        std::visit(overloaded{
-                       [&](const Load& load) {
-                           add_load<Real>(load.kind, amount * speed<Real>(driver, drive), q, force);
-                       },
-                       [](const Motion&) {},
-                       [](const FreeLength&) {},
-                       [](const Preload&) {},
-                   },
-                   driver.what);
+        if (const Load* load = driven_load(driver.what))
+            add_load<Real>(load->kind, amount * speed<Real>(driver, drive), q, force);
 }
 
 // amount · ∂f_elast/∂a, element by element: add(element number, (F, M) on its body j).
@@ -74,8 +67,8 @@ template <class Real, class Add>
 void for_each_row_rate(const Model& model, const Branch& branch, const Inputs<Real>& inputs,
                        Drive drive, Real amount, const State<Real>& q, Add&& add) {
     for (const auto& driver : branch.drivers)
-        if (const auto* motion = std::get_if<Motion>(&driver.what)) {
-            const std::size_t k = constraint_of(model, *motion);
+        if (const int joint = driven_joint(driver.what); joint >= 0) {
+            const std::size_t k = constraint_of(model, {joint});
             add(inputs.row[k], rate<Real>(model.constraints[k].kind, inputs.offset[k], q),
                 amount * speed<Real>(driver, drive));
         }

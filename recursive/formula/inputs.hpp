@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
+#include "models/kinds.hpp"
 #include "recursive/formula/law.hpp"
-#include "recursive/formula/overloaded.hpp"
 
 namespace elastocheck::recursive {
 
@@ -35,24 +35,15 @@ struct Inputs {
 
 template <class Real>
 Real offset_of(const ConstraintKind& kind) {
-    return static_cast<Real>(std::visit(overloaded{
-                                            [](const CoincidentPoints&) { return 0.0; },
-                                            [](const PointInPlane& c) { return c.offset; },
-                                            [](const PerpendicularDirections&) { return 0.0; },
-                                            [](const DistanceBetween& c) { return c.length; },
-                                            [](const DirectionAtAngle& c) { return c.angle; },
-                                        },
-                                        kind));
+    const double* value = driven_number(kind);
+    return value != nullptr ? static_cast<Real>(*value) : Real(0);
 }
 template <class Real>
 Rest<Real> rest_of(const ElasticKind& kind) {
-    using R = Rest<Real>;
-    return std::visit(
-        overloaded{
-            [](const AxialSpring& e) { return R{.free_length = static_cast<Real>(e.free_length)}; },
-            [](const Bushing& e) { return R{.preload = e.preload.cast<Real>()}; },
-        },
-        kind);
+    Rest<Real> rest;
+    if (const double* length = driven_number(kind)) rest.free_length = static_cast<Real>(*length);
+    if (const auto* wrench = preload(kind)) rest.preload = wrench->template cast<Real>();
+    return rest;
 }
 
 template <class Real>
@@ -95,23 +86,22 @@ inline void check(const Model& model, const Branch& branch) {
                        },
                        [&](const FreeLength& f) {
                            const ElasticKind* kind = elastic(f.elastic);
-                           require(kind != nullptr && std::holds_alternative<AxialSpring>(*kind),
+                           require(kind != nullptr && driven_number(*kind) != nullptr,
                                    "it drives the free length of what is no spring");
                        },
                        [&](const Preload& p) {
                            const ElasticKind* kind = elastic(p.elastic);
-                           require(kind != nullptr && std::holds_alternative<Bushing>(*kind),
+                           require(kind != nullptr && preload(*kind) != nullptr,
                                    "it drives the preload of what is no bushing");
                        },
                    },
                    driver.what);
     for (const auto& element : model.elastics) {
-        const auto* bushing = std::get_if<Bushing>(&element.kind);
-        if (bushing == nullptr) continue;
-        const Formulation& f = bushing->formulation;
-        require(f.frame != Formulation::Frame::on_j,
+        const auto* f = member<Formulation>(element.kind);
+        if (f == nullptr) continue;
+        require(f->frame != Formulation::Frame::on_j,
                 "a bushing's frame is on j, which compile() turns round");
-        require(f.conjugate || f.frame == Formulation::Frame::on_i,
+        require(f->conjugate || f->frame == Formulation::Frame::on_i,
                 "a bushing's forces are not conjugate, which is defined with its frame on i only");
     }
     require(stands_on(model, branch),

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 
+#include "models/kinds.hpp"
 #include "recursive/formula/state.hpp"
 
 namespace elastocheck::recursive {
@@ -117,8 +118,8 @@ Matrix6<Real> hessian(const PerAxis& law, Deformation&& e, const Pieces& pieces 
 }
 inline bool rotational(const PerAxis& law) {
     return std::any_of(law.axis.begin() + 3, law.axis.end(), [](const ScalarLaw& about) {
-        const auto* linear = std::get_if<LinearRate>(&about);
-        return linear == nullptr || linear->k != 0;
+        const double* rate = rate_of(about);
+        return rate == nullptr || *rate != 0;
     });
 }
 

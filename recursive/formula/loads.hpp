@@ -43,13 +43,8 @@ void for_each_load(const Model& model, const Branch& branch, const Inputs<Real>&
                    Sink&& sink) {
     for (const auto& load : model.static_loads) sink(load.kind, Real(1));
     for (std::size_t k = 0; k < branch.drivers.size(); ++k)
-        std::visit(overloaded{
-                       [&](const Load& load) { sink(load.kind, inputs.load_factor[k]); },
-                       [](const Motion&) {},
-                       [](const FreeLength&) {},
-                       [](const Preload&) {},
-                   },
-                   branch.drivers[k].what);
+        if (const Load* load = driven_load(branch.drivers[k].what))
+            sink(load->kind, inputs.load_factor[k]);
 }
 
 // f_ext(q, inputs)

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "recursive/formula/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -14,13 +14,8 @@ void for_each_ground_point(Any& model, Visit&& visit) {
     const auto point = [&](auto& at) {
         if (at.body == ground) visit(at.s_local);
     };
-    const auto ends = [&](auto& kind) { point(kind.i), point(kind.j); };
-    for (auto& constraint : model.constraints)
-        std::visit(overloaded{[&](auto& kind) { ends(kind); },
-                              [](const PerpendicularDirections&) {}, [](const DirectionAtAngle&) {},
-                              [](PerpendicularDirections&) {}, [](DirectionAtAngle&) {}},
-                   constraint.kind);
-    for (auto& element : model.elastics) std::visit(ends, element.kind);
+    for (auto& constraint : model.constraints) each_point(constraint.kind, point);
+    for (auto& element : model.elastics) each_point(element.kind, point);
     for (auto& joint : model.joints) point(joint.at);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "recursive/formula/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -42,19 +42,24 @@ struct Touched {
             if (m[static_cast<std::size_t>(c)]) entry(n + k, half + c);
     }
     // A force that depends on all of these halves and acts on all of them.
-    void among(std::initializer_list<int> halves) {
+    void among(const std::vector<int>& halves) {
         for (const int a : halves)
             for (const int b : halves) block(a, b);
     }
 };
 
-void touch(Touched& t, const AxialSpring& e) {
-    t.among({t.r(e.i.body), has_lever(e.i) ? t.pi(e.i.body) : -1, t.r(e.j.body),
-             has_lever(e.j) ? t.pi(e.j.body) : -1});
-}
-// The frame is fixed in i: the force rotates with it, and its lever reaches to p_j.
-void touch(Touched& t, const Bushing& e) {
-    t.among({t.r(e.i.body), t.pi(e.i.body), t.r(e.j.body), t.pi(e.j.body)});
+// Forces between points depend on the levers that exist. Between markers the frame is fixed in i:
+// the force rotates with it, and its lever reaches to p_j.
+void touch(Touched& t, const ElasticKind& element) {
+    std::vector<int> halves;
+    each_member(element, overloaded{[&](const Point& p) {
+                                        halves.push_back(t.r(p.body));
+                                        if (has_lever(p)) halves.push_back(t.pi(p.body));
+                                    },
+                                    [&](const Marker& m) {
+                                        halves.insert(halves.end(), {t.r(m.body), t.pi(m.body)});
+                                    }});
+    t.among(halves);
 }
 
 // Sorts and removes duplicates.
@@ -118,8 +123,7 @@ Pattern pattern(const Model& model) {
     const int n = coordinates(model), size = n + constraint_rows(model);
     Touched t{n, std::vector<std::vector<int>>(static_cast<std::size_t>(size))};
     for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a load on the body
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { touch(t, e); }, elastic.kind);
+    for (const auto& elastic : model.elastics) touch(t, elastic.kind);
     const auto touch_load = [&](const LoadKind& load) {
         std::visit(overloaded{
                        [](const DeadForce&) {},
@@ -133,7 +137,7 @@ Pattern pattern(const Model& model) {
     for (const auto& load : model.static_loads) touch_load(load.kind);
     for (const auto& branch : model.branches)
         for (const auto& driver : branch.drivers)
-            if (const auto* load = std::get_if<Load>(&driver.what)) touch_load(load->kind);
+            if (const Load* load = driven_load(driver.what)) touch_load(load->kind);
     int row = 0;
     for (const auto& constraint : model.constraints) {
         std::visit([&](const auto& c) { touch(t, c, row); }, constraint.kind);
@@ -157,15 +161,14 @@ SaddleMatrix<double> saddle_matrix(const Model& model) {
         neighbours[static_cast<std::size_t>(i)].push_back(j);
         neighbours[static_cast<std::size_t>(j)].push_back(i);
     };
-    const auto between = [](const auto& kind) { return std::array{kind.i.body, kind.j.body}; };
     for (const auto& elastic : model.elastics) {
-        const auto [i, j] = std::visit(between, elastic.kind);
+        const auto [i, j] = ends(elastic.kind);
         connect(i, j);
     }
     for (const auto& constraint : model.constraints) {
-        const auto ends = std::visit(between, constraint.kind);
-        connect(ends[0], ends[1]);
-        M.ends.insert(M.ends.end(), static_cast<std::size_t>(rows(constraint.kind)), ends);
+        const auto [i, j] = ends(constraint.kind);
+        connect(i, j);
+        M.ends.insert(M.ends.end(), static_cast<std::size_t>(rows(constraint.kind)), {i, j});
     }
     for (auto& bodies : neighbours) {
         M.first.push_back(static_cast<int>(M.neighbour.size()));

@@ -706,9 +706,8 @@ EquilibriumPath sample(const Model& model, const Path& path, const Branch& branc
     Inputs<double> inputs;
     set_inputs<double>(model, branch, drawn, 1, 0, inputs);
     // Of the driven inputs, wrenches depend on joint offsets only.
-    const bool moves = std::ranges::any_of(branch.drivers, [](const Driver& driver) {
-        return std::holds_alternative<Motion>(driver.what);
-    });
+    const bool moves = std::ranges::any_of(
+        branch.drivers, [](const Driver& driver) { return driven_joint(driver.what) >= 0; });
     for (std::size_t k = 0; k < path.expansions.size();) {
         const Expansion& expansion = path.expansions[k];
         const bool last = k + 1 == path.expansions.size();

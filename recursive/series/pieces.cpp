@@ -92,18 +92,9 @@ double slope(const Curve& curve, Piece piece, double x) {
 std::vector<Followed> curves_of(const Model& model) {
     std::vector<Followed> curves;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
-        const auto note = [&](const ScalarLaw& law, int axis) {
-            if (const auto* curve = std::get_if<Curve>(&law)) curves.push_back({k, axis, curve, 0});
-        };
-        std::visit(overloaded{
-                       [&](const AxialSpring& e) { note(e.law, 0); },
-                       [&](const Bushing& e) {
-                           if (const auto* law = std::get_if<PerAxis>(&e.law))
-                               for (int axis = 0; axis < 6; ++axis)
-                                   note(law->axis[static_cast<std::size_t>(axis)], axis);
-                       },
-                   },
-                   model.elastics[k].kind);
+        each_curve(model.elastics[k].kind, [&](std::size_t axis, const Curve& curve) {
+            curves.push_back({k, static_cast<int>(axis), &curve, 0});
+        });
     }
     return curves;
 }

@@ -14,10 +14,8 @@ void add_lever_tangent(const ElasticKind& kind, const Rest<double>& rest, const 
     const ElementForce<double> force = element_force<double>(kind, rest, q);
     using detail::Variation;
     const Variation<double> none = Variation<double>::Zero();
-    const bool at_p_j =
-        std::visit(overloaded{[](const AxialSpring&) { return false; },
-                              [](const Bushing& e) { return e.formulation.offset_moment; }},
-                   kind);
+    const auto* formulation = member<Formulation>(kind);
+    const bool at_p_j = formulation != nullptr && formulation->offset_moment;
     const Variation<double> of_j = detail::of_direction<double>(1, force.lever_j);
     const Variation<double> of_i =
         at_p_j ? Variation<double>(detail::of_point<double>(1, force.lever_j) -

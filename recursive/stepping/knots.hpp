@@ -34,19 +34,10 @@ inline std::vector<double> kinks_of(const Curve& f) {
 
 inline std::vector<CurvePlace> curves_of(const Model& model) {
     std::vector<CurvePlace> all;
-    const auto take = [&](std::size_t element, std::size_t axis, const ScalarLaw& law, bool angle) {
-        if (const auto* curve = std::get_if<Curve>(&law))
-            all.push_back({element, axis, curve, angle, kinks_of(*curve)});
-    };
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
-        std::visit(overloaded{
-                       [&](const AxialSpring& e) { take(k, 0, e.law, false); },
-                       [&](const Bushing& e) {
-                           if (const auto* law = std::get_if<PerAxis>(&e.law))
-                               for (std::size_t a = 0; a < 6; ++a) take(k, a, law->axis[a], a >= 3);
-                       },
-                   },
-                   model.elastics[k].kind);
+        each_curve(model.elastics[k].kind, [&](std::size_t axis, const Curve& curve) {
+            all.push_back({k, axis, &curve, axis >= 3, kinks_of(curve)});
+        });
     return all;
 }
 
@@ -54,16 +45,8 @@ inline std::vector<CurvePlace> curves_of(const Model& model) {
 template <class Real>
 Real deflection(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
                 const CurvePlace& at) {
-    return std::visit(
-        overloaded{
-            [&](const AxialSpring& e) -> Real {
-                return deformation<Real>(e, q).length - inputs.rest[at.element].free_length;
-            },
-            [&](const Bushing& e) -> Real {
-                return strain<Real>(e, deformation<Real>(e, q))[static_cast<int>(at.axis)];
-            },
-        },
-        model.elastics[at.element].kind);
+    return deflections<Real>(model.elastics[at.element].kind, inputs.rest[at.element],
+                             q)[static_cast<int>(at.axis)];
 }
 
 // Side of every kink: per curve, the number of kinks at or below its deflection. Fills `sides` and

@@ -40,9 +40,7 @@ bool stayed_open(const SteppingState<Real>& s, Real share) {
     Vector<Real> Phi = constraint_values<Real>(s.model, s.inputs, s.q);
     for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
-        if (std::holds_alternative<DirectionAtAngle>(kind) &&
-            !(slope<Real>(kind, s.inputs.offset[c], s.q) < 0))
-            return true;
+        if (is_angle(kind) && !(slope<Real>(kind, s.inputs.offset[c], s.q) < 0)) return true;
     }
     return !(Phi.norm() <= share * open + rounding);
 }

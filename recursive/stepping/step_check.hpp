@@ -6,20 +6,6 @@
 
 namespace elastocheck::recursive {
 
-// Whether an element has reversed within the step. A spring that points the other way has passed
-// through zero length, a bushing with reversed rotation through half a turn. The force jumps there,
-// and Newton's method converges beyond the jump.
-template <class Real>
-bool turned_over(const AxialSpring& e, const State<Real>& from, const State<Real>& to) {
-    return !(deformation<Real>(e, from).D.dot(deformation<Real>(e, to).D) > 0);
-}
-template <class Real>
-bool turned_over(const Bushing& e, const State<Real>& from, const State<Real>& to) {
-    constexpr Real quarter = 1.5;  // about a quarter of a turn [rad]
-    const Vector3<Real> before = deformation<Real>(e, from).theta(),
-                        after = deformation<Real>(e, to).theta();
-    return before.norm() > quarter && after.norm() > quarter && !(before.dot(after) > 0);
-}
 template <class Real>
 bool any_turned_over(const Model& model, const State<Real>& from, const State<Real>& to) {
     return std::ranges::any_of(model.elastics, [&](const auto& element) {

@@ -82,10 +82,8 @@ void store_driven(SteppingState<Real>& s, const Follow& follow, Drive drive, Rea
 template <class Real>
 bool turns_too_far(const SteppingState<Real>& s, Drive drive, Real amount) {
     for (const auto& driver : s.branch.drivers) {
-        const auto* motion = std::get_if<Motion>(&driver.what);
-        if (motion != nullptr &&
-            std::holds_alternative<DirectionAtAngle>(
-                s.model.constraints[constraint_of(s.model, *motion)].kind) &&
+        const int joint = driven_joint(driver.what);
+        if (joint >= 0 && is_angle(s.model.constraints[constraint_of(s.model, {joint})].kind) &&
             !(std::abs(amount * speed<Real>(driver, drive)) <= Real(guard::largest_turn)))
             return true;
     }

@@ -235,20 +235,11 @@ Equilibrium centre_of(const StateAt& at, const VectorXd& z) {
 std::string on_knots(const System& system, const std::vector<Interval>& z, const Interval& a) {
     std::string names;
     const auto all = deformations(system, z, a);
-    const auto note = [&](const ScalarLaw& law, const Interval& x) {
-        const auto* curve = std::get_if<Curve>(&law);
-        return curve != nullptr && bounded(x) && over_a_knot(*curve, x);
-    };
     for (std::size_t e = 0; e < all.size(); ++e) {
-        const bool on = std::visit(
-            overloaded{[&](const AxialSpring& spring) { return note(spring.law, all[e][0]); },
-                       [&](const Bushing& bushing) {
-                           const auto* law = std::get_if<PerAxis>(&bushing.law);
-                           for (std::size_t k = 0; law != nullptr && k < 6; ++k)
-                               if (note(law->axis[k], all[e][k])) return true;
-                           return false;
-                       }},
-            system.model->elastics[e].kind);
+        bool on = false;
+        each_curve(system.model->elastics[e].kind, [&](std::size_t k, const Curve& curve) {
+            on |= bounded(all[e][k]) && over_a_knot(curve, all[e][k]);
+        });
         if (on)
             names +=
                 fmt::format("{}'{}'", names.empty() ? "" : ", ", system.model->elastics[e].name);

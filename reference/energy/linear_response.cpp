@@ -9,10 +9,10 @@
 #include <stdexcept>
 
 #include "models/branch.hpp"
+#include "models/overloaded.hpp"
 #include "reference/energy/minimise/branch.hpp"
 #include "reference/energy/minimise/cost.hpp"
 #include "reference/energy/potential/conservative.hpp"
-#include "reference/energy/potential/overloaded.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {

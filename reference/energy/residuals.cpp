@@ -48,7 +48,7 @@ Residuals residuals(const Model& as_told, const Branch& branch, const Equilibriu
         double error = largest(values.Phi.segment(row, rows(kind)));
         if (points_backwards(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart))
             error = backwards;
-        double& of_kind = is_cosine(kind) ? worst.direction : worst.length;
+        double& of_kind = is_direction(kind) ? worst.direction : worst.length;
         of_kind = max_or_nan(of_kind, error);
         row += rows(kind);
     }

@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -161,40 +161,14 @@ struct Symbol {
 };
 
 std::vector<Symbol> symbols_of(const JointKind& kind) {
-    return std::visit(
-        overloaded{[](const Spherical& j) {
-                       return std::vector<Symbol>{{"spherical", j.i}};
-                   },
-                   [](const Revolute& j) {
-                       return std::vector<Symbol>{{"revolute", j.i, j.axis_i}};
-                   },
-                   [](const Universal& j) {
-                       return std::vector<Symbol>{{"universal", j.i}};
-                   },
-                   [](const Cylindrical& j) {
-                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
-                   },
-                   [](const Translational& j) {
-                       return std::vector<Symbol>{{"sliding", j.i, j.axis_i}};
-                   },
-                   [](const Planar& j) {
-                       return std::vector<Symbol>{{"plane", j.i}};
-                   },
-                   [](const Fixed& j) {
-                       return std::vector<Symbol>{{"fixed", j.i}};
-                   },
-                   [](const Distance& j) {
-                       return std::vector<Symbol>{{"spherical", j.i}, {"spherical", j.j}};
-                   },
-                   [](const InPlane& j) {
-                       return std::vector<Symbol>{{"plane", j.i}};
-                   },
-                   [](const InLine& j) {
-                       return std::vector<Symbol>{{"sliding", j.i, j.axis_j}};
-                   },
-                   // direction constraints have no position
-                   [](const auto&) { return std::vector<Symbol>{}; }},
-        kind);
+    const JointSymbol symbol = std::visit([]<class J>(const J&) { return Kind<J>::symbol; }, kind);
+    std::vector<Symbol> symbols;
+    if (*symbol.name == '\0') return symbols;
+    each_member(kind, [&](const Point& point) {
+        if (symbols.empty() || symbol.at_both_ends) symbols.push_back({symbol.name, point});
+    });
+    if (symbol.has_axis) symbols.front().axis = *member<Direction>(kind);
+    return symbols;
 }
 
 bool is_segment(const Elastic& elastic) { return elastic.written_as == WrittenAs::beam; }
@@ -221,9 +195,7 @@ json symbols_json(const Scene& scene) {
         const Joint& joint = scene.joints[k];
         const bool moved = std::ranges::any_of(scene.branches, [&](const Branch& branch) {
             return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
-                const auto* motion = std::get_if<Motion>(&driver.what);
-                return driver.rate != 0 && motion != nullptr &&
-                       motion->joint == static_cast<int>(k);
+                return driver.rate != 0 && driven_joint(driver.what) == static_cast<int>(k);
             });
         });
         // The driver of a joint is a plane constraint on one of its points; under a wheel it is a
@@ -240,9 +212,9 @@ json symbols_json(const Scene& scene) {
                 symbol.axis ? std::optional(turned(*symbol.axis)) : std::nullopt);
     }
     for (const auto& elastic : scene.elastics) {
-        const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-        if (bushing == nullptr || elastic.active_only_where_driven || is_segment(elastic)) continue;
-        put("bushing", elastic.name, place({bushing->i.body, bushing->i.s_local}), std::nullopt);
+        const auto* at = member<Marker>(elastic.kind);
+        if (at == nullptr || elastic.active_only_where_driven || is_segment(elastic)) continue;
+        put("bushing", elastic.name, place({at->body, at->s_local}), std::nullopt);
     }
     return list;
 }

@@ -9,7 +9,7 @@
 
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/channels.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/elements.hpp"
@@ -22,13 +22,7 @@ std::string body_name(const Model& model, BodyId body) {
 }
 
 std::string constraint_name(const ConstraintKind& kind) {
-    return std::visit(
-        overloaded{[](const CoincidentPoints&) { return "coincident points"; },
-                   [](const PointInPlane&) { return "point in plane"; },
-                   [](const PerpendicularDirections&) { return "perpendicular directions"; },
-                   [](const DistanceBetween&) { return "distance between points"; },
-                   [](const DirectionAtAngle&) { return "direction at an angle"; }},
-        kind);
+    return std::visit([]<class C>(const C&) { return Kind<C>::name; }, kind);
 }
 
 // Constraints of each joint.

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -129,15 +129,15 @@ using Written = std::unordered_map<std::string, Formulation>;
 Written written_formulations(const Scene& scene) {
     Written written;
     for (const auto& elastic : scene.elastics)
-        if (const auto* bushing = std::get_if<Bushing>(&elastic.kind))
-            written.emplace(elastic.name, bushing->formulation);
+        if (const auto* formulation = member<Formulation>(elastic.kind))
+            written.emplace(elastic.name, *formulation);
     return written;
 }
 
 bool is_beam(const Elastic& elastic) {
-    const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-    return bushing != nullptr && bushing->formulation.frame == Formulation::Frame::middle &&
-           std::holds_alternative<LinearStiffness>(bushing->law);
+    const auto* formulation = member<Formulation>(elastic.kind);
+    return formulation != nullptr && formulation->frame == Formulation::Frame::middle &&
+           matrix_of(*member<SpatialLaw>(elastic.kind)) != nullptr;
 }
 
 std::string bushing_words(const Written& written, const Elastic& elastic, const Bushing& bushing) {
@@ -176,18 +176,11 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
     const auto body = [&](BodyId b) {
         return b == ground ? std::string("ground") : model.bodies[static_cast<std::size_t>(b)].name;
     };
-    const auto ends = [](const Elastic& elastic) {
-        return std::visit(
-            [](const auto& e) {
-                return std::pair{e.i.body, e.j.body};
-            },
-            elastic.kind);
-    };
     const Written written = written_formulations(scene);
     std::vector<ElementLine> lines;
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const Elastic& elastic = model.elastics[k];
-        const auto [i, j] = ends(elastic);
+        const auto [i, j] = ends(elastic.kind);
         std::size_t last = k;  // of a chain
         const auto [name, number] = stem(elastic.name);
         while (number > 0 && is_beam(elastic) && last + 1 < model.elastics.size() &&
@@ -199,7 +192,7 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
             const Elastic& end = model.elastics[last];
             lines.push_back({fmt::format("{} ... {}", elastic.name,
                                          last - k + static_cast<std::size_t>(number)),
-                             body(i) + " - " + body(ends(end).second),
+                             body(i) + " - " + body(ends(end.kind).j),
                              fmt::format("beam in {} segments", last - k + 1)});
             k = last;
             continue;

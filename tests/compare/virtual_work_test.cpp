@@ -84,7 +84,7 @@ double stored(const Model& model, const Branch& branch, const Equilibrium& state
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         U += std::visit(
             overloaded{[&](const AxialSpring& e) {
-                           return energy(e.law, deformation(e, k, branch, state));
+                           return energy(e.law, deformation(e, k, branch, state)[0]);
                        },
                        [&](const Bushing& e) {
                            if (!has_energy(e.formulation)) return 0.0;
@@ -185,7 +185,7 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
                        [&](const FreeLength& f) {
                            const auto& e = std::get<AxialSpring>(element(f.elastic));
                            const double x =
-                               deformation(e, static_cast<std::size_t>(f.elastic), branch, state);
+                               deformation(e, static_cast<std::size_t>(f.elastic), branch, state)[0];
                            return -driver.rate * force(e.law, x);
                        },
                        [&](const Preload& p) {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <random>
 
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "models/reader/tables/interpolant.hpp"
 #include "tests/models/laws_scene.hpp"
 #include "tests/models/scene_numbers.hpp"

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "elastocheck/compile.hpp"
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "tests/models/laws_scene.hpp"
 
 namespace elastocheck {

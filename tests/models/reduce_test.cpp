@@ -105,11 +105,11 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
                    }};
     for (Joint& joint : scene.joints) {
         list = &result["joint " + joint.name];
-        reduce::each_place(joint.kind, note);
+        each_member(joint.kind, note);
     }
     for (Elastic& elastic : scene.elastics) {
         list = &result["element " + elastic.name];
-        reduce::each_place(elastic.kind, note);
+        each_member(elastic.kind, note);
     }
     const auto load = [&](const Load& l) {
         list = &result["load " + l.name];
@@ -187,7 +187,7 @@ TEST(Weld, BodiesFixedToEachOtherAreOne) {
                                        {"body 'c'", "fixed to body 'b', with which it is one"},
                                        {"body 'd'", "fixed to body 'b', with which it is one"}}));
     EXPECT_EQ(scene.wheels.at(0).body, 1);
-    EXPECT_EQ(reduce::ends(scene.elastics.at(1).kind).j, 1);
+    EXPECT_EQ(ends(scene.elastics.at(1).kind).j, 1);
     const auto after = places(scene);
     double worst = 0;
     for (const auto& [what, where] : after) {

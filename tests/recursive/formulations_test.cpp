@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "recursive/formula/elastic.hpp"
 #include "recursive/stepping/knots.hpp"
 #include "tests/recursive/elements.hpp"

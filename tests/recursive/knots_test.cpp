@@ -6,7 +6,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/stepping/knots.hpp"

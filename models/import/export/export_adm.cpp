@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "elastocheck/read_scene.hpp"
-#include "models/curve.hpp"
 #include "models/import/curves.hpp"
-#include "models/overloaded.hpp"
+#include "models/laws.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -137,9 +137,9 @@ class Writer {
     double rate_of(const Joint& joint) const {
         for (const Branch& branch : scene_.branches)
             for (const Driver& driver : branch.drivers)
-                if (const auto* motion = std::get_if<Motion>(&driver.what))
-                    if (&scene_.joints[static_cast<std::size_t>(motion->joint)] == &joint)
-                        return driver.rate * branch.to;
+                if (const int k = driven_joint(driver.what);
+                    k >= 0 && &scene_.joints[static_cast<std::size_t>(k)] == &joint)
+                    return driver.rate * branch.to;
         return 0;
     }
 
@@ -263,13 +263,11 @@ class Writer {
         if (elastic.active_only_where_driven)
             return result_.notes.leave_out("standing only where a branch drives it",
                                            {0, "tyre '" + elastic.name + "'"});
-        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind))
-            return write(elastic, *spring);
-        write(elastic, std::get<Bushing>(elastic.kind));
+        std::visit([&](const auto& kind) { write(elastic, kind); }, elastic.kind);
     }
 
     void write(const Elastic& elastic, const AxialSpring& spring) {
-        const auto* curve = std::get_if<Curve>(&spring.law);
+        const Curve* curve = curve_of(spring.law);
         const bool is_stop = elastic.written_as == WrittenAs::stop;
         if (curve && !is_stop && curve->knots.size() < 2)
             return miss("element '" + elastic.name + "'",
@@ -327,13 +325,13 @@ class Writer {
         const Bushing b = is_on_j ? markers_swapped(bushing) : bushing;
         const Matrix3d A_i = b.i.A_local.toRotationMatrix(), A_j = b.j.A_local.toRotationMatrix();
         // One axis through one point: the angle is the same in every formulation.
-        const auto* linear = std::get_if<LinearStiffness>(&b.law);
+        const Matrix6* stiffness = matrix_of(b.law);
         if (elastic.written_as == WrittenAs::torsion_spring) {
             const int J = marker(b.i.body, b.i.s_local, A_i),
                       I = marker(b.j.body, b.j.s_local, A_j);
-            if (linear) {
+            if (stiffness) {
                 statement("SPRINGDAMPER", next_force_++, elastic.name, "ROTATIONAL", I, J);
-                result_.text += fmt::format(", KT = {}\n, TORQUE = {}\n", real(linear->K(5, 5)),
+                result_.text += fmt::format(", KT = {}\n, TORQUE = {}\n", real((*stiffness)(5, 5)),
                                             real(-b.preload[5]));
                 return;
             }
@@ -358,7 +356,7 @@ class Writer {
         const int J = marker(b.i.body, b.i.s_local + A_i * b.undeformed.head<3>(), A_i),
                   I = marker(b.j.body, b.j.s_local, A_j);
         const Vector6 force = -b.preload;
-        if (const auto* axes = std::get_if<PerAxis>(&b.law)) {
+        if (const PerAxis* axes = axes_of(b.law)) {
             if (!b.undeformed.tail<3>().isZero(0))
                 return miss("element '" + elastic.name + "'",
                             "curves of angles that are undeformed elsewhere");
@@ -370,9 +368,9 @@ class Writer {
                 const std::string x = k < 3 ? fmt::format("{}({}, {}, {})", measures[k], I, J, J)
                                             : fmt::format("{}({}, {})", measures[k], I, J);
                 const auto at_zero = force[static_cast<Eigen::Index>(k)];
-                if (const auto* rate = std::get_if<LinearRate>(&axes->axis[k]))
+                if (const double* rate = rate_of(axes->axis[k]))
                     functions += fmt::format(", {} = {} - {} * {}\\\n", components[k],
-                                             real(at_zero), real(rate->k), x);
+                                             real(at_zero), real(*rate), x);
                 else {
                     const auto& curve = std::get<Curve>(axes->axis[k]);
                     functions += fmt::format(
@@ -385,7 +383,7 @@ class Writer {
                                         next_gforce_++, I, float_j, J, functions);
             return;
         }
-        const Matrix6& K = linear->K;
+        const Matrix6& K = *stiffness;
         if (K.isDiagonal(0) && b.undeformed.tail<3>().isZero(0)) {
             statement("BUSHING", next_force_++, elastic.name, "", I, J);
             result_.text += fmt::format(", K = {}\n, KT = {}\n, FORCE = {}\n, TORQUE = {}\n",

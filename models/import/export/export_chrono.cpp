@@ -12,10 +12,10 @@
 #include <set>
 
 #include "elastocheck/read_scene.hpp"
-#include "models/curve.hpp"
 #include "models/import/chrono/suspension.hpp"
 #include "models/import/curves.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
+#include "models/laws.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -144,9 +144,10 @@ class Writer {
                         carrier = kind.i.body == id ? kind.j.body : kind.i.body;
                 },
                 joint.kind);
-        for (const Elastic& elastic : scene_.elastics)
-            std::visit([&](const auto& e) { uses += e.i.body == id || e.j.body == id; },
-                       elastic.kind);
+        for (const Elastic& elastic : scene_.elastics) {
+            const auto [i, j] = ends(elastic.kind);
+            uses += i == id || j == id;
+        }
         return uses == 1 ? carrier : ground;
     }
 
@@ -244,7 +245,7 @@ class Writer {
     }
 
     void write(json& root, const Elastic& elastic, const AxialSpring& spring) {
-        const auto* curve = std::get_if<Curve>(&spring.law);
+        const Curve* curve = curve_of(spring.law);
         if (elastic.written_as == WrittenAs::stop) return require_written(elastic, spring);
         if (curve && curve->knots.size() < 2)
             return miss("element '" + elastic.name + "'",
@@ -330,24 +331,24 @@ class Writer {
     // rate about z and one across.
     void write(json& root, const Elastic& elastic, const Bushing& b) {
         const std::string what = "element '" + elastic.name + "'";
-        const auto* linear = std::get_if<LinearStiffness>(&b.law);
+        const Matrix6* stiffness = matrix_of(b.law);
         const Matrix3d A = b.i.A_local.toRotationMatrix();
         if (elastic.written_as == WrittenAs::torsion_spring) {
-            if (!linear || !b.preload.isZero(0) || !b.undeformed.isZero(0))
+            if (!stiffness || !b.preload.isZero(0) || !b.undeformed.isZero(0))
                 return miss(what, "a torsion spring with a curve, a preload or a free angle");
             json& one = entry(root, "RSDAs", elastic.name, b.i.body, b.j.body);
             one["Position"] = list(drawn(b.i.body, b.i.s_local));
             one["Axis"] = list(A.col(2));
             one["Free Angle"] = 0;
-            one["Spring Coefficient"] = linear->K(5, 5);
+            one["Spring Coefficient"] = (*stiffness)(5, 5);
             return;
         }
-        if (!linear || !linear->K.isDiagonal(0) || !b.preload.isZero(0) ||
+        if (!stiffness || !stiffness->isDiagonal(0) || !b.preload.isZero(0) ||
             !b.undeformed.isZero(0) ||
             (drawn(b.i.body, b.i.s_local) - drawn(b.j.body, b.j.s_local)).norm() > 1e-12)
             return miss(what,
                         "Chrono's bushing has one frame, rates along its axes and no preload");
-        const Vector6 k = linear->K.diagonal();
+        const Vector6 k = stiffness->diagonal();
         const bool round = k[3] == k[4] && k[4] == k[5];
         if (k[0] != k[1] || k[1] != k[2] || k[3] != k[4] ||
             !(b.formulation == chrono_bushing || (round && b.formulation == Formulation{})))

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "models/curve.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
+#include "models/laws.hpp"
 #include "models/reader/definitions/definitions.hpp"
 #include "models/reader/document/suggestions.hpp"
 
@@ -53,13 +53,6 @@ Vector3d twin_place(BodyId body, const Vector3d& s_local, const Definitions& def
     if (body == ground) return reflected(s_local);
     const auto origin = [&](BodyId b) { return defs.bodies[static_cast<std::size_t>(b)].design.r; };
     return reflected(s_local) + (reflected(origin(body)) - origin(twin(body, defs)));
-}
-
-Direction polar(const Direction& u, const Definitions& defs) {
-    return {twin(u.body, defs), reflected(u.u_local)};
-}
-Direction axial(const Direction& u, const Definitions& defs) {
-    return {twin(u.body, defs), -reflected(u.u_local)};
 }
 
 // A' = S A S. The vector part of a quaternion is parallel to its rotation axis, an axial vector:
@@ -142,102 +135,41 @@ Point twin(const Point& p, const Definitions& defs) {
     return {twin(p.body, defs), twin_place(p.body, p.s_local, defs)};
 }
 
-JointKind twin(const JointKind& joint, const Definitions& defs) {
-    const auto point = [&](const Point& p) { return twin(p, defs); };
-    const auto along = [&](const Direction& u) { return polar(u, defs); };
-    const auto about = [&](const Direction& u) { return axial(u, defs); };
-    return std::visit(
+namespace {
+
+// The members of the twin; lengths, angles and formulations are unchanged.
+template <class K>
+K twin_of(K kind, const Definitions& defs) {
+    Vector6 signs;
+    for (int k = 0; k < 6; ++k) signs[k] = reflected(Vector6(Vector6::Unit(k)))[k];
+    each_member(
+        kind,
         overloaded{
-            [&](const Spherical& s) -> JointKind {
-                return Spherical{point(s.i), point(s.j)};
+            [&](BodyId& body) { body = twin(body, defs); }, [&](Point& p) { p = twin(p, defs); },
+            [&](Direction& u) {
+                u = {twin(u.body, defs), reflected(u.u_local)};
             },
-            [&](const Revolute& s) -> JointKind {
-                return Revolute{point(s.i), point(s.j), about(s.axis_i), about(s.axis_j)};
+            [&](RotationAxis<Direction> u) {
+                u.direction = {twin(u.direction.body, defs), -reflected(u.direction.u_local)};
             },
-            [&](const Universal& s) -> JointKind {
-                return Universal{point(s.i), point(s.j), along(s.axis_i), along(s.axis_j)};
-            },
-            [&](const Cylindrical& s) -> JointKind {
-                return Cylindrical{point(s.i), point(s.j), about(s.axis_i), about(s.axis_j)};
-            },
-            [&](const Translational& s) -> JointKind {
-                return Translational{point(s.i), point(s.j), along(s.axis_i), along(s.axis_j)};
-            },
-            [&](const Planar& s) -> JointKind {
-                return Planar{point(s.i), point(s.j), along(s.normal_i), along(s.normal_j)};
-            },
-            [&](const Fixed& s) -> JointKind {
-                // x and y as a frame: S A S
-                return Fixed{point(s.i),   point(s.j),   along(s.x_i),
-                             about(s.y_i), along(s.x_j), about(s.y_j)};
-            },
-            [&](const Distance& s) -> JointKind {
-                return Distance{point(s.i), point(s.j), s.length};
-            },
-            [&](const InPlane& s) -> JointKind {
-                return InPlane{point(s.i), point(s.j), along(s.normal_j), s.offset};
-            },
-            [&](const InLine& s) -> JointKind {
-                return InLine{point(s.i), point(s.j), along(s.axis_j)};
-            },
-            [&](const Perpendicular& s) -> JointKind {
-                return Perpendicular{along(s.i), along(s.j)};
-            },
-            [&](const Parallel& s) -> JointKind {
-                return Parallel{along(s.i), along(s.j)};
-            },
-            [&](const Angle& s) -> JointKind {
-                return Angle{along(s.i), along(s.j), along(s.y_j), s.angle};
-            },
-        },
-        joint);
+            [&](Marker& m) { m = twin(m, defs); },
+            [&](SpatialLaw& law) { law = with_signs(law, signs); },
+            [&](ForceAndMoment<Vector6> w) { w.value = reflected(w.value); },
+            [&](Deformation<Vector6> e) { e.value = reflected(e.value); },
+            [&](LoadVector<Vector3d> v) {
+                v.value = reflected(v.value);
+                if (v.is_moment) v.value = -v.value;
+            }});
+    return kind;
 }
 
-ElasticKind twin(const ElasticKind& elastic, const Definitions& defs) {
-    return std::visit(
-        overloaded{[&](const AxialSpring& e) -> ElasticKind {
-                       return AxialSpring{twin(e.i, defs), twin(e.j, defs), e.law, e.free_length};
-                   },
-                   [&](const Bushing& e) -> ElasticKind {
-                       const SpatialLaw law = std::visit(
-                           overloaded{[](const LinearStiffness& u) -> SpatialLaw {
-                                          Matrix6 K;
-                                          for (int c = 0; c < 6; ++c)
-                                              K.col(c) = reflected(Vector6(u.K.col(c)));
-                                          for (int r = 0; r < 6; ++r)
-                                              K.row(r) = reflected(Vector6(K.row(r))).transpose();
-                                          return LinearStiffness{K};
-                                      },
-                                      [](PerAxis u) -> SpatialLaw {
-                                          for (int k = 0; k < 6; ++k)
-                                              if (reflected(Vector6(Vector6::Unit(k)))[k] < 0)
-                                                  u.axis[static_cast<std::size_t>(k)] =
-                                                      reversed(u.axis[static_cast<std::size_t>(k)]);
-                                          return u;
-                                      }},
-                           e.law);
-                       return Bushing{twin(e.i, defs),      twin(e.j, defs),         law,
-                                      reflected(e.preload), reflected(e.undeformed), e.formulation};
-                   }},
-        elastic);
-}
+}  // namespace
 
-LoadKind twin(const LoadKind& load, const Definitions& defs) {
-    return std::visit(
-        overloaded{[&](const DeadForce& l) -> LoadKind {
-                       return DeadForce{twin(l.at, defs), reflected(l.f)};
-                   },
-                   [&](const DeadMoment& l) -> LoadKind {
-                       return DeadMoment{twin(l.body, defs), -reflected(l.m)};
-                   },
-                   [&](const FollowerForce& l) -> LoadKind {
-                       return FollowerForce{twin(l.at, defs), reflected(l.f_local)};
-                   },
-                   [&](const FollowerMoment& l) -> LoadKind {
-                       return FollowerMoment{twin(l.body, defs), -reflected(l.m_local)};
-                   }},
-        load);
+JointKind twin(const JointKind& joint, const Definitions& defs) { return twin_of(joint, defs); }
+ElasticKind twin(const ElasticKind& element, const Definitions& defs) {
+    return twin_of(element, defs);
 }
+LoadKind twin(const LoadKind& load, const Definitions& defs) { return twin_of(load, defs); }
 
 Wheel twin(const Wheel& wheel, const Definitions& defs) {
     std::optional<SteeringAxis> axis = wheel.steering_axis;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::reader {
@@ -38,16 +38,8 @@ const Load& look_up_load(const Term& term, const Loads& loads) {
                              did_you_mean(term.name, names, "defined")));
 }
 
-bool is_moment(const Load& load) {
-    return std::visit(
-        overloaded{[](const DeadForce&) { return false; }, [](const DeadMoment&) { return true; },
-                   [](const FollowerForce&) { return false; },
-                   [](const FollowerMoment&) { return true; }},
-        load.kind);
-}
-
 double held_value(const Term& term, const Load& load, const Units& units) {
-    const Unit& unit = is_moment(load) ? units.moment : units.force;
+    const Unit& unit = is_moment(load.kind) ? units.moment : units.force;
     return unit.si(term.number(unit.name));
 }
 

@@ -26,8 +26,6 @@ std::vector<Term> terms(const Cursor& at, const std::string& what);
 using Loads = std::map<std::string, Load>;
 const Load& look_up_load(const Term& term, const Loads& loads);
 
-bool is_moment(const Load& load);
-
 // The constant value of a load: a force, or a moment for a moment load [N, N·m].
 double held_value(const Term& term, const Load& load, const Units& units);
 

@@ -14,10 +14,9 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <variant>
 
 #include "elastocheck/compile.hpp"
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "models/reader/definitions/terms.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -25,14 +24,6 @@
 
 namespace elastocheck::reader {
 namespace {
-
-bool is_zero(const Load& load) {
-    return std::visit(overloaded{[](const DeadForce& l) { return l.f.isZero(0); },
-                                 [](const DeadMoment& l) { return l.m.isZero(0); },
-                                 [](const FollowerForce& l) { return l.f_local.isZero(0); },
-                                 [](const FollowerMoment& l) { return l.m_local.isZero(0); }},
-                      load.kind);
-}
 
 // Kind and unit of the parameter.
 struct Parameter {
@@ -48,12 +39,9 @@ double weight_of(const Term& term, const char* what) {
 
 // Converts the moment to moment per unit of force.
 void in_arms(Load& load, const Unit& arm) {
-    const auto convert = [&](Eigen::Vector3d& m) {
-        m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
-    };
-    std::visit(overloaded{[](DeadForce&) {}, [&](DeadMoment& l) { convert(l.m); },
-                          [](FollowerForce&) {}, [&](FollowerMoment& l) { convert(l.m_local); }},
-               load.kind);
+    if (!is_moment(load.kind)) return;
+    Eigen::Vector3d& m = load_vector(load.kind);
+    m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
 }
 
 Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& loads,
@@ -64,9 +52,11 @@ Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& lo
         branch.drivers.push_back(
             {.what = Load{}, .start = 0, .rate = weight_of(term, "loads nothing")});
     }
-    if (std::ranges::all_of(chosen, is_zero))
+    const auto zero = [](const Load& load) { return load_vector(load.kind).isZero(0); };
+    const auto moment = [](const Load& load) { return is_moment(load.kind); };
+    if (std::ranges::all_of(chosen, zero))
         at.fail("zero in every component; a branch needs a load");
-    const bool only_moments = std::ranges::all_of(chosen, is_moment);
+    const bool only_moments = std::ranges::all_of(chosen, moment);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
         if (!only_moments) in_arms(chosen[k], units.arm);
         branch.drivers[k].what = chosen[k];
@@ -178,30 +168,16 @@ std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
     const auto part = [&](const std::string& what) {
         return fmt::format("{} is left out: {}", what, reason(model, what));
     };
-    const auto element = [&](int k) {
+    if (const int k = driven_joint(driver.what); k >= 0)
+        return part("joint '" + scene.joints[static_cast<std::size_t>(k)].name + "'");
+    if (const int k = driven_element(driver.what); k >= 0)
         return part("element '" + scene.elastics[static_cast<std::size_t>(k)].name + "'");
-    };
-    return std::visit(
-        overloaded{[&](const Load& load) {
-                       const BodyId on =
-                           std::visit(overloaded{[](const DeadForce& l) { return l.at.body; },
-                                                 [](const DeadMoment& l) { return l.body; },
-                                                 [](const FollowerForce& l) { return l.at.body; },
-                                                 [](const FollowerMoment& l) { return l.body; }},
-                                      load.kind);
-                       const std::string body =
-                           "body '" + scene.bodies[static_cast<std::size_t>(on)].name + "'";
-                       if (is_zero(load)) return fmt::format("load '{}' is zero", load.name);
-                       return fmt::format("load '{}' acts on {}, which is left out: {}", load.name,
-                                          body, reason(model, body));
-                   },
-                   [&](const Motion& motion) {
-                       return part("joint '" +
-                                   scene.joints[static_cast<std::size_t>(motion.joint)].name + "'");
-                   },
-                   [&](const FreeLength& length) { return element(length.elastic); },
-                   [&](const Preload& preload) { return element(preload.elastic); }},
-        driver.what);
+    const Load& load = *driven_load(driver.what);
+    if (load_vector(load.kind).isZero(0)) return fmt::format("load '{}' is zero", load.name);
+    const std::string body =
+        "body '" + scene.bodies[static_cast<std::size_t>(body_of(load.kind))].name + "'";
+    return fmt::format("load '{}' acts on {}, which is left out: {}", load.name, body,
+                       reason(model, body));
 }
 
 void require_moving(const Cursor& section, const Scene& scene) {
@@ -225,7 +201,7 @@ void note_unused_loads(const Cursor& file, const Cursor& section, const Loads& l
             for (const Term& term : terms(*under, "a load")) used.insert(term.name);
     for (const Branch& branch : scene.branches)
         for (const Driver& driver : branch.drivers)
-            if (const auto* load = std::get_if<Load>(&driver.what)) used.insert(load->name);
+            if (const Load* load = driven_load(driver.what)) used.insert(load->name);
     for (const std::string& name : section.value->keys)
         if (loads.contains(name) && !used.contains(name))
             scene.omitted.push_back({"load '" + name + "'", "no branch uses it"});

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <optional>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
 
@@ -246,9 +246,9 @@ std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
     const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
         Matrix6 K = Matrix6::Zero();
         for (int k = 0; k < 6; ++k) {
-            const auto* linear = std::get_if<LinearRate>(&u.axis[static_cast<std::size_t>(k)]);
-            if (!linear && k % 3 != axis) return std::nullopt;
-            K(k, k) = linear ? linear->k : 0;
+            const double* rate = rate_of(u.axis[static_cast<std::size_t>(k)]);
+            if (!rate && k % 3 != axis) return std::nullopt;
+            K(k, k) = rate ? *rate : 0;
         }
         return K;
     };

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "models/reader/definitions/mirror.hpp"
 #include "models/reader/document/suggestions.hpp"
 
@@ -23,19 +23,7 @@ Angle angle_about(const Direction& axis_i, const Direction& axis_j) {
 }
 
 const char* type_of(const JointKind& joint) {
-    return std::visit(
-        overloaded{
-            [](const Spherical&) { return "spherical"; },
-            [](const Revolute&) { return "revolute"; },
-            [](const Universal&) { return "universal"; },
-            [](const Cylindrical&) { return "cylindrical"; },
-            [](const Translational&) { return "translational"; },
-            [](const Planar&) { return "planar"; }, [](const Fixed&) { return "fixed"; },
-            [](const Distance&) { return "distance"; }, [](const InPlane&) { return "in_plane"; },
-            [](const InLine&) { return "in_line"; },
-            [](const Perpendicular&) { return "perpendicular"; },
-            [](const Parallel&) { return "parallel"; }, [](const Angle&) { return "angle"; }},
-        joint);
+    return std::visit([]<class J>(const J&) { return Kind<J>::name; }, joint);
 }
 
 void add_joints(const Scene& scene, const Units& units, const std::map<int, int>& drives,
@@ -46,11 +34,10 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
             std::ranges::any_of(drives, [&](const auto& d) { return d.second == k; });
         if (is_drive) continue;
         const std::string name = "joints." + joint.name;
-        if (std::holds_alternative<Distance>(joint.kind) ||
-            std::holds_alternative<InPlane>(joint.kind)) {
+        if (driven_number(joint.kind) != nullptr && !is_angle(joint.kind)) {
             result.table[name] = {ParameterUnit::metre, units.length, Motion{k}, 1, std::nullopt};
         } else if (auto drive = drive_of(joint)) {
-            const bool is_length = std::holds_alternative<InPlane>(drive->kind);
+            const bool is_length = !is_angle(drive->kind);
             const auto stands = drives.find(k);
             Drivable entry{is_length ? ParameterUnit::metre : ParameterUnit::radian,
                            is_length ? units.length : units.angle, Motion{no_joint}, 1,
@@ -151,19 +138,15 @@ void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
 
 std::optional<Joint> drive_of(const Joint& joint) {
     using Drive = std::optional<JointKind>;
-    const Drive none;
     const Drive kind = std::visit(
-        overloaded{[&](const Spherical&) { return none; },
-                   [](const Revolute& s) { return Drive(angle_about(s.axis_i, s.axis_j)); },
-                   [&](const Universal&) { return none; },
-                   [](const Cylindrical& s) { return Drive(angle_about(s.axis_i, s.axis_j)); },
-                   [](const Translational& s) {
-                       return Drive(InPlane{s.i, s.j, s.axis_j, 0});
-                   },
-                   [&](const Planar&) { return none; }, [&](const Fixed&) { return none; },
-                   [&](const Distance&) { return none; }, [&](const InPlane&) { return none; },
-                   [&](const InLine&) { return none; }, [&](const Perpendicular&) { return none; },
-                   [&](const Parallel&) { return none; }, [&](const Angle&) { return none; }},
+        []<class J>(const J& s) -> Drive {
+            if constexpr (Kind<J>::drive == JointDrive::angle)
+                return angle_about(s.axis_i, s.axis_j);
+            else if constexpr (Kind<J>::drive == JointDrive::displacement)
+                return InPlane{s.i, s.j, s.axis_j, 0};
+            else
+                return std::nullopt;
+        },
         joint.kind);
     if (!kind) return std::nullopt;
     return Joint{joint.name + ".drive", *kind};
@@ -179,17 +162,10 @@ Drivables drivables(const Scene& scene, const Units& units, const std::map<int, 
 }
 
 bool is_same(const Driven& a, const Driven& b) {
-    if (a.index() != b.index()) return false;
-    return std::visit(
-        overloaded{
-            [](const Load&) { return false; },
-            [&](const Motion& m) { return m.joint == std::get<Motion>(b).joint; },
-            [&](const FreeLength& l) { return l.elastic == std::get<FreeLength>(b).elastic; },
-            [&](const Preload& p) {
-                const auto& other = std::get<Preload>(b);
-                return p.elastic == other.elastic && p.direction == other.direction;
-            }},
-        a);
+    if (a.index() != b.index() || driven_load(a) != nullptr) return false;
+    const Vector6 *along = preload(a), *other = preload(b);
+    return driven_joint(a) == driven_joint(b) && driven_element(a) == driven_element(b) &&
+           (along == nullptr || *along == *other);
 }
 
 int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "models/kinds.hpp"
 #include "models/reader/elements/sections.hpp"
 
 namespace elastocheck::reader {
@@ -99,18 +100,18 @@ struct JointType {
 
 const std::vector<JointType>& joint_types() {
     static const std::vector<JointType> types{
-        {"spherical", {"at"}, spherical},
-        {"revolute", {"at", "axis", "held"}, along_axis<Revolute>},
-        {"universal", {"at", "axis_i", "axis_j"}, universal},
-        {"cylindrical", {"at", "axis", "held"}, along_axis<Cylindrical>},
-        {"translational", {"at", "axis", "held"}, along_axis<Translational>},
-        {"planar", {"at", "normal"}, planar},
-        {"fixed", {"at"}, fixed},
-        {"distance", {"from", "to", "length"}, distance},
-        {"in_plane", {"at", "normal"}, in_plane},
-        {"in_line", {"at", "axis"}, in_line},
-        {"perpendicular", {"axis_i", "axis_j"}, perpendicular},
-        {"parallel", {"axis"}, parallel},
+        {Kind<Spherical>::name, {"at"}, spherical},
+        {Kind<Revolute>::name, {"at", "axis", "held"}, along_axis<Revolute>},
+        {Kind<Universal>::name, {"at", "axis_i", "axis_j"}, universal},
+        {Kind<Cylindrical>::name, {"at", "axis", "held"}, along_axis<Cylindrical>},
+        {Kind<Translational>::name, {"at", "axis", "held"}, along_axis<Translational>},
+        {Kind<Planar>::name, {"at", "normal"}, planar},
+        {Kind<Fixed>::name, {"at"}, fixed},
+        {Kind<Distance>::name, {"from", "to", "length"}, distance},
+        {Kind<InPlane>::name, {"at", "normal"}, in_plane},
+        {Kind<InLine>::name, {"at", "axis"}, in_line},
+        {Kind<Perpendicular>::name, {"axis_i", "axis_j"}, perpendicular},
+        {Kind<Parallel>::name, {"axis"}, parallel},
     };
     return types;
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "models/reader/definitions/look_up.hpp"
 #include "models/reader/definitions/terms.hpp"
 #include "models/reader/elements/sections.hpp"
@@ -16,10 +16,11 @@ namespace {
 // Whether it is active only on the branches that drive it: a jack, the drive of a joint not held, a
 // tyre.
 bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
-    const auto* preload = std::get_if<Preload>(&quantity.what);
+    const bool is_preload = preload(quantity.what) != nullptr;
+    const int element = driven_element(quantity.what);
     return quantity.joint.has_value() ||
-           (preload != nullptr &&
-            scene.elastics[static_cast<std::size_t>(preload->elastic)].active_only_where_driven);
+           (is_preload &&
+            scene.elastics[static_cast<std::size_t>(element)].active_only_where_driven);
 }
 
 Trim::Adjustment read_adjustment(const Term& term, const Loads& loads, Drivables& drivables,
@@ -120,10 +121,7 @@ void require_as_many(const Cursor& at, const Trim& trim) {
 // ---- Loads.
 
 Load scaled(Load load, double value) {
-    std::visit(overloaded{[&](DeadForce& l) { l.f *= value; }, [&](DeadMoment& l) { l.m *= value; },
-                          [&](FollowerForce& l) { l.f_local *= value; },
-                          [&](FollowerMoment& l) { l.m_local *= value; }},
-               load.kind);
+    load_vector(load.kind) *= value;
     return load;
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 
 namespace elastocheck::reader {
 namespace {

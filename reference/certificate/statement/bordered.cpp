@@ -86,17 +86,18 @@ MatrixXd resisted(const ElasticKind& kind, double length) {
             if (resists[static_cast<std::size_t>(k)]) rows.row(count++) = rows.row(k).eval();
         rows.conservativeResize(count, 6);
     };
-    std::visit(
-        overloaded{[&](const AxialSpring& spring) { keep({!is_zero(spring.law)}); },
-                   [&](const Bushing& bushing) {
-                       if (const auto* law = std::get_if<PerAxis>(&bushing.law)) {
+    each_member(
+        kind,
+        overloaded{[&](const ScalarLaw& law) { keep({!is_zero(law)}); },
+                   [&](const SpatialLaw& spatial) {
+                       if (const PerAxis* law = axes_of(spatial)) {
                            std::array<bool, 6> resists{};
                            for (std::size_t k = 0; k < 6; ++k) resists[k] = !is_zero(law->axis[k]);
                            return keep(resists);
                        }
                        // K = D Q diag(κ) Qᵀ D, D² its diagonal: independent of the ratio of
                        // stiff to soft axes.
-                       const Matrix6& K = std::get<LinearStiffness>(bushing.law).K;
+                       const Matrix6& K = *matrix_of(spatial);
                        const Vector6 D = K.diagonal().cwiseMax(0).cwiseSqrt(),
                                      by = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
                        const Eigen::SelfAdjointEigenSolver<Matrix6> modes(by.asDiagonal() * K *
@@ -106,8 +107,7 @@ MatrixXd resisted(const ElasticKind& kind, double length) {
                            resists[static_cast<std::size_t>(k)] = modes.eigenvalues()[k] > no_part;
                        rows = modes.eigenvectors().transpose() * D.asDiagonal();
                        keep(resists);
-                   }},
-        kind);
+                   }});
     for (Index k = 0; k < 3; ++k) rows.col(k) *= length;
     return rows;
 }

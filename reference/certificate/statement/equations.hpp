@@ -219,15 +219,6 @@ Rows<T> rows_of(const DirectionAtAngle& c, const T& value, const Frame<T>& i, co
     return {of_directions(dot(u_i, across), u_i, across)};
 }
 
-inline bool is_direction(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
-                                 [](const PointInPlane&) { return false; },
-                                 [](const PerpendicularDirections&) { return true; },
-                                 [](const DistanceBetween&) { return false; },
-                                 [](const DirectionAtAngle&) { return true; }},
-                      kind);
-}
-
 // ---- Loads of unit factor
 
 template <class T>
@@ -247,14 +238,6 @@ Acting<T> acting(const FollowerForce& load, const Frame<T>& body) {
 template <class T>
 Acting<T> acting(const FollowerMoment& load, const Frame<T>& body) {
     return {constant<T>(Eigen::Vector3d::Zero()), lever(body, load.m_local)};
-}
-
-inline BodyId body_of(const LoadKind& load) {
-    return std::visit(overloaded{[](const DeadForce& l) { return l.at.body; },
-                                 [](const DeadMoment& l) { return l.body; },
-                                 [](const FollowerForce& l) { return l.at.body; },
-                                 [](const FollowerMoment& l) { return l.body; }},
-                      load);
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -137,13 +137,32 @@ struct Assembly {
             [&](const auto& kind) {
                 const Slots slots{kind.i.body, kind.j.body};
                 const auto i = frame<T>(slots.i, slots.at_i()), j = frame<T>(slots.j, slots.at_j());
-                if (std::is_same_v<std::decay_t<decltype(kind)>, AxialSpring> && path.apart[0])
-                    return;
+                if (has_no_more(kind, path)) return;
                 const OnBoth<T> on = acting_at(kind, path, i, j);
                 add(slots, slots.i, on.i);
                 add(slots, slots.j, on.j);
             },
             system.model->elastics[e].kind);
+    }
+    // Whether the only law of an element is separated. The deformations of an element, `back`:
+    // turned back about the axes of path.turns_freely.
+    static bool has_no_more(const AxialSpring&, const ElementPath& path) { return path.apart[0]; }
+    static bool has_no_more(const Bushing&, const ElementPath&) { return false; }
+    template <class T>
+    std::array<T, 6> deformations_at(const AxialSpring& spring, const ElementPath& path,
+                                     const Frame<T>& i, const Frame<T>& j, bool = false) const {
+        std::array<T, 6> e{};
+        e[0] = deformation(spring, path.free_length.at(parameter<T>()), i, j);
+        return e;
+    }
+    template <class T>
+    std::array<T, 6> deformations_at(const Bushing& bushing, const ElementPath& path,
+                                     const Frame<T>& i, const Frame<T>& j,
+                                     bool back = false) const {
+        const Measured<T> m = measured(bushing, path.rotational, i, j);
+        const std::array<T, 6> e = deformation(bushing, m);
+        if (!back) return e;
+        return turned_back(e, path, m.A_f, +1);
     }
     template <class T>
     OnBoth<T> acting_at(const AxialSpring& spring, const ElementPath& path, const Frame<T>& i,

@@ -29,13 +29,7 @@ Eigen::MatrixXd deformation_slopes(const System& system, std::size_t element,
             const Slots slots{kind.i.body, kind.j.body};
             const auto i = at.template frame<T>(slots.i, slots.at_i()),
                        j = at.template frame<T>(slots.j, slots.at_j());
-            std::array<T, 6> e{};
-            if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, AxialSpring>)
-                e[0] = deformation(kind, path.free_length.at(at.template parameter<T>()), i, j);
-            else {
-                const Measured<T> m = measured(kind, path.rotational, i, j);
-                e = Assembly<double>::turned_back(deformation(kind, m), path, m.A_f, +1);
-            }
+            const std::array<T, 6> e = at.deformations_at(kind, path, i, j, true);
             for (std::size_t k = 0; k < 6; ++k)
                 for (std::size_t q = 0; q < 7; ++q) {
                     const auto row = static_cast<Eigen::Index>(k),

@@ -18,20 +18,13 @@ std::vector<std::array<Interval, 6>> deformations(const System& system,
     const Assembly<Interval> at{system, z, a, {}};
     std::vector<std::array<Interval, 6>> all;
     for (std::size_t e = 0; e < system.elements.size(); ++e)
-        all.push_back(
-            std::visit(overloaded{[&](const AxialSpring& spring) {
-                                      return std::array<Interval, 6>{
-                                          deformation(spring, system.elements[e].free_length.at(a),
-                                                      at.frame<Interval>(spring.i.body, 0),
-                                                      at.frame<Interval>(spring.j.body, 0))};
-                                  },
-                                  [&](const Bushing& bushing) {
-                                      return deformation(
-                                          bushing, measured(bushing, system.elements[e].rotational,
-                                                            at.frame<Interval>(bushing.i.body, 0),
-                                                            at.frame<Interval>(bushing.j.body, 0)));
-                                  }},
-                       system.model->elastics[e].kind));
+        all.push_back(std::visit(
+            [&](const auto& kind) {
+                return at.deformations_at(kind, system.elements[e],
+                                          at.frame<Interval>(kind.i.body, 0),
+                                          at.frame<Interval>(kind.j.body, 0));
+            },
+            system.model->elastics[e].kind));
     return all;
 }
 

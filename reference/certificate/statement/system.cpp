@@ -11,75 +11,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-double value_of(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
-                                 [](const PointInPlane& c) { return c.offset; },
-                                 [](const PerpendicularDirections&) { return 0.0; },
-                                 [](const DistanceBetween& c) { return c.length; },
-                                 [](const DirectionAtAngle& c) { return c.angle; }},
-                      kind);
-}
-
-ElementPath undriven(const ElasticKind& kind) {
-    ElementPath path;
-    std::visit(
-        overloaded{[&](const AxialSpring& spring) { path.free_length.start = spring.free_length; },
-                   [&](const Bushing& bushing) {
-                       for (std::size_t k = 0; k < 6; ++k)
-                           path.preload[k].start = bushing.preload[static_cast<int>(k)];
-                   }},
-        kind);
-    return path;
-}
-
-// Adds `times` (start + rate·a) of a driver.
-void add(Affine& to, const Driver& driver, double times) {
-    to.start += Interval(times) * Interval(driver.start);
-    to.rate += Interval(times) * Interval(driver.rate);
-}
-
-template <class Kind>
-void expect_kind(const Model& model, int elastic, const char* has_no) {
-    const auto& element = model.elastics.at(static_cast<std::size_t>(elastic));
-    if (!std::holds_alternative<Kind>(element.kind))
-        throw std::invalid_argument("element '" + element.name + "' has no " + has_no +
-                                    " to be driven");
-}
-
 void set_paths(System& system) {
     const Model& model = *system.model;
+    DrivenInputs<Affine> inputs = driven_inputs<Affine>(model, *system.branch);
+    system.values = std::move(inputs.values);
+    system.loads = std::move(inputs.loads);
+    for (const auto& element : inputs.elements) system.elements.push_back(ElementPath{element});
     for (const auto& constraint : model.constraints) {
-        system.values.push_back({value_of(constraint.kind), 0.});
         system.first_row.push_back(system.rows);
         system.rows += rows(constraint.kind);
     }
-    for (const auto& elastic : model.elastics) system.elements.push_back(undriven(elastic.kind));
-    for (const auto& load : model.static_loads) system.loads.push_back({load.kind, {1., 0.}});
-    for (const auto& driver : system.branch->drivers)
-        std::visit(
-            overloaded{
-                [&](const Load& load) {
-                    system.loads.push_back({load.kind, {driver.start, driver.rate}});
-                },
-                [&](const Motion& motion) {
-                    const auto& joint = model.joints.at(static_cast<std::size_t>(motion.joint));
-                    if (joint.driven < 0)
-                        throw std::invalid_argument("joint '" + joint.name +
-                                                    "' has no offset to be driven");
-                    add(system.values[static_cast<std::size_t>(joint.driven)], driver, 1);
-                },
-                [&](const FreeLength& length) {
-                    expect_kind<AxialSpring>(model, length.elastic, "free length");
-                    add(system.elements[static_cast<std::size_t>(length.elastic)].free_length,
-                        driver, 1);
-                },
-                [&](const Preload& preload) {
-                    expect_kind<Bushing>(model, preload.elastic, "preload");
-                    auto& path = system.elements[static_cast<std::size_t>(preload.elastic)];
-                    for (std::size_t k = 0; k < 6; ++k)
-                        add(path.preload[k], driver, preload.direction[static_cast<int>(k)]);
-                }},
-            driver.what);
 }
 
 bool resists_rotation(const SpatialLaw& law) {
@@ -111,24 +52,15 @@ bool is_round(const Bushing& bushing, const ElementPath& path, std::size_t i, st
                               (coupled.col(J).array() == 0).all();
                    },
                    [&](const PerAxis& u) {
-                       const auto *of_i = std::get_if<LinearRate>(&u.axis[i]),
-                                  *of_j = std::get_if<LinearRate>(&u.axis[j]);
-                       return of_i != nullptr && of_j != nullptr && of_i->k == of_j->k;
+                       const double *of_i = rate_of(u.axis[i]), *of_j = rate_of(u.axis[j]);
+                       return of_i != nullptr && of_j != nullptr && *of_i == *of_j;
                    }},
         bushing.law);
 }
 
-bool has_energy(const LoadKind& load) {
-    return std::visit(
-        overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
-                   [](const FollowerForce&) { return false; },
-                   [](const FollowerMoment&) { return false; }},
-        load);
-}
-
 void set_formulations(System& system) {
     for (const auto& load : system.loads)
-        if (body_of(load.kind) != ground && !has_energy(load.kind)) system.conservative = false;
+        if (body_of(load.kind) != ground && is_follower(load.kind)) system.conservative = false;
     for (std::size_t e = 0; e < system.elements.size(); ++e) {
         const auto& elastic = system.model->elastics[e];
         const auto* bushing = std::get_if<Bushing>(&elastic.kind);
@@ -151,15 +83,10 @@ void set_formulations(System& system) {
 template <class Visit>
 void for_corners(const Model& model, const Visit& visit) {
     for (std::size_t e = 0; e < model.elastics.size(); ++e)
-        std::visit(overloaded{[&](const AxialSpring& spring) {
-                                  if (has_corner(spring.law)) visit(Apart{e, 0});
-                              },
-                              [&](const Bushing& bushing) {
-                                  const auto* law = std::get_if<PerAxis>(&bushing.law);
-                                  for (std::size_t k = 0; law != nullptr && k < 6; ++k)
-                                      if (has_corner(law->axis[k])) visit(Apart{e, k});
-                              }},
-                   model.elastics[e].kind);
+        for (std::size_t k = 0; k < 6; ++k)
+            if (const ScalarLaw* law = scalar_law(model.elastics[e].kind, k);
+                law != nullptr && has_corner(*law))
+                visit(Apart{e, k});
 }
 
 // Origin and size of the model. The proof does not depend on them.
@@ -170,13 +97,10 @@ void set_size(System& system) {
         const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
         points.push_back(pose.r + pose.p * s_local);
     };
-    const auto add_end =
-        overloaded{[&](const Point& p) { add(p.body, p.s_local); },
-                   [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
-    const auto add_ends = [&](const auto& kind) { add_end(kind.i), add_end(kind.j); };
+    const auto add_point = [&](const auto& at) { add(at.body, at.s_local); };
     for (const auto& body : system.model->bodies) points.push_back(body.design.r);
-    for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
-    for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
+    for (const auto& constraint : system.model->constraints) each_point(constraint.kind, add_point);
+    for (const auto& elastic : system.model->elastics) each_point(elastic.kind, add_point);
     for (const auto& p : points) system.c += p / static_cast<double>(points.size());
     // of the coordinates: coincident points may differ by this
     constexpr double rounding = 0x1p-42;
@@ -205,12 +129,7 @@ std::string too_large(const System& system) {
 }
 
 const ScalarLaw& law_of(const System& system, const Apart& corner) {
-    return std::visit(
-        overloaded{[](const AxialSpring& spring) -> const ScalarLaw& { return spring.law; },
-                   [&](const Bushing& bushing) -> const ScalarLaw& {
-                       return std::get<PerAxis>(bushing.law).axis[corner.axis];
-                   }},
-        system.model->elastics[corner.element].kind);
+    return *scalar_law(system.model->elastics[corner.element].kind, corner.axis);
 }
 
 void set_corners(const System& system, Eigen::VectorXd& z, double a) {

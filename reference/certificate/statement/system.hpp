@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "elastocheck/equilibrium_path.hpp"
+#include "models/driven_inputs.hpp"
 #include "reference/certificate/statement/equations.hpp"
 
 namespace elastocheck::reference::certificate {
@@ -36,12 +37,10 @@ struct Affine {
     }
 };
 
-// Driven quantities of an element along the branch; only the one of its kind is used.
-struct ElementPath {
-    Affine free_length;             // of a spring [m]
-    std::array<Affine, 6> preload;  // of a bushing [N, N·m]
-    bool rotational = false;        // bushing forces depend on the markers' relative rotation
-    std::array<bool, 6> apart{};    // separated laws; of a spring the first
+// Driven quantities of an element along the branch, and how its law is evaluated.
+struct ElementPath : DrivenElement<Affine> {
+    bool rotational = false;      // bushing forces depend on the markers' relative rotation
+    std::array<bool, 6> apart{};  // separated laws; of a spring the first
     // Axes of a bushing's frame with equal rates across: rotating the frame about one leaves the
     // forces unchanged.
     std::array<bool, 3> turns_freely{};
@@ -50,10 +49,7 @@ struct ElementPath {
 struct Apart {
     std::size_t element = 0, axis = 0;
 };
-struct LoadPath {
-    LoadKind kind;
-    Affine factor;
-};
+using LoadPath = DrivenLoad<Affine>;
 
 struct System {
     const Model* model = nullptr;

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "reference/energy/potential/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -32,23 +32,11 @@ std::vector<std::vector<BodyId>> neighbours(const Model& model) {
         auto& list = of[static_cast<std::size_t>(a)];
         if (std::ranges::find(list, b) == list.end()) list.push_back(b);
     };
-    const auto connect_all = [&](std::initializer_list<BodyId> bodies) {
-        for (const BodyId a : bodies)
-            for (const BodyId b : bodies) connect(a, b);
+    const auto connect_all = [&](const auto& kind) {
+        each_body(kind, [&](BodyId a) { each_body(kind, [&](BodyId b) { connect(a, b); }); });
     };
-    for (const auto& elastic : model.elastics)
-        std::visit([&](const auto& e) { connect_all({e.i.body, e.j.body}); }, elastic.kind);
-    for (const auto& constraint : model.constraints)
-        std::visit(overloaded{[&](const PointInPlane& c) {
-                                  connect_all({c.i.body, c.j.body, c.normal_j.body});
-                              },
-                              [&](const DirectionAtAngle& c) {
-                                  connect_all({c.i.body, c.j.body, c.y_j.body});
-                              },
-                              [&](const auto& c) {
-                                  connect_all({c.i.body, c.j.body});
-                              }},
-                   constraint.kind);
+    for (const auto& elastic : model.elastics) connect_all(elastic.kind);
+    for (const auto& constraint : model.constraints) connect_all(constraint.kind);
     return of;
 }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/energy/potential/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -178,15 +178,6 @@ ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribe
     return {rates.Phi - rate.gap, rates.Phi_q};
 }
 
-bool is_cosine(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
-                                 [](const PointInPlane&) { return false; },
-                                 [](const PerpendicularDirections&) { return true; },
-                                 [](const DistanceBetween&) { return false; },
-                                 [](const DirectionAtAngle&) { return true; }},
-                      kind);
-}
-
 std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& chart) {
     const auto between = [&](const auto& c) -> Vector3d {
         return motion(chart[c.i.body], c.i.s_local).p - motion(chart[c.j.body], c.j.s_local).p;
@@ -208,12 +199,8 @@ std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& c
 }
 
 double own_offset(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
-                                 [](const PerpendicularDirections&) { return 0.0; },
-                                 [](const PointInPlane& c) { return c.offset; },
-                                 [](const DistanceBetween& c) { return c.length; },
-                                 [](const DirectionAtAngle& c) { return c.angle; }},
-                      kind);
+    const double* value = driven_number(kind);
+    return value != nullptr ? *value : 0;
 }
 
 bool points_backwards(const ConstraintKind& kind, double offset, const Chart& chart) {

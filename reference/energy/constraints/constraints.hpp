@@ -25,9 +25,6 @@ struct ConstraintRates {
 ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed,
                                  const Prescribed& rate, const Chart& chart);
 
-// Whether Φ is a cosine of directions [-], in contrast to a length [m].
-bool is_cosine(const ConstraintKind& kind);
-
 // Length, offset [m] or angle [rad] of a constraint at the centre of the chart; an angle within
 // half a turn of the constraint's own. Empty for constraints without an offset.
 std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& chart);

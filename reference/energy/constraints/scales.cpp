@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
+#include "models/kinds.hpp"
 #include "reference/energy/constraints/constraints.hpp"
-#include "reference/energy/potential/overloaded.hpp"
 #include "reference/energy/potential/potential.hpp"
 
 namespace elastocheck::reference::energy {
@@ -30,15 +30,8 @@ std::vector<Vector3d> attachment_points(const Model& model, const Course& course
     const auto add_point = [&](const auto& p) {
         points.push_back(motion(design[p.body], p.s_local).p);
     };
-    const auto add_pair = [&](const auto& kind) {
-        add_point(kind.i);
-        add_point(kind.j);
-    };
-    for (const auto& constraint : model.constraints)
-        std::visit(overloaded{[](const PerpendicularDirections&) {}, [](const DirectionAtAngle&) {},
-                              add_pair},
-                   constraint.kind);
-    for (const auto& elastic : model.elastics) std::visit(add_pair, elastic.kind);
+    for (const auto& constraint : model.constraints) each_point(constraint.kind, add_point);
+    for (const auto& elastic : model.elastics) each_point(elastic.kind, add_point);
     for (const auto* prescribed : {&course.start, &course.rate})
         for (const auto& force : prescribed->forces) add_point(force.at);
     return points;
@@ -111,7 +104,7 @@ VectorXd Scales::rows(const Model& model) const {
     VectorXd D = VectorXd::Constant(constraint_rows(model), 1 / length);
     int row = 0;
     for (const auto& constraint : model.constraints) {
-        if (is_cosine(constraint.kind)) D[row] = 1;
+        if (is_direction(constraint.kind)) D[row] = 1;
         row += elastocheck::rows(constraint.kind);
     }
     return D;

@@ -156,21 +156,16 @@ Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
 // Whether a law has a nonzero slope below a thousandth of its steepest.
 bool hardly_rises(const Model& model) {
     constexpr double hardly = 1e-3;
-    const auto flattens = [](const ScalarLaw& law) {
-        const auto* curve = std::get_if<Curve>(&law);
-        if (curve == nullptr) return false;
+    bool any = false;
+    const auto note = [&](std::size_t, const Curve& curve) {
         double steepest = 0;
-        for (const auto& piece : curve->pieces) steepest = std::max(steepest, piece[1]);
-        return std::ranges::any_of(curve->pieces, [&](const auto& piece) {
+        for (const auto& piece : curve.pieces) steepest = std::max(steepest, piece[1]);
+        any |= std::ranges::any_of(curve.pieces, [&](const auto& piece) {
             return piece[1] > 0 && piece[1] < hardly * steepest;
         });
     };
-    return std::ranges::any_of(model.elastics, [&](const auto& element) {
-        if (const auto* spring = std::get_if<AxialSpring>(&element.kind))
-            return flattens(spring->law);
-        const auto* axes = std::get_if<PerAxis>(&std::get<Bushing>(element.kind).law);
-        return axes != nullptr && std::ranges::any_of(axes->axis, flattens);
-    });
+    for (const auto& element : model.elastics) each_curve(element.kind, note);
+    return any;
 }
 
 Attempt lost(Attempt attempt, const char* why) {

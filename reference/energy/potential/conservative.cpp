@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "models/kinds.hpp"
 #include "reference/energy/potential/laws.hpp"
-#include "reference/energy/potential/overloaded.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {
 
 bool follows(const Load& load) {
-    return std::visit(
-        overloaded{
-            [](const DeadForce&) { return false; }, [](const DeadMoment&) { return false; },
-            [](const FollowerForce& f) { return f.at.body != ground && !f.f_local.isZero(0); },
-            [](const FollowerMoment& m) { return m.body != ground && !m.m_local.isZero(0); }},
-        load.kind);
+    return is_follower(load.kind) && body_of(load.kind) != ground &&
+           !load_vector(load.kind).isZero(0);
 }
 
 std::string why(const Load& load) {
@@ -24,8 +20,8 @@ std::string why(const Load& load) {
 // Whether the branch drives a preload of the element.
 bool preloads(const Branch& branch, int element) {
     for (const auto& driver : branch.drivers) {
-        const auto* preload = std::get_if<Preload>(&driver.what);
-        if (preload && preload->elastic == element && !preload->direction.isZero(0) &&
+        const Vector6* direction = preload(driver.what);
+        if (direction && driven_element(driver.what) == element && !direction->isZero(0) &&
             (driver.start != 0 || driver.rate != 0))
             return true;
     }
@@ -38,19 +34,19 @@ std::optional<std::string> without_potential(const Model& model, const Branch& b
     for (const auto& load : model.static_loads)
         if (follows(load)) return why(load);
     for (const auto& driver : branch.drivers) {
-        const auto* load = std::get_if<Load>(&driver.what);
+        const Load* load = driven_load(driver.what);
         if (load && (driver.start != 0 || driver.rate != 0) && follows(*load)) return why(*load);
     }
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
-        const auto* bushing = std::get_if<Bushing>(&model.elastics[k].kind);
-        if (!bushing || has_energy(bushing->formulation)) continue;
-        if (resists(bushing->law) || !bushing->preload.isZero(0) ||
+        const ElasticKind& kind = model.elastics[k].kind;
+        const auto* formulation = member<Formulation>(kind);
+        if (!formulation || has_energy(*formulation)) continue;
+        if (resists(*member<SpatialLaw>(kind)) || !preload(kind)->isZero(0) ||
             preloads(branch, static_cast<int>(k)))
-            return fmt::format("bushing '{}' has a formulation without energy: {}",
-                               model.elastics[k].name,
-                               bushing->formulation.conjugate
-                                   ? "the moment of its offset force is left out"
-                                   : "its forces are not conjugate to its deformations");
+            return fmt::format(
+                "bushing '{}' has a formulation without energy: {}", model.elastics[k].name,
+                formulation->conjugate ? "the moment of its offset force is left out"
+                                       : "its forces are not conjugate to its deformations");
     }
     return {};
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/energy/potential/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/overloaded.hpp"
 #include "reference/energy/potential/laws.hpp"
-#include "reference/energy/potential/overloaded.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"
 #include "reference/energy/potential/rotation.hpp"
 

@@ -1,6 +1,6 @@
 #include "reference/energy/potential/prescribed.hpp"
 
-#include "reference/energy/potential/overloaded.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {

@@ -1,6 +1,6 @@
 #include "reference/energy/potential/recentre.hpp"
 
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck::reference::energy {
 
@@ -19,15 +19,8 @@ Model about(const Model& model, const Vector3d& c) {
     const auto move = [&](auto& at) {
         if (at.body == ground) at.s_local -= c;
     };
-    const auto move_both = [&](auto& kind) { move(kind.i), move(kind.j); };
-    // Directions are independent of the origin.
-    for (Constraint& constraint : here.constraints)
-        std::visit(overloaded{[&](CoincidentPoints& kind) { move_both(kind); },
-                              [&](PointInPlane& kind) { move_both(kind); },
-                              [&](DistanceBetween& kind) { move_both(kind); },
-                              [](PerpendicularDirections&) {}, [](DirectionAtAngle&) {}},
-                   constraint.kind);
-    for (Elastic& elastic : here.elastics) std::visit(move_both, elastic.kind);
+    for (Constraint& constraint : here.constraints) each_point(constraint.kind, move);
+    for (Elastic& elastic : here.elastics) each_point(elastic.kind, move);
     for (ModelJoint& joint : here.joints) move(joint.at);
     return here;
 }

@@ -187,22 +187,16 @@ Deforming deforming(const System& system, const Loading& loading, const VectorXd
         const Vec6<Dual> d =
             deformations(system, e, Dual(loading.a), moving_frame(system, x, dx, i),
                          moving_frame(system, x, dx, j));
-        Vec6<Dual> force = Vec6<Dual>::Constant(Dual(0.0));
-        std::visit(
-            overloaded{
-                [&](const AxialSpring& spring) { force[0] = gradient(spring.law, d[0], on[0]); },
-                [&](const Bushing& bushing) { force = gradient(bushing.law, d, on); }},
-            elastics[e].kind);
+        const Vec6<Dual> force = forces(elastics[e].kind, d, on);
         const auto row = 6 * static_cast<Eigen::Index>(e);
         for (int k = 0; k < 6; ++k) {
             all.rate[row + k] = d[k].v[0];
             all.answer[row + k] = force[k].v[0] / (system.force * system.length);
         }
-        const auto* bushing = std::get_if<Bushing>(&elastics[e].kind);
-        const auto* coupled =
-            bushing != nullptr ? std::get_if<LinearStiffness>(&bushing->law) : nullptr;
+        const auto* law = member<SpatialLaw>(elastics[e].kind);
+        const Matrix6* coupled = law != nullptr ? matrix_of(*law) : nullptr;
         if (coupled == nullptr) continue;
-        const Vector6 sizes = coupled->K.cwiseAbs() * all.rate.segment<6>(row).cwiseAbs();
+        const Vector6 sizes = coupled->cwiseAbs() * all.rate.segment<6>(row).cwiseAbs();
         for (int k = 0; k < 6; ++k)
             if (std::abs(force[k].v[0]) <= rounding * sizes[k]) all.answer[row + k] = 0;
     }
@@ -217,9 +211,7 @@ std::vector<OnCurve> on_curves(const System& system, const Loading& loading, con
     const auto& elastics = system.model->elastics;
     for (std::size_t e = 0; e < elastics.size(); ++e) {
         std::array<const Curve*, 6> curves{};
-        for (std::size_t k = 0; k < 6; ++k)
-            curves[k] =
-                std::visit([&](const auto& kind) { return curve_of(kind, k); }, elastics[e].kind);
+        for (std::size_t k = 0; k < 6; ++k) curves[k] = curve_of(elastics[e].kind, k);
         if (std::ranges::count(curves, nullptr) == 6) continue;
         const auto [i, j] = bodies_of(elastics[e].kind);
         const Vec6<Dual> now = deformations(system, e, a, moving_frame(system, x, dx, i),

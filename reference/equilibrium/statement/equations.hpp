@@ -10,8 +10,8 @@
 #pragma once
 
 #include "elastocheck/model.hpp"
+#include "models/kinds.hpp"
 #include "reference/equilibrium/statement/laws.hpp"
-#include "reference/equilibrium/statement/overloaded.hpp"
 #include "reference/equilibrium/statement/rotations.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -262,17 +262,6 @@ Holding<T> holding(const DirectionAtAngle& c, const T& value, const Frame<T>& i,
     return h;
 }
 
-// Whether the rows are cosines of directions [-] with moments as reactions, in contrast to lengths
-// with forces.
-inline bool is_direction(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return false; },
-                                 [](const PointInPlane&) { return false; },
-                                 [](const PerpendicularDirections&) { return true; },
-                                 [](const DistanceBetween&) { return false; },
-                                 [](const DirectionAtAngle&) { return true; }},
-                      kind);
-}
-
 // ---- Loads
 
 // Action of a load of unit factor on its body: force, and moment about the body's origin.
@@ -318,14 +307,6 @@ struct Pair {
 template <class Kind>
 Pair bodies_of(const Kind& kind) {
     return std::visit([](const auto& k) { return Pair{k.i.body, k.j.body}; }, kind);
-}
-
-inline BodyId body_of(const LoadKind& load) {
-    return std::visit(overloaded{[](const DeadForce& l) { return l.at.body; },
-                                 [](const DeadMoment& l) { return l.body; },
-                                 [](const FollowerForce& l) { return l.at.body; },
-                                 [](const FollowerMoment& l) { return l.body; }},
-                      load);
 }
 
 }  // namespace elastocheck::reference::equilibrium

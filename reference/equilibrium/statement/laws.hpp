@@ -6,7 +6,7 @@
 #include <array>
 
 #include "elastocheck/mechanism.hpp"
-#include "reference/equilibrium/statement/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "reference/equilibrium/statement/rotations.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -116,13 +116,15 @@ inline bool resists_rotation(const SpatialLaw& law) {
                       law);
 }
 
-// The curve that deformation k of the element follows, or nullptr.
-inline const Curve* curve_of(const AxialSpring& spring, std::size_t k) {
-    return k == 0 ? std::get_if<Curve>(&spring.law) : nullptr;
-}
-inline const Curve* curve_of(const Bushing& bushing, std::size_t k) {
-    const auto* law = std::get_if<PerAxis>(&bushing.law);
-    return law != nullptr ? std::get_if<Curve>(&law->axis[k]) : nullptr;
+// ∂u/∂x of the law of an element: of a spring in the first entry.
+template <class T>
+Vec6<T> forces(const ElasticKind& element, const Vec6<T>& x,
+               const ElementPieces& pieces = all_by_themselves) {
+    Vec6<T> f = Vec6<T>::Constant(T(0.0));
+    each_member(element,
+                overloaded{[&](const ScalarLaw& law) { f[0] = gradient(law, x[0], pieces[0]); },
+                           [&](const SpatialLaw& law) { f = gradient(law, x, pieces); }});
+    return f;
 }
 
 }  // namespace elastocheck::reference::equilibrium

@@ -44,97 +44,28 @@ VectorXd sum(const System& system, double a, double held, const Pieces& pieces, 
 
 // ---- Driven quantities
 
-// Value of a constraint that a driver may move, as in the model.
-double value_of(const ConstraintKind& kind) {
-    return std::visit(overloaded{[](const CoincidentPoints&) { return 0.0; },
-                                 [](const PointInPlane& c) { return c.offset; },
-                                 [](const PerpendicularDirections&) { return 0.0; },
-                                 [](const DistanceBetween& c) { return c.length; },
-                                 [](const DirectionAtAngle& c) { return c.angle; }},
-                      kind);
-}
-
-ElementPath undriven(const ElasticKind& kind) {
-    ElementPath path;
-    std::visit(
-        overloaded{[&](const AxialSpring& spring) { path.free_length.start = spring.free_length; },
-                   [&](const Bushing& bushing) {
-                       for (std::size_t k = 0; k < 6; ++k)
-                           path.preload[k].start = bushing.preload[static_cast<int>(k)];
-                   }},
-        kind);
-    return path;
-}
-
-void add(Affine& to, const Driver& driver, double times) {
-    to.start += times * driver.start;
-    to.rate += times * driver.rate;
-}
-
-template <class Kind>
-void expect_kind(const Model& model, int elastic, const char* has_no) {
-    const auto& element = model.elastics.at(static_cast<std::size_t>(elastic));
-    if (!std::holds_alternative<Kind>(element.kind))
-        throw std::invalid_argument("element '" + element.name + "' has no " + has_no +
-                                    " to be driven");
-}
-
 void set_paths(System& system) {
     const Model& model = *system.model;
-    for (const auto& constraint : model.constraints)
-        system.values.push_back({value_of(constraint.kind), 0});
-    for (const auto& elastic : model.elastics) system.elements.push_back(undriven(elastic.kind));
-    for (const auto& load : model.static_loads) system.loads.push_back({load.kind, {1, 0}});
-    for (const auto& driver : system.branch->drivers)
-        std::visit(
-            overloaded{
-                [&](const Load& load) {
-                    system.loads.push_back({load.kind, {driver.start, driver.rate}});
-                },
-                [&](const Motion& motion) {
-                    const auto& joint = model.joints.at(static_cast<std::size_t>(motion.joint));
-                    if (joint.driven < 0)
-                        throw std::invalid_argument("joint '" + joint.name +
-                                                    "' has no offset to be driven");
-                    add(system.values[static_cast<std::size_t>(joint.driven)], driver, 1);
-                },
-                [&](const FreeLength& length) {
-                    expect_kind<AxialSpring>(model, length.elastic, "free length");
-                    add(system.elements[static_cast<std::size_t>(length.elastic)].free_length,
-                        driver, 1);
-                },
-                [&](const Preload& preload) {
-                    expect_kind<Bushing>(model, preload.elastic, "preload");
-                    auto& path = system.elements[static_cast<std::size_t>(preload.elastic)];
-                    for (std::size_t k = 0; k < 6; ++k)
-                        add(path.preload[k], driver, preload.direction[static_cast<int>(k)]);
-                }},
-            driver.what);
-    for (std::size_t e = 0; e < model.elastics.size(); ++e)
-        if (const auto* bushing = std::get_if<Bushing>(&model.elastics[e].kind)) {
-            ElementPath& path = system.elements[e];
-            path.rotational = resists_rotation(bushing->law);
-            for (std::size_t k = 3; k < 6; ++k)
-                path.rotational |= path.preload[k].start != 0 || path.preload[k].rate != 0;
-        }
-}
-
-// Whether the work of a load is independent of the path (the load has a potential).
-bool has_energy(const LoadKind& load) {
-    return std::visit(
-        overloaded{[](const DeadForce&) { return true; }, [](const DeadMoment&) { return true; },
-                   [](const FollowerForce&) { return false; },
-                   [](const FollowerMoment&) { return false; }},
-        load);
+    DrivenInputs<Affine> inputs = driven_inputs<Affine>(model, *system.branch);
+    system.values = std::move(inputs.values);
+    system.loads = std::move(inputs.loads);
+    for (std::size_t e = 0; e < model.elastics.size(); ++e) {
+        ElementPath& path = system.elements.emplace_back(ElementPath{inputs.elements[e]});
+        const auto* law = member<SpatialLaw>(model.elastics[e].kind);
+        if (law == nullptr) continue;
+        path.rotational = resists_rotation(*law);
+        for (std::size_t k = 3; k < 6; ++k)
+            path.rotational |= path.preload[k].start != 0 || path.preload[k].rate != 0;
+    }
 }
 
 void set_formulations(System& system) {
     for (const auto& load : system.loads)
-        if (body_of(load.kind) != ground && !has_energy(load.kind)) system.conservative = false;
+        if (body_of(load.kind) != ground && is_follower(load.kind)) system.conservative = false;
     for (const auto& elastic : system.model->elastics) {
-        const auto* bushing = std::get_if<Bushing>(&elastic.kind);
-        if (bushing == nullptr) continue;
-        const Formulation& f = bushing->formulation;
+        const auto* formulation = member<Formulation>(elastic.kind);
+        if (formulation == nullptr) continue;
+        const Formulation& f = *formulation;
         if (f.frame == Formulation::Frame::on_j ||
             (f.frame == Formulation::Frame::middle && !f.conjugate))
             throw std::invalid_argument("bushing '" + elastic.name +
@@ -169,29 +100,16 @@ std::vector<Vector3d> hardpoints(const System& system) {
         const Pose& pose = system.model->bodies[static_cast<std::size_t>(body)].design;
         points.push_back(pose.r + turned(pose.p, s_local));
     };
-    const auto add_end =
-        overloaded{[&](const Point& p) { add(p.body, p.s_local); },
-                   [&](const Marker& m) { add(m.body, m.s_local); }, [](const Direction&) {}};
-    const auto add_ends = [&](const auto& kind) { add_end(kind.i), add_end(kind.j); };
+    const auto add_point = [&](const auto& at) { add(at.body, at.s_local); };
     for (const auto& body : system.model->bodies) points.push_back(body.design.r);
-    for (const auto& constraint : system.model->constraints) std::visit(add_ends, constraint.kind);
-    for (const auto& elastic : system.model->elastics) std::visit(add_ends, elastic.kind);
-    for (const auto& load : system.loads)
-        std::visit(overloaded{[&](const DeadForce& f) { add(f.at.body, f.at.s_local); },
-                              [](const DeadMoment&) {},
-                              [&](const FollowerForce& f) { add(f.at.body, f.at.s_local); },
-                              [](const FollowerMoment&) {}},
-                   load.kind);
+    for (const auto& constraint : system.model->constraints) each_point(constraint.kind, add_point);
+    for (const auto& elastic : system.model->elastics) each_point(elastic.kind, add_point);
+    for (const auto& load : system.loads) each_point(load.kind, add_point);
     return points;
 }
 
 double force_of(const LoadKind& load, double length) {
-    return std::visit(
-        overloaded{[&](const DeadForce& l) { return l.f.norm(); },
-                   [&](const DeadMoment& l) { return l.m.norm() / length; },
-                   [](const FollowerForce& l) { return l.f_local.norm(); },
-                   [&](const FollowerMoment& l) { return l.m_local.norm() / length; }},
-        load);
+    return load_vector(load).norm() / (is_moment(load) ? length : 1);
 }
 
 // Reference deformation over L for the force scale: round-off of stiff elements is stiffness times
@@ -296,16 +214,7 @@ Vector6 stored_at_design(const System& system, std::size_t e) {
     const VectorXd x = design_unknowns(system);
     const auto [i, j] = bodies_of(system.model->elastics[e].kind);
     const Vector6 d = deformations(system, e, 0., frame_of(system, x, i), frame_of(system, x, j));
-    return std::visit(overloaded{[&](const AxialSpring& spring) {
-                                     Vector6 pull = Vector6::Zero();
-                                     pull[0] = gradient(spring.law, d[0]);
-                                     return pull;
-                                 },
-                                 [&](const Bushing& bushing) {
-                                     return Vector6(gradient(bushing.law, d) +
-                                                    preload_at(system.elements[e], 0.));
-                                 }},
-                      system.model->elastics[e].kind);
+    return forces<double>(system.model->elastics[e].kind, d) + preload_at(system.elements[e], 0.);
 }
 
 Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {

@@ -22,6 +22,7 @@
 #include <span>
 
 #include "elastocheck/equilibrium_path.hpp"
+#include "models/driven_inputs.hpp"
 #include "reference/equilibrium/statement/equations.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -34,21 +35,14 @@ struct Affine {
     }
 };
 
-// Driven quantities of an element along the branch; only the one of its kind is used.
-struct ElementPath {
-    Affine free_length;             // of a spring [m]
-    std::array<Affine, 6> preload;  // of a bushing [N, N·m]
+// Driven quantities of an element along the branch, and what it stores.
+struct ElementPath : DrivenElement<Affine> {
     // design force of the element, ∂u/∂x or ∂u/∂e + preload, of which held · stored is subtracted
     // while settling [N, N·m]
     Vector6 stored = Vector6::Zero();
     bool rotational = false;  // the bushing's forces depend on the relative rotation of its markers
 };
-
-// A load and its factor: 1 for static loads.
-struct LoadPath {
-    LoadKind kind;
-    Affine factor;
-};
+using LoadPath = DrivenLoad<Affine>;
 
 struct Pattern;  // of J (derivatives.hpp)
 

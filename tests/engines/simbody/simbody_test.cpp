@@ -49,8 +49,8 @@ std::vector<Point> points_of(Scene scene, const Model& model) {
                                       take({m.body, m.s_local});
                                   },
                                   [](const Direction&) {}};
-    for (auto& joint : scene.joints) reduce::each_place(joint.kind, place);
-    for (auto& elastic : scene.elastics) reduce::each_place(elastic.kind, place);
+    for (auto& joint : scene.joints) each_member(joint.kind, place);
+    for (auto& elastic : scene.elastics) each_member(elastic.kind, place);
     for (const Wheel& wheel : scene.wheels) take({wheel.body, wheel.centre_local});
     return points;
 }

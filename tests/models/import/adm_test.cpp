@@ -14,10 +14,10 @@
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "models/curve.hpp"
 #include "models/import/adm/expression.hpp"
 #include "models/import/export/export_adm.hpp"
 #include "models/import/import.hpp"
+#include "models/laws.hpp"
 #include "tests/models/import/imports.hpp"
 
 namespace elastocheck {

@@ -11,9 +11,9 @@
 #include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "models/curve.hpp"
 #include "models/import/export/export_chrono.hpp"
 #include "models/import/import.hpp"
+#include "models/laws.hpp"
 #include "tests/models/import/imports.hpp"
 #include "tests/support/pipe.hpp"
 

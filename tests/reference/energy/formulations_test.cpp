@@ -2,7 +2,7 @@
 // and the end of the branch at the end of a law.
 #include <numbers>
 
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "reference/energy/constraints/balance.hpp"
 #include "reference/energy/potential/laws.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"

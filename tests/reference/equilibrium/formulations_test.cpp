@@ -2,7 +2,7 @@
 // implemented energies, and against hand calculation where there is no energy.
 #include <fmt/format.h>
 
-#include "models/curve.hpp"
+#include "models/laws.hpp"
 #include "reference/equilibrium/continuation/newton.hpp"
 #include "reference/equilibrium/statement/equations.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
