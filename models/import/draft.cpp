@@ -30,7 +30,7 @@ std::string printable(std::string_view text) {
     return result;
 }
 
-std::string told(const Place& place) {
+std::string described(const SourceLocation& place) {
     return place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what))
                           : printable(place.what);
 }
@@ -41,7 +41,7 @@ void write_entry(const Entry& entry, Text& text) {
         text.yaml += line + "\n";
         text.line_of.push_back(entry.from);
     };
-    const std::string comment = entry.from.what.empty() ? "" : "# " + told(entry.from);
+    const std::string comment = entry.from.what.empty() ? "" : "# " + described(entry.from);
     std::string line = fmt::format("  {}: {}", entry.name, entry.fields);
     if (!comment.empty() && line.size() + 2 + comment.size() <= widest) {
         put(line + "  " + comment);
@@ -61,7 +61,7 @@ void write_entry(const Entry& entry, Text& text) {
 void write_section(const char* name, const std::vector<Entry>& entries, Text& text) {
     if (entries.empty()) return;
     text.yaml += fmt::format("\n{}:\n", name);
-    text.line_of.insert(text.line_of.end(), 2, Place{});
+    text.line_of.insert(text.line_of.end(), 2, SourceLocation{});
     for (const Entry& entry : entries) write_entry(entry, text);
 }
 
@@ -146,13 +146,15 @@ std::string Names::take(std::string_view wanted) {
     }
 }
 
-void Hardpoints::add(const Vector3d& position, std::string_view wanted, const Place& from) {
+void Hardpoints::add(const Vector3d& position, std::string_view wanted,
+                     const SourceLocation& from) {
     by_x_.emplace(position.dot(askew), positions_.size());
     positions_.push_back(position);
     entries_.push_back({names_.take(wanted), triple(position, size_), from});
 }
 
-std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, const Place& from) {
+std::string Hardpoints::at(const Vector3d& position, std::string_view wanted,
+                           const SourceLocation& from) {
     const double near = same_place * size_, key = position.dot(askew);
     for (auto found = by_x_.lower_bound(key - near);
          found != by_x_.end() && found->first <= key + near; ++found)
@@ -164,7 +166,7 @@ std::string Hardpoints::at(const Vector3d& position, std::string_view wanted, co
 
 namespace {
 
-using Warning = std::pair<Place, std::string>;
+using Warning = std::pair<SourceLocation, std::string>;
 struct Kind {
     const Warning* worst;  // the one with the largest first number
     double size;
@@ -205,7 +207,7 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
 
 }  // namespace
 
-std::vector<std::string> told(const Notes& notes) {
+std::vector<std::string> described(const Notes& notes) {
     std::vector<std::string> lines;
     std::string understood;
     for (const auto& [kind, n] : notes.understood)
@@ -214,27 +216,27 @@ std::vector<std::string> told(const Notes& notes) {
     for (const auto& [why, what] : notes.omitted) {
         std::string list;
         for (std::size_t k = 0; k < std::min(what.size(), most_told); ++k)
-            list += (list.empty() ? "" : "; ") + told(what[k]);
+            list += (list.empty() ? "" : "; ") + described(what[k]);
         if (what.size() > most_told) list += fmt::format("; and {} more", what.size() - most_told);
         lines.push_back(fmt::format("Left out, {}: {}.", why, list));
     }
     for (const Kind& kind : kinds(notes.warnings)) {
         const auto& [place, what] = *kind.worst;
-        std::string line = fmt::format("Warning: {}: {}", told(place), what);
+        std::string line = fmt::format("Warning: {}: {}", described(place), what);
         if (kind.all.size() > 1) {
             line += fmt::format(" ({} of this kind, this the largest; also ", kind.all.size());
             std::string others;
             std::size_t shown = 0;
             for (const auto* warning : kind.all)
                 if (warning != kind.worst && ++shown <= most_told)
-                    others += (others.empty() ? "" : "; ") + told(warning->first);
+                    others += (others.empty() ? "" : "; ") + described(warning->first);
             if (shown > most_told) others += fmt::format("; and {} more", shown - most_told);
             line += others + ")";
         }
         lines.push_back(line + ".");
     }
     for (const auto& [place, what] : notes.missing)
-        lines.push_back(fmt::format("MISSING: {}: {}.", told(place), printable(what)));
+        lines.push_back(fmt::format("MISSING: {}: {}.", described(place), printable(what)));
     if (!notes.missing.empty())
         lines.emplace_back("So this scene is NOT the model of the file: it lacks what is missing.");
     return lines;
@@ -250,7 +252,7 @@ Text write(const Draft& draft) {
     Text text;
     comment(fmt::format("Imported from {} ({}).", printable(draft.source), draft.format), text);
     for (const std::string& remark : draft.remarks) comment(remark, text);
-    for (const std::string& line : told(draft.notes)) comment(line, text);
+    for (const std::string& line : described(draft.notes)) comment(line, text);
     const auto put = [&](const std::string& line) {
         text.yaml += line + "\n";
         text.line_of.emplace_back();
@@ -275,7 +277,7 @@ Text write(const Draft& draft) {
         const Entry& wheel = draft.wheels[0];
         put("");
         put(fmt::format("wheel: {}{}", wheel.fields,
-                        wheel.from.what.empty() ? "" : "  # " + told(wheel.from)));
+                        wheel.from.what.empty() ? "" : "  # " + described(wheel.from)));
     } else {
         write_section("wheels", draft.wheels, text);
     }

@@ -15,7 +15,7 @@
 namespace elastocheck::importer {
 
 // Source line and statement: "line 80, JOINT/1 'knuckle'".
-struct Place {
+struct SourceLocation {
     int line = 0;
     std::string what;
 };
@@ -43,7 +43,7 @@ class Fields {
 
 struct Entry {
     std::string name, fields;
-    Place from;
+    SourceLocation from;
 };
 
 // ---- Names: of characters allowed in a scene, unique in their section.
@@ -62,8 +62,9 @@ class Names {
 class Hardpoints {
   public:
     explicit Hardpoints(double size = 1) : size_(size) {}
-    std::string at(const Eigen::Vector3d& position, std::string_view wanted, const Place& from);
-    void add(const Eigen::Vector3d& position, std::string_view wanted, const Place& from);
+    std::string at(const Eigen::Vector3d& position, std::string_view wanted,
+                   const SourceLocation& from);
+    void add(const Eigen::Vector3d& position, std::string_view wanted, const SourceLocation& from);
     const std::vector<Entry>& entries() const { return entries_; }
 
   private:
@@ -79,15 +80,21 @@ class Hardpoints {
 struct Notes {
     std::map<std::string, int> understood;  // "JOINT" -> 12
     // reason -> parts without effect in statics
-    std::map<std::string, std::vector<Place>> omitted;
-    std::vector<std::pair<Place, std::string>> warnings;
+    std::map<std::string, std::vector<SourceLocation>> omitted;
+    std::vector<std::pair<SourceLocation, std::string>> warnings;
     // parts with an effect in statics that the scene cannot represent
-    std::vector<std::pair<Place, std::string>> missing;
+    std::vector<std::pair<SourceLocation, std::string>> missing;
 
     void count(const std::string& kind) { ++understood[kind]; }
-    void leave_out(const std::string& why, Place what) { omitted[why].push_back(std::move(what)); }
-    void warn(Place at, std::string what) { warnings.emplace_back(std::move(at), std::move(what)); }
-    void miss(Place at, std::string what) { missing.emplace_back(std::move(at), std::move(what)); }
+    void leave_out(const std::string& why, SourceLocation what) {
+        omitted[why].push_back(std::move(what));
+    }
+    void warn(SourceLocation at, std::string what) {
+        warnings.emplace_back(std::move(at), std::move(what));
+    }
+    void miss(SourceLocation at, std::string what) {
+        missing.emplace_back(std::move(at), std::move(what));
+    }
 };
 
 struct Draft {
@@ -108,7 +115,7 @@ struct Draft {
 // n + 1.
 struct Text {
     std::string yaml;
-    std::vector<Place> line_of;
+    std::vector<SourceLocation> line_of;
 };
 Text write(const Draft& draft);
 
@@ -117,6 +124,6 @@ std::string commented(std::string_view what);
 
 // The notes as lines of text, for the head of the scene and the output of the command; without
 // comment marks.
-std::vector<std::string> told(const Notes& notes);
+std::vector<std::string> described(const Notes& notes);
 
 }  // namespace elastocheck::importer

@@ -16,7 +16,7 @@ constexpr std::size_t largest_file = 16 << 20;  // [bytes]
 constexpr std::size_t most_errors = 20;
 constexpr std::string_view name_of_text = "scene";
 
-std::string where(const Place& place) {
+std::string where(const SourceLocation& place) {
     return place.line > 0 ? fmt::format(":{}", place.line) : std::string();
 }
 
@@ -47,9 +47,9 @@ std::string where(const Place& place) {
         if (error == std::errc{})
             message.remove_prefix(std::min<std::size_t>(end - message.data() + 2, message.size()));
     }
-    const Place from = line > 0 && line <= static_cast<int>(text.line_of.size())
-                           ? text.line_of[line - 1]
-                           : Place{};
+    const SourceLocation from = line > 0 && line <= static_cast<int>(text.line_of.size())
+                                    ? text.line_of[line - 1]
+                                    : SourceLocation{};
     throw SceneError(fmt::format("{}{}: {}{}", file, where(from),
                                  from.what.empty() ? "" : reader::shown(from.what) + ": ",
                                  fmt::format("the scene made of it is refused: {}", message)));

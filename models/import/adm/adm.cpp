@@ -187,7 +187,7 @@ void sort_out(Conversion& c) {
             notes.omitted.try_emplace("saying nothing of the mechanism");
             auto& list = notes.omitted["saying nothing of the mechanism"];
             const auto same = std::ranges::find_if(
-                list, [&](const Place& p) { return p.what.starts_with(word + " "); });
+                list, [&](const SourceLocation& p) { return p.what.starts_with(word + " "); });
             if (same == list.end())
                 list.push_back({0, word + " (lines " + std::to_string(s.line) + ")"});
             else if (same->what.size() < 60)
@@ -289,12 +289,12 @@ void report_unread(Conversion& c) {
     Notes& notes = c.draft.notes;
     std::set<std::pair<int, std::string>> omitted;
     for (const auto& [why, places] : notes.omitted)
-        for (const Place& place : places) omitted.emplace(place.line, place.what);
+        for (const SourceLocation& place : places) omitted.emplace(place.line, place.what);
     std::set<int> missing;
     for (const auto& [place, why] : notes.missing) missing.insert(place.line);
     for (const Statement& s : c.data.statements) {
         if (missing.contains(s.line) || omitted.contains({s.line, s.place().what})) continue;
-        std::set<std::string_view> told;
+        std::set<std::string_view> listed;
         for (const auto& [argument, is_read] : s.arguments) {
             if (is_read) continue;
             if (s.keyword == "PART" && c.is_ground(s.id)) {
@@ -307,7 +307,7 @@ void report_unread(Conversion& c) {
             if (known == std::end(without_influence))
                 notes.miss(s.place(), fmt::format("{}: given, but not used with what else is given",
                                                   argument));
-            else if (told.insert(known->called).second)
+            else if (listed.insert(known->called).second)
                 notes.leave_out(std::string(known->why),
                                 {s.line, fmt::format("{} of {}", known->called, s.place().what)});
         }

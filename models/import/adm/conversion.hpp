@@ -37,7 +37,7 @@ struct Drive {
     std::string quantity;           // "joints.crank", or the name of the load
     std::vector<double> path = {};  // one value if it does not move
     double least = 0, most = 0;
-    Place from = {};
+    SourceLocation from = {};
     bool moves() const { return least != most; }
 };
 

@@ -67,7 +67,7 @@ struct Element {
     int part_j;
     Frame J;  // δ is measured from its origin, in its axes
 
-    Place place() const { return s.place(); }
+    SourceLocation place() const { return s.place(); }
 
     void put(const SixLaws& laws) const {
         const Vector3d drawn = J.A.transpose() * (I.pose.r - J.r);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -24,34 +25,6 @@ constexpr double round_off = 1e-6;  // of the model's size, or radians: not repo
 constexpr std::size_t most_motions = 10'000;
 constexpr double assembled = 1e-2;  // larger misalignment: rejected
 
-const Shape joint_shape{{"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR",
-                         "HOOKE", "UNIVERSAL", "CONVEL", "RACKPIN", "SCREW"},
-                        {"I",
-                         "J",
-                         "IC",
-                         "ICTRAN",
-                         "ICROT",
-                         "PD",
-                         "PITCH",
-                         "FRICTION",
-                         "DELTA_V",
-                         "INNER_RADIUS",
-                         "OUTER_RADIUS",
-                         "MAXFRIC",
-                         "MU1",
-                         "MU_DYN_ROT",
-                         "MU_STAT_ROT",
-                         "MAX_FRIC_ROT",
-                         "MU_DYN_TRANS",
-                         "MU_STAT_TRANS",
-                         "MAX_FRIC_TRANS",
-                         "MAXIMUM_DEFORMATION",
-                         "HEIGHT",
-                         "WIDTH",
-                         "PRELOAD_RADIAL",
-                         "PRELOAD_AXIAL",
-                         "IMPLICIT"},
-                        {}};
 // Arguments of a joint's friction: coefficients, torques, and the geometry of the contact.
 constexpr const char* of_friction[] = {"FRICTION",
                                        "MAXFRIC",
@@ -71,6 +44,14 @@ constexpr const char* of_friction[] = {"FRICTION",
                                        "PRELOAD_AXIAL",
                                        "MAXIMUM_DEFORMATION",
                                        "IMPLICIT"};
+const Shape joint_shape = [] {
+    Shape shape{{"REVOLUTE", "CYLINDRICAL", "TRANSLATIONAL", "SPHERICAL", "FIXED", "PLANAR",
+                 "HOOKE", "UNIVERSAL", "CONVEL", "RACKPIN", "SCREW"},
+                {"I", "J", "IC", "ICTRAN", "ICROT", "PD", "PITCH"},
+                {}};
+    std::ranges::copy(of_friction, std::back_inserter(shape.values));
+    return shape;
+}();
 const Shape jprim_shape{
     {"ATPOINT", "INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR"},
     {"I", "J"},
@@ -85,18 +66,18 @@ struct JointConversion {
     const Marker& I;
     const Marker& J;
 
-    Place place() const { return s.place(); }
+    SourceLocation place() const { return s.place(); }
     Vector3d axis(const Marker& m, int k) const { return m.pose.A.col(k); }
 
     void require_small(double off, double scale, const std::string& what,
                        const std::string& unit) const {
         if (off <= round_off * scale) return;
-        const std::string told = fmt::format("{} {:.3g} {}", what, off, unit);
+        const std::string misalignment = fmt::format("{} {:.3g} {}", what, off, unit);
         if (!(off <= assembled * scale))
-            at.fail(told +
+            at.fail(misalignment +
                     ": the parts do not meet as they stand in the file; assemble the model before "
                     "it is written");
-        c.draft.notes.warn(place(), told + " in the file; here they meet");
+        c.draft.notes.warn(place(), misalignment + " in the file; here they meet");
     }
     void require_small_angle(double angle, const std::string& what) const {
         const double degree = std::numbers::pi / 180;

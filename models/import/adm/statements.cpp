@@ -149,7 +149,7 @@ struct Reading {
 
 }  // namespace
 
-Place Statement::place() const {
+SourceLocation Statement::place() const {
     return {line, fmt::format("{}/{}{}", keyword, id ? std::to_string(id) : "",
                               name.empty() ? "" : fmt::format(" '{}'", reader::shown(name)))};
 }

@@ -35,7 +35,7 @@ struct Statement {
     // The arguments found by Arguments, and whether each has been read.
     mutable std::vector<std::pair<std::string_view, bool>> arguments = {};
 
-    Place place() const;  // "JOINT/1 'knuckle'"
+    SourceLocation place() const;  // "JOINT/1 'knuckle'"
 };
 
 struct Dataset {

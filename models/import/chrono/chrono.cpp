@@ -621,7 +621,7 @@ void generic(Suspension& s) {
                 .insert(entry.require("Name").text("a name"));
     auto& draft = s.draft();
     g.each("Bodies", [&](const Cursor& entry, const std::string& name) {
-        const Place from{entry.value->line, "Bodies/" + name};
+        const SourceLocation from{entry.value->line, "Bodies/" + name};
         Fields fields;
         fields.add("origin", draft.points.at(g.at(entry, "Position"), name + ".cm", from));
         if (const auto mass = entry.optional("Mass")) fields.add("mass", mass->number());
@@ -636,7 +636,7 @@ void generic(Suspension& s) {
         const Vector3d p = g.at(entry, "Position");
         const Matrix3d A =
             entry.optional("Rotation") ? rotation(s, entry.require("Rotation")) : no_turn;
-        const Place from{entry.value->line, "Joints/" + name};
+        const SourceLocation from{entry.value->line, "Joints/" + name};
         const auto data = entry.optional("Bushing Data");
         const std::string at = draft.points.at(p, name, from);
         const auto is = [&](std::initializer_list<const char*> names) {
@@ -675,7 +675,7 @@ void generic(Suspension& s) {
                                                    entry.require("Type").found()));
     });
     g.each("Distance Constraints", [&](const Cursor& entry, const std::string& name) {
-        const Place from{entry.value->line, "Distance Constraints/" + name};
+        const SourceLocation from{entry.value->line, "Distance Constraints/" + name};
         s.joint(name, "distance", g.body(entry.require("Body1")), g.body(entry.require("Body2")),
                 Fields{}
                     .add("from", draft.points.at(g.at(entry, "Point1"), name + ".1", from))

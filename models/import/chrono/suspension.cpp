@@ -107,7 +107,7 @@ bool Suspension::has(const char* path) const {
 
 Vector3d Suspension::left(const char* path) const { return vector(at(path)); }
 
-Place Suspension::place(const char* path) const { return {at(path).value->line, path}; }
+SourceLocation Suspension::place(const char* path) const { return {at(path).value->line, path}; }
 
 namespace {
 
@@ -205,7 +205,7 @@ Vector3d Suspension::midpoint(const std::string& name, const char* first, const 
 }
 
 std::string Suspension::hardpoint(const std::string& name, const Vector3d& p, const char* path) {
-    return draft_.points.at(p, name, path ? place(path) : Place{});
+    return draft_.points.at(p, name, path ? place(path) : SourceLocation{});
 }
 
 void Suspension::body(const std::string& name, const Vector3d& com, const char* part,
@@ -222,7 +222,7 @@ void Suspension::body(const std::string& name, const Vector3d& com, const char* 
 }
 
 void Suspension::joint(const std::string& name, const char* type, const std::string& i,
-                       const std::string& j, Fields fields, const Place& from) {
+                       const std::string& j, Fields fields, const SourceLocation& from) {
     Fields all;
     all.add("type", type).add("bodies", "[" + i + ", " + j + "]");
     draft_.joints.push_back(
@@ -277,7 +277,7 @@ void Suspension::distance(const std::string& name, const std::string& i, const V
 }
 
 void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
-                          const Vector3d& p, const Vector3d& normal, const Place& from) {
+                          const Vector3d& p, const Vector3d& normal, const SourceLocation& from) {
     joint(name, "in_plane", i, j,
           Fields{}
               .add("at", hardpoint(name, p, nullptr))
@@ -337,21 +337,21 @@ Suspension::Law Suspension::law_of(const Cursor& data) {
                     : k                                    ? Law::linear
                     : data.optional("Damping Coefficient") ? Law::damper
                                                            : Law::none;
-    const auto unused = [&](const char* field, const char* why) {
+    const auto leave_out_unused = [&](const char* field, const char* why) {
         if (const auto found = data.optional(field)) ignore(*found, why);
     };
-    if (law == Law::map) unused("Spring Curve Data", "Chrono takes the Map Data instead");
-    if (law != Law::map) unused("Deformation", "Chrono uses it with Map Data only");
+    if (law == Law::map) leave_out_unused("Spring Curve Data", "Chrono takes the Map Data instead");
+    if (law != Law::map) leave_out_unused("Deformation", "Chrono uses it with Map Data only");
     if (law != Law::linear)
-        unused("Spring Coefficient", law == Law::map ? "Chrono takes the Map Data instead"
-                                     : law == Law::curve
-                                         ? "Chrono takes the Spring Curve Data instead"
-                                         : "Chrono takes the Damping Curve Data instead: there "
-                                           "is no spring");
+        leave_out_unused("Spring Coefficient",
+                         law == Law::map     ? "Chrono takes the Map Data instead"
+                         : law == Law::curve ? "Chrono takes the Spring Curve Data instead"
+                                             : "Chrono takes the Damping Curve Data instead: there "
+                                               "is no spring");
     if (law == Law::damper)
         for (const char* field :
              {"Free Length", "Free Angle", "Preload", "Minimum Length", "Maximum Length"})
-            unused(field, "Chrono does not use it for a damper");
+            leave_out_unused(field, "Chrono does not use it for a damper");
     return law;
 }
 
@@ -406,7 +406,7 @@ Rows Suspension::map_at_rest(const Cursor& data, double offset, double preload) 
 
 void Suspension::tsda(const std::string& name, const std::string& i, const Vector3d& from,
                       const std::string& j, const Vector3d& to, const Cursor& data) {
-    const Place here{data.value->line, data.path};
+    const SourceLocation here{data.value->line, data.path};
     const double drawn = (to - from).norm();
     Fields fields;
     fields.add("bodies", "[" + i + ", " + j + "]")
@@ -505,7 +505,7 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
 // P - k (angle - free), and the angle is 0 as drawn.
 void Suspension::rsda(const std::string& name, const std::string& i, const std::string& j,
                       const Vector3d& p, const Vector3d& axis, const Cursor& data) {
-    const Place here{data.value->line, data.path};
+    const SourceLocation here{data.value->line, data.path};
     const Law law = law_of(data);
     if (law == Law::none || law == Law::map)
         return draft_.notes.miss(
@@ -546,7 +546,7 @@ void Suspension::torsion(const std::string& name, const std::string& i, const st
 
 void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
                          const Vector3d& p, const Vector3d& axis, const Fields& law,
-                         const Place& from) {
+                         const SourceLocation& from) {
     Fields fields;
     fields.add("bodies", "[" + i + ", " + j + "]")
         .add("at", hardpoint(name, p, nullptr))

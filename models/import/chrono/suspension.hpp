@@ -48,7 +48,7 @@ class Suspension {
     Vector3d left(const char* path) const;  // as in the file
     Vector3d point(const char* path) const { return mirrored(left(path)); }
     double real(const char* path) const { return at(path).number(); }
-    Place place(const char* path) const;
+    SourceLocation place(const char* path) const;
 
     // ---- Writing. A body or a hardpoint is named by the caller, sided or not.
     // Midpoint of two points of the file, named `name` on its side. Both points stay hardpoints,
@@ -59,7 +59,7 @@ class Suspension {
     void body(const std::string& name, const Vector3d& com, const char* part,
               const char* mass = "Mass");
     void joint(const std::string& name, const char* type, const std::string& i,
-               const std::string& j, Fields fields, const Place& from);
+               const std::string& j, Fields fields, const SourceLocation& from);
     void spherical(const std::string& name, const std::string& i, const std::string& j,
                    const Vector3d& p, const char* path);
     // x is fixed to body i and y to body j.
@@ -72,7 +72,7 @@ class Suspension {
     void distance(const std::string& name, const std::string& i, const Vector3d& from,
                   const char* path_i, const std::string& j, const Vector3d& to, const char* path_j);
     void in_plane(const std::string& name, const std::string& i, const std::string& j,
-                  const Vector3d& p, const Vector3d& normal, const Place& from);
+                  const Vector3d& p, const Vector3d& normal, const SourceLocation& from);
 
     // A joint of Chrono: with "Bushing Data" under `data` a bushing at its frame, else a joint of
     // the given kind.
@@ -113,7 +113,8 @@ class Suspension {
     static Rows map_at_rest(const reader::Cursor& data, double offset, double preload);
     static void require_rising(const reader::Cursor& at, const Rows& rows);
     void torsion(const std::string& name, const std::string& i, const std::string& j,
-                 const Vector3d& p, const Vector3d& axis, const Fields& law, const Place& from);
+                 const Vector3d& p, const Vector3d& axis, const Fields& law,
+                 const SourceLocation& from);
 
     const reader::Cursor& file_;
     const Options& options_;
