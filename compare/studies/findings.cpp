@@ -97,7 +97,8 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                        [&](const Preload& preload) {
                            const Elastic& elastic =
                                model.elastics[static_cast<std::size_t>(preload.elastic)];
-                           const double height = driver.rate * road_height(elastic, preload, wheel);
+                           const double height =
+                               driver.rate * road_height(elastic, preload.direction, wheel);
                            return Lifted{height != 0 ? Lift::road : Lift::none, -1, 0, height};
                        }},
             driver.what);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double nothing = 1e-9;  // [mm], [deg]: smaller spreads are rounding
 
-bool is_zero(const ScalarLaw& law) { return !(steepest(law) > 0); }
+bool is_flat(const ScalarLaw& law) { return !(steepest(law) > 0); }
 
 // Number of the six deformations that have a stiffness.
 int axes_resisted(const SpatialLaw& law) {
@@ -26,7 +26,7 @@ int axes_resisted(const SpatialLaw& law) {
                    [](const PerAxis& u) {
                        return static_cast<int>(std::ranges::count_if(
                            u.axis,
-                           [](const ScalarLaw& law_of_axis) { return !is_zero(law_of_axis); }));
+                           [](const ScalarLaw& law_of_axis) { return !is_flat(law_of_axis); }));
                    }},
         law);
 }

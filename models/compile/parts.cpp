@@ -99,20 +99,27 @@ bool is_strained_at_design(const JointKind& joint, const Scene& scene) {
 
 bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     const auto axes = [&](const Marker& m) { return design(scene, m.body).p * m.A_local; };
-    return std::visit(
-        overloaded{[&](const AxialSpring& e) {
-                       const double length = (position(scene, e.j) - position(scene, e.i)).norm();
-                       return !is_free(e.law, length - e.free_length, as_drawn * length);
-                   },
-                   [&](const Bushing& e) {
-                       const double gap = (position(scene, {e.j.body, e.j.s_local}) -
-                                           position(scene, {e.i.body, e.i.s_local}))
-                                              .norm();
-                       return !(e.preload.isZero(0) && gap <= as_drawn &&
-                                axes(e.i).angularDistance(axes(e.j)) <= as_drawn &&
-                                is_free(e.law, Vector6(-e.undeformed), as_drawn));
-                   }},
-        elastic);
+    bool free = false;  // an element between other members counts as loaded
+    const std::vector<Point> points = points_of(elastic);
+    const double* free_length = driven_number(elastic);
+    if (points.size() == 2 && free_length != nullptr) {
+        const double length = (position(scene, points[1]) - position(scene, points[0])).norm();
+        const ScalarLaw* law = scalar_law(elastic, 0);
+        free = law != nullptr && is_free(*law, length - *free_length, as_drawn * length);
+    }
+    std::vector<Marker> markers;
+    each_member(elastic, [&](const Marker& marker) { markers.push_back(marker); });
+    if (markers.size() == 2) {
+        const auto at = [&](const Marker& m) { return position(scene, {m.body, m.s_local}); };
+        free = (at(markers[1]) - at(markers[0])).norm() <= as_drawn &&
+               axes(markers[0]).angularDistance(axes(markers[1])) <= as_drawn;
+    }
+    Vector6 e = Vector6::Zero();
+    each_member(elastic,
+                overloaded{[&](Deformation<const Vector6> undeformed) { e = -undeformed.value; },
+                           [&](ForceAndMoment<const Vector6> w) { free &= w.value.isZero(0); }});
+    if (const auto* law = member<SpatialLaw>(elastic)) free &= is_free(*law, e, as_drawn);
+    return !free;
 }
 
 bool is_zero(const LoadKind& load) { return load_vector(load).isZero(0); }

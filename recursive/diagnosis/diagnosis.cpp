@@ -111,20 +111,17 @@ Rows constraint_rows_of(const Model& model, const Inputs<double>& inputs, const 
 // point, turned to ground axes. Own axes are needed to distinguish a soft direction from a zero
 // one: in other axes the rounding of the stiff directions hides it. K_e = S C S with a unit
 // diagonal C, so that rates of any size have the same weight.
-std::vector<Vector6<double>> root_rows(const AxialSpring& e, const Rest<double>& rest,
+// A curve with negative slope counts as stiffness; an open stop (slope 0) does not.
+template <class Element>
+std::vector<Vector6<double>> root_rows(const Element& e, const Rest<double>& rest,
                                        const State<double>& q) {
-    const Axial<double> g = deformation<double>(e, q);
-    // A curve with negative slope counts as stiffness; an open stop (slope 0) does not.
-    if (hessian<double>(e.law, [&] { return g.length - rest.free_length; }) == 0) return {};
-    Vector6<double> row;
-    row << g.D / g.length, Vector3d::Zero();
-    return {row};
-}
-std::vector<Vector6<double>> root_rows(const Bushing& e, const Rest<double>&,
-                                       const State<double>& q) {
-    const Spatial<double> g = deformation<double>(e, q);
-    const Matrix3<double> A = axes<double>(e, q);
-    const Matrix6<double> K = hessian<double>(e.law, [&] { return strain<double>(e, g); });
+    const Matrix3<double> A = own_axes<double>(e, q);
+    const Vector6<double> x = deflections<double>(e, rest, q);
+    Matrix6<double> K = Matrix6<double>::Zero();
+    each_member(
+        e, overloaded{
+               [&](const ScalarLaw& law) { K(0, 0) = hessian<double>(law, [&] { return x[0]; }); },
+               [&](const SpatialLaw& law) { K = hessian<double>(law, [&] { return x; }); }});
     const Vector6<double> S = K.diagonal().cwiseAbs().cwiseSqrt();
     const Vector6<double> inverse = S.unaryExpr([](double v) { return v > 0 ? 1 / v : 0; });
     const Matrix6<double> C = inverse.asDiagonal() * K * inverse.asDiagonal();

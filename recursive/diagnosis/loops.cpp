@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/kinds.hpp"
+
 namespace elastocheck::recursive {
 namespace {
 

@@ -302,6 +302,19 @@ Vector6<Real> deflections(const ElasticKind& kind, const Rest<Real>& rest, const
     return std::visit([&](const auto& e) { return deflections<Real>(e, rest, q); }, kind);
 }
 
+// Own axes of an element: those of its law. A spring has one, along it.
+template <class Real>
+Matrix3<Real> own_axes(const AxialSpring& e, const State<Real>& q) {
+    const Axial<Real> g = deformation<Real>(e, q);
+    Matrix3<Real> A = Matrix3<Real>::Zero();
+    A.col(0) = g.D / g.length;
+    return A;
+}
+template <class Real>
+Matrix3<Real> own_axes(const Bushing& e, const State<Real>& q) {
+    return axes<Real>(e, q);
+}
+
 // Whether an element has reversed between two states. A spring that points the other way has passed
 // through zero length, a bushing with reversed rotation through half a turn. The force jumps there,
 // and Newton's method converges beyond the jump.

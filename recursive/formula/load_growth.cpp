@@ -13,27 +13,23 @@ std::optional<Grown> grown(const Model& model, const Branch& branch) {
     const State<double> q = design_state<double>(model);
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
         const int element = static_cast<int>(k);
-        std::visit(overloaded{
-                       [&](AxialSpring& spring) {
-                           const double length = deformation<double>(spring, q).length;
-                           if (!std::holds_alternative<LinearRate>(spring.law) || !(length > 0) ||
-                               length == spring.free_length)
-                               return;
-                           drivers.push_back({FreeLength{element}, spring.free_length - length, 0});
-                           spring.free_length = length;
-                       },
-                       [&](Bushing& bushing) {
-                           const auto g = deformation<double>(bushing, q);
-                           const Vector6<double> stress =
-                               gradient<double>(bushing.law, strain<double>(bushing, g),
-                                                everywhere) +
-                               bushing.preload;
-                           if (stress.isZero(0) || !stress.allFinite()) return;
-                           drivers.push_back({Preload{element, stress}, 1, 0});
-                           bushing.preload -= stress;
-                       },
-                   },
-                   result.model.elastics[k].kind);
+        ElasticKind& kind = result.model.elastics[k].kind;
+        if (double* free_length = driven_number(kind)) {
+            // ℓ of a free length of zero
+            const double length = deflections<double>(kind, Rest<double>{}, q)[0];
+            if (curve_of(kind, 0) != nullptr || !(length > 0) || length == *free_length) continue;
+            drivers.push_back({FreeLength{element}, *free_length - length, 0});
+            *free_length = length;
+        }
+        if (Vector6<double>* wrench = preload(kind)) {
+            const Vector6<double> stress =
+                gradient<double>(*member<SpatialLaw>(kind),
+                                 deflections<double>(kind, Rest<double>{}, q), everywhere) +
+                *wrench;
+            if (stress.isZero(0) || !stress.allFinite()) continue;
+            drivers.push_back({Preload{element, stress}, 1, 0});
+            *wrench -= stress;
+        }
     }
     if (drivers.size() == branch.drivers.size()) return std::nullopt;
     result.model.branches = {result.branch};

@@ -219,10 +219,14 @@ json symbols_json(const Scene& scene) {
     return list;
 }
 
+// The two markers of a segment of a beam.
+struct Segment {
+    Marker i, j;
+};
+
 // Consecutive segments of a beam: its nodes lie between their middles, and beyond the first and the
 // last middle the beam continues by the same distance.
-void draw_beam(Sketch& sketch, const std::string& name,
-               const std::vector<const Bushing*>& segments) {
+void draw_beam(Sketch& sketch, const std::string& name, const std::vector<Segment>& segments) {
     std::vector<Point> line;
     const auto end = [&](const Marker& middle, const Marker& other) {
         // the node of `other`'s body is symmetric to this end about the middle
@@ -233,14 +237,14 @@ void draw_beam(Sketch& sketch, const std::string& name,
         const Pose& own = sketch.model->bodies[static_cast<std::size_t>(middle.body)].design;
         return Point{middle.body, own.p.conjugate() * (at - own.r)};
     };
-    if (segments.size() > 1) line.push_back(end(segments.front()->i, segments.front()->j));
+    if (segments.size() > 1) line.push_back(end(segments.front().i, segments.front().j));
     for (std::size_t k = 0; k < segments.size(); ++k) {
         const Marker& middle =
-            k == 0 ? segments[k]->j : segments[k]->i;  // on a node, not on the body at the end
+            k == 0 ? segments[k].j : segments[k].i;  // on a node, not on the body at the end
         line.push_back({middle.body, middle.s_local});
-        if (k + 1 < segments.size()) line.push_back({segments[k]->j.body, Vector3d::Zero()});
+        if (k + 1 < segments.size()) line.push_back({segments[k].j.body, Vector3d::Zero()});
     }
-    if (segments.size() > 1) line.push_back(end(segments.back()->j, segments.back()->i));
+    if (segments.size() > 1) line.push_back(end(segments.back().j, segments.back().i));
     std::size_t before = sketch.add(line.front(), name);
     for (std::size_t k = 1; k < line.size(); ++k) {
         const std::size_t now = sketch.add(line[k], name);
@@ -294,29 +298,27 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                               [](const DirectionAtAngle&) {}},
                    constraint.kind);
     }
-    std::vector<std::pair<std::string, std::vector<const Bushing*>>> beams;
-    for (const auto& elastic : model.elastics)
-        std::visit(overloaded{[&](const AxialSpring& e) {
-                                  const auto i = sketch.add(e.i, elastic.name),
-                                             j = sketch.add(e.j, elastic.name);
-                                  const bool stop = elastic.written_as == WrittenAs::stop;
-                                  sketch.link(stop ? "stop" : "spring", elastic.name, i, j);
-                              },
-                              [&](const Bushing& e) {
-                                  if (elastic.active_only_where_driven) return;  // a tyre
-                                  if (is_segment(elastic)) {
-                                      const std::string beam =
-                                          elastic.name.substr(0, elastic.name.rfind('.'));
-                                      if (beams.empty() || beams.back().first != beam)
-                                          beams.push_back({beam, {}});
-                                      beams.back().second.push_back(&e);
-                                      return;
-                                  }
-                                  const auto i = sketch.add({e.i.body, e.i.s_local}, elastic.name);
-                                  const auto j = sketch.add({e.j.body, e.j.s_local}, elastic.name);
-                                  bushings.push_back(e.i.body == ground ? j : i);
-                              }},
-                   elastic.kind);
+    std::vector<std::pair<std::string, std::vector<Segment>>> beams;
+    for (const auto& elastic : model.elastics) {
+        if (const auto ends = points_of(elastic.kind); ends.size() == 2) {
+            const auto i = sketch.add(ends[0], elastic.name), j = sketch.add(ends[1], elastic.name);
+            const bool stop = elastic.written_as == WrittenAs::stop;
+            sketch.link(stop ? "stop" : "spring", elastic.name, i, j);
+        }
+        std::vector<const Marker*> markers;
+        each_member(elastic.kind, [&](const Marker& marker) { markers.push_back(&marker); });
+        if (markers.size() != 2 || elastic.active_only_where_driven) continue;  // a tyre
+        const Marker &a = *markers[0], &b = *markers[1];
+        if (is_segment(elastic)) {
+            const std::string beam = elastic.name.substr(0, elastic.name.rfind('.'));
+            if (beams.empty() || beams.back().first != beam) beams.push_back({beam, {}});
+            beams.back().second.push_back({a, b});
+            continue;
+        }
+        const auto i = sketch.add({a.body, a.s_local}, elastic.name);
+        const auto j = sketch.add({b.body, b.s_local}, elastic.name);
+        bushings.push_back(a.body == ground ? j : i);
+    }
     for (const auto& [name, segments] : beams) draw_beam(sketch, name, segments);
     for (const auto& damper : model.dampers) {
         const auto i = sketch.add(damper.i, damper.name);
@@ -340,7 +342,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     std::set<std::string> of_beams;
     for (const auto& [name, segments] : beams)
         for (std::size_t k = 0; k + 1 < segments.size(); ++k)
-            of_beams.insert(model.bodies[static_cast<std::size_t>(segments[k]->j.body)].name);
+            of_beams.insert(model.bodies[static_cast<std::size_t>(segments[k].j.body)].name);
     for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body)
         if (!of_beams.contains(model.bodies[static_cast<std::size_t>(body)].name))
             draw_body(sketch, body, hubs[static_cast<std::size_t>(body)], patches, faces);

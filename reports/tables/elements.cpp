@@ -140,23 +140,25 @@ bool is_beam(const Elastic& elastic) {
            matrix_of(*member<SpatialLaw>(elastic.kind)) != nullptr;
 }
 
-std::string bushing_words(const Written& written, const Elastic& elastic, const Bushing& bushing) {
-    const Resisted axes = resisted(bushing.law);
+std::string bushing_words(const Written& written, const Elastic& elastic, const SpatialLaw& law) {
+    const Resisted axes = resisted(law);
     if (elastic.active_only_where_driven && axes.all == std::vector<std::size_t>{2})
         return fmt::format("tyre, {}, stands on the branches that drive its road",
-                           law_words(bushing.law, 2, lengths));
+                           law_words(law, 2, lengths));
     if (axes.all == std::vector<std::size_t>{5})
-        return "torsion spring, " + law_words(bushing.law, 5, angles);
+        return "torsion spring, " + law_words(law, 5, angles);
     std::string text = is_beam(elastic) ? "beam" : "bushing";
     if (!is_beam(elastic)) {
         const auto as_written = written.find(elastic.name);
         text += formulation_words(as_written != written.end() ? as_written->second
-                                                              : bushing.formulation);
+                                                              : *member<Formulation>(elastic.kind));
     }
     for (const std::size_t k : axes.curves)
-        text += fmt::format(", {}: {}", components[k],
-                            law_words(bushing.law, k, k < 3 ? lengths : angles));
-    if (!bushing.undeformed.isZero(0)) text += ", undeformed elsewhere than drawn";
+        text += fmt::format(", {}: {}", components[k], law_words(law, k, k < 3 ? lengths : angles));
+    bool elsewhere = false;
+    each_member(elastic.kind,
+                [&](Deformation<const Vector6> e) { elsewhere = !e.value.isZero(0); });
+    if (elsewhere) text += ", undeformed elsewhere than drawn";
     return text;
 }
 
@@ -197,12 +199,13 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
             k = last;
             continue;
         }
-        lines.push_back(
-            {elastic.name, body(i) + " - " + body(j),
-             std::visit(
-                 overloaded{[](const AxialSpring& e) { return spring_words(e.law); },
-                            [&](const Bushing& e) { return bushing_words(written, elastic, e); }},
-                 elastic.kind)});
+        std::string words;
+        each_member(elastic.kind,
+                    overloaded{[&](const ScalarLaw& law) { words = spring_words(law); },
+                               [&](const SpatialLaw& law) {
+                                   words = bushing_words(written, elastic, law);
+                               }});
+        lines.push_back({elastic.name, body(i) + " - " + body(j), words});
     }
     return lines;
 }

@@ -9,8 +9,8 @@
 
 #include "elastocheck/read_scene.hpp"
 #include "models/import/curves.hpp"
-#include "models/laws.hpp"
 #include "models/kinds.hpp"
+#include "models/laws.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -87,7 +87,7 @@ class Writer {
             result_.notes.leave_out("having no statement", {0, "branch '" + branch.name + "'"});
         for (const Damper& damper : scene_.dampers)
             result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
-        for (const auto& line : told(result_.notes)) t += fmt::format("! {}\n", line);
+        for (const auto& line : described(result_.notes)) t += fmt::format("! {}\n", line);
         t += "END\n";
     }
 

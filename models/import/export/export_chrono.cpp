@@ -85,7 +85,8 @@ class Writer {
             result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
         result_.notes.leave_out("being of motion alone", {0, "masses (all written as 1)"});
         result_.text = "// Exported by elastocheck\n";
-        for (const auto& line : told(result_.notes)) result_.text += fmt::format("// {}\n", line);
+        for (const auto& line : described(result_.notes))
+            result_.text += fmt::format("// {}\n", line);
         result_.text += root.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
     }
 

@@ -62,7 +62,7 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
 
 // P = k (ℓ₀ - ℓ) at the design length: the preload of a linear spring is converted to a free
 // length.
-void add_spring(int k, const std::string& name, const AxialSpring& spring, const Units& units,
+void add_spring(int k, const std::string& name, const ScalarLaw& law, const Units& units,
                 Drivables& result) {
     const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
         result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
@@ -83,7 +83,7 @@ void add_spring(int k, const std::string& name, const AxialSpring& spring, const
                            "of a spring with a curve, where it is not in proportion to any length; "
                            "allowed: its free_length";
                    }},
-        spring.law);
+        law);
 }
 
 // A torsion spring has a preload about its axis only.
@@ -107,10 +107,10 @@ void add_elements(const Scene& scene, const Units& units, const NamedElements& e
     for (const auto& entry : elements) {
         const int k = entry.first;
         const NamedElement& element = entry.second;
-        std::visit(
-            overloaded{[&](const AxialSpring& e) { add_spring(k, element.path, e, units, result); },
-                       [&](const Bushing&) { add_bushing(k, element, units, result); }},
-            scene.elastics[static_cast<std::size_t>(k)].kind);
+        const ElasticKind& kind = scene.elastics[static_cast<std::size_t>(k)].kind;
+        if (driven_number(kind) != nullptr)
+            add_spring(k, element.path, *scalar_law(kind, 0), units, result);
+        if (preload(kind) != nullptr) add_bushing(k, element, units, result);
     }
 }
 

@@ -597,8 +597,8 @@ TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
         "SPLINE/4, X = -20, -10, 0, 10, 20, Y = -900, -300, 0, 100, 150\n"
         "SFORCE/7, TRANS, I = 4, J = 5, FUNCTION = -AKISPL(DM(4,5) - 195, 0, 4)\nACCGRAV/");
     const std::string yaml = scene_of(text);
-    const auto told = importer::told(importer::import_text(text, "model.adm", {}).notes);
-    EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& line) {
+    const auto described = importer::described(importer::import_text(text, "model.adm", {}).notes);
+    EXPECT_TRUE(std::ranges::any_of(described, [](const std::string& line) {
         return line.find("N apart (of 900), at ") != line.npos &&
                line.find("SPLINE/4 the file has Akima's curve") != line.npos;
     })) << yaml;
@@ -732,9 +732,9 @@ TEST(Adm, FrictionOfAJointIsLeftOutByName) {
         refusal(text).find(
             "MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its friction holds"),
         std::string::npos);
-    const auto told =
-        importer::told(importer::import_text(text, "model.adm", {"", true, false}).notes);
-    EXPECT_TRUE(std::ranges::any_of(told, [](const std::string& line) {
+    const auto described =
+        importer::described(importer::import_text(text, "model.adm", {"", true, false}).notes);
+    EXPECT_TRUE(std::ranges::any_of(described, [](const std::string& line) {
         return line.starts_with("Left out, by --drop dynamics: line 30, MU_DYN_ROT, MAX_FRIC_ROT");
     }));
 }
@@ -749,7 +749,7 @@ TEST(Adm, WarningsOfOneKindAreOneLineWithTheLargest) {
     const auto imported = importer::import_text(text, "model.adm", {});
     EXPECT_EQ(imported.notes.warnings.size(), 2u);
     std::vector<std::string> warnings;
-    for (const auto& line : importer::told(imported.notes))
+    for (const auto& line : importer::described(imported.notes))
         if (line.starts_with("Warning")) warnings.push_back(line);
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(

@@ -34,7 +34,8 @@ std::string chrono_scene(const std::string& text) {
 // The notes in the head of the scene, each on one line.
 std::string head_of(const std::string& text) {
     std::string head;
-    for (const auto& line : importer::told(importer::import_text(text, "model.json", {}).notes))
+    for (const auto& line :
+         importer::described(importer::import_text(text, "model.json", {}).notes))
         head += line + "\n";
     return head;
 }
@@ -197,7 +198,7 @@ TEST(Chrono, AMisspeltKeyIsNeverSilent) {
                 const std::string yaml = importer::import_text(other, "model.json", {}).yaml;
                 const std::string head = yaml.substr(0, yaml.find("\nelastocheck:"));
                 ADD_FAILURE() << name << ": " << key
-                              << (head.find(key) == head.npos ? ": silent" : ": only told");
+                              << (head.find(key) == head.npos ? ": silent" : ": only described");
             } catch (const SceneError& error) {
                 EXPECT_NE(std::string(error.what()), "");
             }
