@@ -1,8 +1,9 @@
 // Data of force laws: values, scaling, reversal, and the curves of an element.
 #pragma once
 
+#include <functional>
+
 #include "elastocheck/mechanism.hpp"
-#include "models/overloaded.hpp"
 
 namespace elastocheck {
 
@@ -26,31 +27,9 @@ SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
 ScalarLaw scaled(const ScalarLaw& law, double stretch, double force);
 SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
 
-// Calls f(double&) for every number of a law; the entries of a symmetric matrix once each.
-template <class F>
-void each_number(ScalarLaw& law, F&& f) {
-    std::visit(overloaded{[&](LinearRate& u) { f(u.k); },
-                          [&](Curve& u) {
-                              for (double& knot : u.knots) f(knot);
-                              for (auto& piece : u.pieces)
-                                  for (double& c : piece) f(c);
-                          }},
-               law);
-}
-template <class F>
-void each_number(SpatialLaw& law, F&& f) {
-    std::visit(overloaded{[&](LinearStiffness& u) {
-                              for (int i = 0; i < 6; ++i)
-                                  for (int j = 0; j <= i; ++j) {
-                                      f(u.K(i, j));
-                                      u.K(j, i) = u.K(i, j);
-                                  }
-                          },
-                          [&](PerAxis& u) {
-                              for (ScalarLaw& axis : u.axis) each_number(axis, f);
-                          }},
-               law);
-}
+// Calls f for every number of a law; the entries of a symmetric matrix once each.
+void each_number(ScalarLaw& law, const std::function<void(double&)>& f);
+void each_number(SpatialLaw& law, const std::function<void(double&)>& f);
 
 // The same bushing with its markers i and j swapped; deformations, preload and undeformed offset
 // change sign. A frame on j becomes a frame on i and vice versa.

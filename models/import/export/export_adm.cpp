@@ -266,6 +266,10 @@ class Writer {
         std::visit([&](const auto& kind) { write(elastic, kind); }, elastic.kind);
     }
 
+    template <class OtherKind>
+    void write(const Elastic& elastic, const OtherKind&) {
+        miss("element '" + elastic.name + "'", "ADAMS has no element of this kind");
+    }
     void write(const Elastic& elastic, const AxialSpring& spring) {
         const Curve* curve = curve_of(spring.law);
         const bool is_stop = elastic.written_as == WrittenAs::stop;
@@ -368,7 +372,7 @@ class Writer {
                 const std::string x = k < 3 ? fmt::format("{}({}, {}, {})", measures[k], I, J, J)
                                             : fmt::format("{}({}, {})", measures[k], I, J);
                 const auto at_zero = force[static_cast<Eigen::Index>(k)];
-                if (const double* rate = rate_of(axes->axis[k]))
+                if (const double* rate = elastocheck::rate_of(axes->axis[k]))
                     functions += fmt::format(", {} = {} - {} * {}\\\n", components[k],
                                              real(at_zero), real(*rate), x);
                 else {

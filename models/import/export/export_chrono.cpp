@@ -245,6 +245,10 @@ class Writer {
         std::visit([&](const auto& kind) { write(root, elastic, kind); }, elastic.kind);
     }
 
+    template <class OtherKind>
+    void write(json&, const Elastic& elastic, const OtherKind&) {
+        miss("element '" + elastic.name + "'", "Chrono has no element of this kind");
+    }
     void write(json& root, const Elastic& elastic, const AxialSpring& spring) {
         const Curve* curve = curve_of(spring.law);
         if (elastic.written_as == WrittenAs::stop) return require_written(elastic, spring);

@@ -67,23 +67,19 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
     const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
         result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
     };
-    std::visit(
-        overloaded{[&](const LinearRate& u) {
-                       for (const char* field : {".free_length", ".preload"})
-                           if (u.k == 0)
-                               result.not_driven[name + field] =
-                                   "of a spring of zero rate, which it does not move";
-                       if (u.k == 0) return;
-                       add(".free_length", ParameterUnit::metre, units.length, 1);
-                       add(".preload", ParameterUnit::newton, units.force, 1 / u.k);
-                   },
-                   [&](const Curve&) {
-                       add(".free_length", ParameterUnit::metre, units.length, 1);
-                       result.not_driven[name + ".preload"] =
-                           "of a spring with a curve, where it is not in proportion to any length; "
-                           "allowed: its free_length";
-                   }},
-        law);
+    const double* rate = rate_of(law);
+    if (rate != nullptr && *rate == 0) {
+        for (const char* field : {".free_length", ".preload"})
+            result.not_driven[name + field] = "of a spring of zero rate, which it does not move";
+        return;
+    }
+    add(".free_length", ParameterUnit::metre, units.length, 1);
+    if (rate != nullptr)
+        add(".preload", ParameterUnit::newton, units.force, 1 / *rate);
+    else
+        result.not_driven[name + ".preload"] =
+            "of a spring with a curve, where it is not in proportion to any length; "
+            "allowed: its free_length";
 }
 
 // A torsion spring has a preload about its axis only.

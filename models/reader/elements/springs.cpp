@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "models/overloaded.hpp"
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
 
@@ -22,15 +21,7 @@ AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
 // The deflection x with f(x) = -p: a preload is positive in compression.
 double deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
     const double p = units.force.si(preload.number(units.force.name));
-    const auto of_rate = [&](const LinearRate& u) {
-        if (u.k == 0)
-            preload.fail("a spring of zero rate has no preload; leave it out or give a rate");
-        return -p / u.k;
-    };
-    const auto of_curve = [&](const Curve& u) {
-        return deflection_at(preload, u, 0 - p, units.force);  // 0, not -0
-    };
-    return std::visit(overloaded{of_rate, of_curve}, law);
+    return deflection_at(preload, law, 0 - p, units.force);  // 0, not -0
 }
 
 // ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.

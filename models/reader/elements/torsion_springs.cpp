@@ -1,4 +1,4 @@
-#include "models/overloaded.hpp"
+#include "models/kinds.hpp"
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
 
@@ -6,17 +6,14 @@ namespace elastocheck::reader {
 namespace {
 
 SpatialLaw about_z(const ScalarLaw& law) {
-    return std::visit(overloaded{[](const LinearRate& u) -> SpatialLaw {
-                                     LinearStiffness all;
-                                     all.K(5, 5) = u.k;
-                                     return all;
-                                 },
-                                 [](const Curve& u) -> SpatialLaw {
-                                     PerAxis all;
-                                     all.axis[5] = u;
-                                     return all;
-                                 }},
-                      law);
+    if (const double* rate = rate_of(law)) {
+        LinearStiffness all;
+        all.K(5, 5) = *rate;
+        return all;
+    }
+    PerAxis all;
+    all.axis[5] = law;
+    return all;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "models/laws.hpp"
+#include "models/overloaded.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -113,6 +114,8 @@ Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs) {
     return stop == Stop::rebound ? law : reversed(law);
 }
 
+namespace {
+
 // f is non-decreasing. Outside the knots it is linear; inside the interval that brackets the force,
 // bisection runs to the last bit.
 double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit) {
@@ -147,6 +150,18 @@ double deflection_at(const Cursor& at, const Curve& curve, double force, const U
     for (double t; t = low + (high - low) / 2, t > low && t < high;)
         (c[0] + t * (c[1] + t * (c[2] + t * c[3])) < force ? low : high) = t;
     return x[k] + high;
+}
+
+}  // namespace
+
+double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit) {
+    const auto of_rate = [&](const LinearRate& u) {
+        if (u.k == 0) at.fail("a spring of zero rate has no preload; leave it out or give a rate");
+        return force / u.k;
+    };
+    return std::visit(
+        overloaded{of_rate, [&](const Curve& u) { return deflection_at(at, u, force, unit); }},
+        law);
 }
 
 }  // namespace elastocheck::reader

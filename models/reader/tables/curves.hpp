@@ -20,8 +20,8 @@ ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitio
 enum class Stop { bump, rebound };
 Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs);
 
-// The unique deflection at which the curve has this force [N]. `at` reports an error if there is
+// The unique deflection at which the law has this force [N]. `at` reports an error if there is
 // none or several.
-double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit);
+double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit);
 
 }  // namespace elastocheck::reader
