@@ -28,7 +28,6 @@ const std::set<std::string> implement_a_kind{
     "models/compile/welds.cpp",                 // fixed joints
     "models/compile/links.cpp",                 // spherical joints of a link
     "models/import/export/export_chrono.cpp",   // stops between the ends of a spring
-    "recursive/formula/load_growth.cpp",        // springs of constant rate
     "recursive/linear_response.cpp",            // a disturbance, not a driver
     "recursive/series/equations.cpp",           // series of the laws
     "reference/certificate/interval/laws.cpp",  // laws in intervals
