@@ -5,6 +5,7 @@
 
 #include "elastocheck/energy.hpp"
 #include "models/branch.hpp"
+#include "models/kinds.hpp"
 #include "reference/energy/constraints/balance.hpp"
 #include "reference/energy/potential/conservative.hpp"
 #include "reference/energy/potential/recentre.hpp"

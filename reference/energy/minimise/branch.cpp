@@ -27,6 +27,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/kinds.hpp"
 #include "reference/energy/minimise/minimise.hpp"
 
 namespace elastocheck::reference::energy {
