@@ -9,20 +9,16 @@
 namespace elastocheck::recursive {
 
 bool has_energy(const Model& model, const Branch& branch) {
-    const auto follows = [](const LoadKind& load) {
-        return std::holds_alternative<FollowerForce>(load) ||
-               std::holds_alternative<FollowerMoment>(load);
-    };
     return std::ranges::none_of(model.static_loads,
-                                [&](const Load& load) { return follows(load.kind); }) &&
+                                [&](const Load& load) { return is_follower(load.kind); }) &&
            std::ranges::none_of(branch.drivers,
                                 [&](const Driver& driver) {
-                                    const auto* load = std::get_if<Load>(&driver.what);
-                                    return load != nullptr && follows(load->kind);
+                                    const Load* load = driven_load(driver.what);
+                                    return load != nullptr && is_follower(load->kind);
                                 }) &&
            std::ranges::all_of(model.elastics, [](const auto& element) {
-               const auto* bushing = std::get_if<Bushing>(&element.kind);
-               return bushing == nullptr || elastocheck::has_energy(bushing->formulation);
+               const auto* formulation = member<Formulation>(element.kind);
+               return formulation == nullptr || elastocheck::has_energy(*formulation);
            });
 }
 

@@ -91,18 +91,17 @@ std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<Re
 // drifted apart.
 inline bool may_push(const Branch& branch, const ElasticKind& element, int k) {
     const bool driven = std::ranges::any_of(branch.drivers, [k](const Driver& driver) {
-        const auto* preload = std::get_if<Preload>(&driver.what);
-        return preload != nullptr && preload->elastic == k;
+        return preload(driver.what) != nullptr && driven_element(driver.what) == k;
     });
-    return driven ||
-           std::visit(overloaded{
-                          [](const AxialSpring& e) { return std::holds_alternative<Curve>(e.law); },
-                          [](const Bushing& e) {
-                              return !e.preload.isZero(0) || !has_energy(e.formulation) ||
-                                     std::holds_alternative<PerAxis>(e.law);
-                          },
-                      },
-                      element);
+    bool pushes = false;
+    each_member(element,
+                overloaded{[&](const ScalarLaw& law) { pushes |= curve_of(law) != nullptr; },
+                           [&](const SpatialLaw& law) { pushes |= !matrix_of(law); },
+                           [&](ForceAndMoment<const elastocheck::Vector6> preload) {
+                               pushes |= !preload.value.isZero(0);
+                           },
+                           [&](const Formulation& f) { pushes |= !has_energy(f); }});
+    return driven || pushes;
 }
 
 // State and workspace of a march; allocated once.
@@ -189,9 +188,10 @@ struct SteppingState {
     // tangent.
     void check_followers(const Pattern& pattern) const {
         for (const auto& driver : branch.drivers) {
-            const auto* load = std::get_if<Load>(&driver.what);
-            const auto* follower = load ? std::get_if<FollowerForce>(&load->kind) : nullptr;
-            if (follower && !has_entry(pattern, 6 * follower->at.body, 6 * follower->at.body + 3))
+            const Load* load = driven_load(driver.what);
+            if (!load || !is_follower(load->kind) || is_moment(load->kind)) continue;
+            const BodyId body = body_of(load->kind);
+            if (!has_entry(pattern, 6 * body, 6 * body + 3))
                 throw std::invalid_argument(
                     "the analysis is of a model without the branch's load '" + load->name + "'");
         }
@@ -444,8 +444,7 @@ Real largest_gap(const SteppingState<Real>& s, const Vector<Real>& Phi) {
     Real worst = 0;
     for (std::size_t c = 0; c < s.model.constraints.size(); ++c) {
         const ConstraintKind& kind = s.model.constraints[c].kind;
-        const bool direction = std::holds_alternative<PerpendicularDirections>(kind) ||
-                               std::holds_alternative<DirectionAtAngle>(kind);
+        const bool direction = member<Point>(kind) == nullptr;
         const Real open =
             Phi.segment(s.inputs.row[c], static_cast<Eigen::Index>(rows(kind))).norm();
         const Real share = direction ? open : open / static_cast<Real>(s.length);
