@@ -197,8 +197,8 @@ EquilibriumPath with_error_bounds(const Model& model, const Branch& branch, cons
     return path;
 }
 
-// Whether settling, which ended so, may reach an equilibrium by another homotopy. The linear methods that store forces have
-// their own settling, step by step, of which the path is a part.
+// Whether settling, which ended so, may reach an equilibrium by another homotopy. The linear
+// methods that store forces have their own settling, step by step, of which the path is a part.
 bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     return (!linear || linear->follow == everything) &&
@@ -244,7 +244,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
         with_error_bounds(model, branch, options, analysis, visit ? counted : Visit{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
-    // Where a drawing far from rest has several equilibria, homotopies may settle at different ones: no error bound is claimed.
+    // Where a drawing far from rest has several equilibria, homotopies may settle at different
+    // ones: no error bound is claimed.
     if (const auto other = grown(model, branch)) {
         EquilibriumPath again = found(other->model, other->branch, options, analyse(other->model),
                                       visit ? counted : Visit{});

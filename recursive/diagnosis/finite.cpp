@@ -27,8 +27,8 @@ std::string not_finite(const Model& model) {
     const Inputs<double> inputs = inputs_as_drawn<double>(model);
     std::vector<std::string> names;
     const auto name = [&](const std::string& kind, const std::string& who) {
-        const std::string told = kind + " '" + who + "'";
-        if (std::ranges::find(names, told) == names.end()) names.push_back(told);
+        const std::string entry = kind + " '" + who + "'";
+        if (std::ranges::find(names, entry) == names.end()) names.push_back(entry);
     };
     for (std::size_t c = 0; c < model.constraints.size(); ++c)
         rows<double>(model.constraints[c].kind, inputs.offset[c], q, [&](const Row<double>& row) {

@@ -1,9 +1,11 @@
 // Second homotopy of settling: forces that grow from zero.
 //
-// From the design position the first homotopy (settle.hpp) lets go of the imbalance as dead forces and moments. Its path may
-// turn back or end at an unstable equilibrium. Here elements store nothing as drawn, no load acts at t = 0, and both grow
-// with t, in the elements' own axes: other drivers of the branch, so that every method follows it as it stands. Of several
-// equilibria it may reach another than the first homotopy would: points that are reached so carry no error bound.
+// The first homotopy (settle.hpp) releases the imbalance of the design position as dead forces and
+// moments. Its path may turn back or end at an unstable equilibrium. In the second homotopy the
+// elements have no force as drawn and no load acts at t = 0; both grow with t, in the axes of the
+// elements. They are further drivers of the branch, so that every method can follow it. Where
+// several equilibria exist, the two homotopies may reach different ones; points that are reached by
+// the second one have no error bound.
 #pragma once
 
 #include <optional>
@@ -13,13 +15,12 @@
 namespace elastocheck::recursive {
 
 struct Grown {
-    Model
-        model;  // without static loads; linear springs and bushings without force in the design position
-    Branch branch;  // what the model lacks, as further drivers with start and without rate
+    Model model;    // no static loads; linear springs and bushings have no force as drawn
+    Branch branch;  // the removed loads and forces as further drivers, with a start and no rate
 };
 
-// The same equations as (model, branch) at t = 1, whatever a. Nothing where nothing would grow: then the first homotopy is
-// this one. Springs with a curve keep their force as drawn.
+// The same equations as (model, branch) at t = 1, for every a; none where the model has no such
+// force, since both homotopies are then the same. Springs with a curve keep their force as drawn.
 std::optional<Grown> grown(const Model& model, const Branch& branch);
 
 }  // namespace elastocheck::recursive

@@ -35,8 +35,8 @@ Outcome settles(SteppingState<double>& s, const Branch& branch, const Analysis& 
     return outcome == Outcome::converged ? check_start_stability(s) : outcome;
 }
 
-// Stability at the nodes of one traversal. A change of the determinant's sign shows an odd number of
-// negative stiffnesses; the softest modes show two at once.
+// Stability at the nodes of one traversal. A change of the determinant's sign shows an odd number
+// of negative stiffnesses; the softest modes show two at once.
 struct Stability {
     SubspaceBasis<double> softest = {};
 

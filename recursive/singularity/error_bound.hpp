@@ -16,9 +16,9 @@
 // the theorem of Newton and Kantorovich z* is the only equilibrium near, and its distance is at
 // most the sum of the corrections. It need not be the equilibrium that q approximates: an
 // equilibrium of another branch may be nearer. Therefore z₀ is not the point but the branch itself,
-// followed by accepted steps (continuation.hpp) from the settled start at a = 0 from point to point, and
-// the distance of the point from z₀ is added. Where a path is followed past limit points, z₀ is the
-// point.
+// followed by accepted steps (continuation.hpp) from the settled start at a = 0 from point to
+// point, and the distance of the point from z₀ is added. Where a path is followed past limit
+// points, z₀ is the point.
 //
 // The error after the last correction is less than that correction, plus the effect of rounding in
 // G and Φ as evaluated in extended precision, e_i = ε Σ_j |M_ij| c_j with c = (size of r, 1, |λ|):

@@ -55,9 +55,9 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
     // The factors are those of the last correction of settling.
     differentiate(s, settings, node);
     const int orientation = node.orientation;
-    // A bend of the path may be sharper than a short step: an imperfect column turns aside within 1e-9
-    // of its load. The reason why the branch ends is judged at the first short step that is refused; a
-    // step refused only for its interpolation error gives no reason.
+    // A bend of the path may be sharper than a short step: an imperfect column turns aside within
+    // 1e-9 of its load. The reason why the branch ends is judged at the first short step that is
+    // refused; a step refused only for its interpolation error gives no reason.
     constexpr double short_step = 1e-7,  // of the branch
         shortest_step = 1e-12;
     bool refused = false;  // a short step at refused_at, past which the path has not gone on

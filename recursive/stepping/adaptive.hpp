@@ -4,8 +4,8 @@
 //   between   the cubic through (z, z') and (z⁺, z⁺'). Its error is largest at the midpoint, where
 //             the size of one Newton correction estimates it.
 //
-// A step is accepted when continuation.hpp accepts it and the midpoint error is within the tolerance. The
-// next step size follows from the midpoint error, which is of order 4.
+// A step is accepted when continuation.hpp accepts it and the midpoint error is within the
+// tolerance. The next step size follows from the midpoint error, which is of order 4.
 //
 // An equilibrium that becomes unstable and stable again between two nodes leaves the sign of the
 // determinant unchanged. It shows as a dip of the determinant: where the determinant at the
@@ -15,9 +15,9 @@
 // begins unstable is not followed (stability.hpp). After `most_steps` steps the outcome is
 // iteration_limit.
 //
-// No step crosses a knot of a force curve: the step ends on the knot (event_location.hpp) and the next one
-// begins with the derivative on the other side. Where the determinant changes its sign with the
-// piece, the path turns back at the knot.
+// No step crosses a knot of a force curve: the step ends on the knot (event_location.hpp) and the
+// next one begins with the derivative on the other side. Where the determinant changes its sign
+// with the piece, the path turns back at the knot.
 #pragma once
 
 #include "elastocheck/recursive.hpp"

@@ -1,6 +1,6 @@
 // Settling: homotopy from the design position to the equilibrium at the start of the branch.
-// t goes from 0 to 1 (stepping_state.hpp), under preloads, static loads, start values of drivers and joints
-// that are open as drawn.
+// t goes from 0 to 1 (stepping_state.hpp), under preloads, static loads, start values of drivers
+// and joints that are open as drawn.
 #pragma once
 
 #include "recursive/stepping/continuation.hpp"

@@ -1,4 +1,5 @@
-// Stability of an equilibrium: inertia of its reduced Hessian, idle modes under load, settled start.
+// Stability of an equilibrium: inertia of its reduced Hessian, idle modes under load, settled
+// start.
 //
 // Inertia: with Z a basis of the motions that the joints allow, ZᵀKZ is positive definite if and
 // only if K + ρ Φ_qᵀ Φ_q is for some ρ (Finsler, Debreu). That matrix has as many negative
@@ -26,7 +27,8 @@ namespace elastocheck::recursive {
 bool has_energy(const Model& model, const Branch& branch);
 
 // Whether the equilibrium whose consistent tangent is in the system has a negative eigenvalue.
-// False where the negative pivot may be round-off, which grows with ρ, and where K is not symmetric.
+// False where the negative pivot may be round-off, which grows with ρ, and where K is not
+// symmetric.
 bool is_unstable(const SteppingState<double>& s);
 
 // Stability of the settled start, whose matrix is in the system: `singular` if it is unstable.

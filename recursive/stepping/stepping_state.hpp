@@ -321,9 +321,9 @@ Real size_of_solution(const SteppingState<Real>& s) {
 // Stored forces that do not follow the bodies are rotated with a delay of one step. Where their
 // geometric stiffness k_g exceeds the elastic stiffness k, a step gives
 // Δqⁿ = -(k_g / k) Δqⁿ⁻¹ + ..., which reverses and exceeds the step before; more steps only amplify
-// this (stability_limit.hpp). A method with the consistent tangent corrects in each step the error of the
-// last one; where that exceeds half a step, the steps are too long. The linearisation of eq. (6) is
-// invalid for a rotation of a radian in one step.
+// this (stability_limit.hpp). A method with the consistent tangent corrects in each step the error
+// of the last one; where that exceeds half a step, the steps are too long. The linearisation of eq.
+// (6) is invalid for a rotation of a radian in one step.
 template <class Real>
 bool has_diverged(SteppingState<Real>& s) {
     const auto weighted = s.dq.array() * s.system.weight.head(s.n()).array();
