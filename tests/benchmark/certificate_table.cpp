@@ -8,9 +8,9 @@
 #include <ctime>
 
 #include "compare/comparison/legs.hpp"
-#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "reference/certificate/certificate.hpp"
 

@@ -182,8 +182,9 @@ TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
                 SolverSettings settings = solver.settings;
                 settings.every = 4, settings.error_bound = false;
                 for (const auto& way : sides_of(model, model.branches.front(), 4)) {
-                    const auto path = walk(
-                        way, settings, [&](const Equilibrium& state) { answer.poses = state.poses; });
+                    const auto path = walk(way, settings, [&](const Equilibrium& state) {
+                        answer.poses = state.poses;
+                    });
                     if (answer.outcome == Outcome::converged) answer.outcome = path.outcome;
                 }
             }

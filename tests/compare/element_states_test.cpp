@@ -8,12 +8,12 @@
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
-#include "elastocheck/trim.hpp"
 #include "compare/outputs/positions.hpp"
 #include "compare/tables/table.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/overloaded.hpp"
 #include "tests/support/scenes.hpp"
 

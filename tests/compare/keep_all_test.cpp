@@ -7,8 +7,8 @@
 #include <tuple>
 
 #include "compare/comparison/compare.hpp"
-#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "tests/support/scenes.hpp"

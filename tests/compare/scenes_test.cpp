@@ -7,9 +7,9 @@
 #include <map>
 
 #include "compare/comparison/compare.hpp"
-#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -21,14 +21,14 @@
 #include <limits>
 
 #include "compare/comparison/legs.hpp"
-#include "elastocheck/trim.hpp"
-#include "elastocheck/channels.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/positions.hpp"
+#include "elastocheck/channels.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
@@ -184,8 +184,8 @@ Power power(const Model& model, const std::vector<Channel>& channels, const Bran
                        },
                        [&](const FreeLength& f) {
                            const auto& e = std::get<AxialSpring>(element(f.elastic));
-                           const double x =
-                               deformation(e, static_cast<std::size_t>(f.elastic), branch, state)[0];
+                           const double x = deformation(e, static_cast<std::size_t>(f.elastic),
+                                                        branch, state)[0];
                            return -driver.rate * force(e.law, x);
                        },
                        [&](const Preload& p) {

@@ -6,8 +6,8 @@
 #include <map>
 #include <sstream>
 
-#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/trim.hpp"
 #include "reports/document/document.hpp"
 #include "reports/page/report/report.hpp"
 #include "tests/support/folder.hpp"

@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "elastocheck/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "tests/engines/simbody/engine.hpp"
 

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "compare/comparison/legs.hpp"
-#include "elastocheck/trim.hpp"
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "models/import/adm/expression.hpp"
 #include "models/import/export/export_adm.hpp"
 #include "models/import/import.hpp"
