@@ -103,7 +103,7 @@ struct Node {
     VectorXd box;  // radii of a box that contains the equilibrium, if computed
 };
 
-struct Walk {
+struct NodeSolver {
     const System& system;
     const Interpolant& states;
     Border border;
@@ -288,9 +288,9 @@ VectorXd tube(const VectorXd& first, const Rest& rest, const VectorXd& room) {
 }
 
 // Computes the box at a joint of two pieces; the gauge there is the joint's own position.
-void enclose(const Walk& walk, Node& node) {
+void enclose(const NodeSolver& solver, Node& node) {
     if (node.box.size() > 0) return;
-    const Problem problem = walk.problem(node.y.head(walk.system.n()));
+    const Problem problem = solver.problem(node.y.head(solver.system.n()));
     const Interval a = node.a;
     const auto E = evaluate(problem, thin(node.y), a, Slopes::no).E;
     MatrixXd Y = node.Y;
@@ -311,9 +311,9 @@ void enclose(const Walk& walk, Node& node) {
 }
 
 // Proves a piece, or leaves its tube empty.
-bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
+bool prove(const NodeSolver& solver, Piece& piece, const MatrixXd& Y0, const VectorXd& joint,
            const Tolerance& tolerance) {
-    const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
+    const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
     const int n = problem.n();
     constexpr int F_order = order<Along>, J_order = order<SlopesAlong>;
     const auto F = coefficients<F_order>([&](const Interval& S) {
@@ -322,7 +322,7 @@ bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& j
             .E;
     });
     VectorXd first = step({Y0}, F, n);
-    if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
+    if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
     // Range of the tube over which F' is evaluated.
     const VectorXd room = (4 * first).cwiseMax(joint).cwiseMax(1e-18);
     const auto J = coefficients<J_order>([&](const Interval& S) {
@@ -337,7 +337,7 @@ bool prove(const Walk& walk, Piece& piece, const MatrixXd& Y0, const VectorXd& j
     const RestAlong rest = rest_along(Y, J);
     if (!rest.finite) return false;
     piece.r = tube(step(Y, F, n).cwiseMax(joint), rest, room);
-    return piece.r.size() > 0 && within(walk.system, piece.r, tolerance);
+    return piece.r.size() > 0 && within(solver.system, piece.r, tolerance);
 }
 
 // Whether the piece crosses a corner.
@@ -350,9 +350,9 @@ bool over_a_corner(const System& system, const Piece& piece) {
 }
 
 // The same for a piece across a knot.
-bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint,
+bool prove_over_knot(const NodeSolver& solver, Piece& piece, const VectorXd& joint,
                      const Tolerance& tolerance) {
-    const Problem problem = walk.problem(VectorXd::Zero(walk.system.n()));
+    const Problem problem = solver.problem(VectorXd::Zero(solver.system.n()));
     const auto F = coefficients<1>([&](const Interval& S) {
         return evaluate_without_slopes(problem, along<1>(piece, S, nullptr), parameter<1>(piece, S))
             .E;
@@ -368,11 +368,11 @@ bool prove_over_knot(const Walk& walk, Piece& piece, const VectorXd& joint,
         const MatrixXd Y = inverse(middle(J, problem.size()));
         if (!Y.allFinite()) return false;
         const VectorXd first = step({Y}, F, problem.n()).cwiseMax(joint);
-        if (!first.allFinite() || !within(walk.system, first, tolerance)) return false;
+        if (!first.allFinite() || !within(solver.system, first, tolerance)) return false;
         const Contraction rest = contraction(Y, J);
         if (!rest.finite) return false;
         const VectorXd r = passing(first, rest);
-        if (r.size() == 0 || !within(walk.system, r, tolerance)) return false;
+        if (r.size() == 0 || !within(solver.system, r, tolerance)) return false;
         if ((r.array() <= room.array()).all()) {
             piece.r = r;
             return true;
@@ -407,15 +407,16 @@ Extent distance(const Piece& piece, const StateAt& at) {
 struct Held {
     double held = 0, gap = 0;
 };
-Held held_over(const Walk& walk, const Piece& piece) {
-    const Index k = walk.border.count(), n = walk.system.n(), balances = 6 * walk.system.bodies;
+Held held_over(const NodeSolver& solver, const Piece& piece) {
+    const Index k = solver.border.count(), n = solver.system.n(),
+                balances = 6 * solver.system.bodies;
     if (k == 0) return {};
     VectorXd mu = piece.r.tail(k);
     for (Index i = 0; i < k; ++i)
         mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
-    const VectorXd all = walk.border.U.cwiseAbs() * mu * (1 + 1e-12);
+    const VectorXd all = solver.border.U.cwiseAbs() * mu * (1 + 1e-12);
     return {balances > 0 ? all.head(balances).maxCoeff() : 0,
-            walk.system.rows > 0 ? all.segment(balances, walk.system.rows).maxCoeff() : 0};
+            solver.system.rows > 0 ? all.segment(balances, solver.system.rows).maxCoeff() : 0};
 }
 
 }  // namespace
@@ -448,20 +449,20 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     }
     const StateAt& middle = at[at.size() / 2];
     const Interpolant interpolant_of = interpolant(at);
-    const Walk walk{system, interpolant_of,
-                    approach(system, middle.z, middle.state.load).problem.border};
+    const NodeSolver solver{system, interpolant_of,
+                            approach(system, middle.z, middle.state.load).problem.border};
 
     // Step-size control: halved after a failure, enlarged by three fifths after a success.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
     constexpr int most_bridges = 40;  // consecutive
     double h = first_share * way;
     Held held, pushed;
-    Node from = walk.node(tube.from), middle_node, to;
+    Node from = solver.node(tube.from), middle_node, to;
     if (!from.found)
         return open(
             fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
-    enclose(walk, from);
-    if (from.box.size() == 0 || !walk.is_sound(from))
+    enclose(solver, from);
+    if (from.box.size() == 0 || !solver.is_sound(from))
         return open(fmt::format("nothing is proved at {:.9g}", tube.from));
     const VectorXd none = VectorXd::Zero(from.y.size());
     std::size_t next_state = 0;
@@ -477,17 +478,17 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
             if (pushed.held > tolerance.held)
                 return open(fmt::format(
                     "past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m",
-                    tube.to, idle_bodies(system, walk.border), pushed.held));
+                    tube.to, idle_bodies(system, solver.border), pushed.held));
             if (pushed.gap > tolerance.gap)
                 return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad",
-                                        tube.to, redundant_joints(system, walk.border),
+                                        tube.to, redundant_joints(system, solver.border),
                                         pushed.gap));
             return open(fmt::format(
                 "no piece is proved past {:.12g}: the branch turns back or divides, or a law ends",
                 tube.to));
         }
-        to = halved && middle_node.a == a1 ? middle_node : walk.node(a1);
-        middle_node = walk.node(tube.to / 2 + a1 / 2);
+        to = halved && middle_node.a == a1 ? middle_node : solver.node(a1);
+        middle_node = solver.node(tube.to / 2 + a1 / 2);
         Piece piece;
         bool proved = false, over_knot = false;
         Held of_piece;
@@ -499,20 +500,20 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
             if (to.found && middle_node.found) {
                 piece = quintic(from, middle_node, to);
                 proved = !over_a_corner(system, piece) &&
-                         prove(walk, piece, middle_node.Y, joint, tolerance);
+                         prove(solver, piece, middle_node.Y, joint, tolerance);
             }
             over_knot = false;
             if (!proved && to.found && std::abs(h) < bridge * std::abs(way)) {
                 piece = straight(from, to);
-                proved = over_knot = prove_over_knot(walk, piece, joint, tolerance);
+                proved = over_knot = prove_over_knot(solver, piece, joint, tolerance);
             }
         };
         attempt(none);
-        if (proved) enclose(walk, to);
+        if (proved) enclose(solver, to);
         if (proved && to.box.size() > 0 && !joined()) attempt(1.1 * from.box.cwiseMax(to.box));
-        proved = proved && walk.is_sound(to);
+        proved = proved && solver.is_sound(to);
         if (proved) {
-            of_piece = held_over(walk, piece);
+            of_piece = held_over(solver, piece);
             if (of_piece.held > tolerance.held || of_piece.gap > tolerance.gap) {
                 pushed = of_piece;
                 proved = false;
@@ -558,16 +559,16 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
                         1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi,
                         tube.width.force, tube.width.moment));
     tube.answer = Answer::proved;
-    if (walk.border.count() > walk.border.redundant)
+    if (solver.border.count() > solver.border.redundant)
         tube.detail =
             fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
-                        idle_bodies(system, walk.border), held.held);
-    if (walk.border.redundant > 0)
+                        idle_bodies(system, solver.border), held.held);
+    if (solver.border.redundant > 0)
         tube.detail += fmt::format(
             "{}joints {} hold more than once: they share as in the states, and stay open by at "
             "most "
             "{:.1e} m or rad",
-            tube.detail.empty() ? "" : "; ", redundant_joints(system, walk.border), held.gap);
+            tube.detail.empty() ? "" : "; ", redundant_joints(system, solver.border), held.gap);
     return tube;
 }
 

@@ -151,9 +151,9 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
     if (!rate.offset.isZero(0)) {
         const ConstraintRates rates = constraint_rates(model, at.prescribed, rate, chart);
         b += transposed_times(rates.Phi_qa, at.lambda);
-        const VectorXd asked = -at.D.cwiseProduct(rates.Phi_a);
-        t = at.J.solve(asked);
-        if (!((at.state.at.J_t.transpose() * t - asked).norm() <= open * asked.norm()))
+        const VectorXd driven_rate = -at.D.cwiseProduct(rates.Phi_a);
+        t = at.J.solve(driven_rate);
+        if (!((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
             return {Outcome::inconsistent_constraints,
                     "joints that repeat each other do not let it move",
                     {}};
@@ -213,7 +213,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     if (!here.at.left.allFinite() || !here.at.Phi.allFinite() || !here.H.allFinite())
         return fail(Outcome::not_finite, "the state has no finite potential");
     if (!within_laws(model, path.turning, state.poses))
-        return fail(Outcome::branch_lost, turned_over);
+        return fail(Outcome::branch_lost, law_ended);
     const Tangent tangent = tangent_of(path, here);
     if (answer(tangent, course.rate).outcome == Outcome::loaded_idle_mode)
         return fail(Outcome::singular,

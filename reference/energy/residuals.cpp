@@ -24,14 +24,16 @@ double max_or_nan(double a, double b) {
 
 }  // namespace
 
-Residuals residuals(const Model& as_told, const Branch& branch, const Equilibrium& as_found) {
-    if (!stands_on(as_told, branch))
+Residuals residuals(const Model& given_model, const Branch& branch,
+                    const Equilibrium& given_state) {
+    if (!stands_on(given_model, branch))
         throw std::invalid_argument("the model does not stand on branch '" + branch.name +
                                     "', or it goes two ways");
-    if (as_found.poses.size() != as_told.bodies.size()) return {unknown, unknown, unknown, unknown};
-    const Eigen::Vector3d centre = centre_of(as_told);
-    const Model model = about(as_told, centre);
-    Equilibrium state = as_found;
+    if (given_state.poses.size() != given_model.bodies.size())
+        return {unknown, unknown, unknown, unknown};
+    const Eigen::Vector3d centre = centre_of(given_model);
+    const Model model = about(given_model, centre);
+    Equilibrium state = given_state;
     state.poses = moved_by(std::move(state.poses), -centre);
     const Chart chart = chart_about(state.poses);
     const Course course = course_of(model, branch);

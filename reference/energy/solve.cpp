@@ -121,18 +121,18 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     State settled;
     if (const auto failure = settle(path, settled)) return fail(*failure, settling, "");
     path.first = settled.modes;
-    Walk walk = walk_from(path, settled);
+    Continuation continuation = start_continuation(path, settled);
     for (const double a : values) {
         if (!std::isfinite(a))
             return fail({Outcome::not_finite, "the value is not finite"}, "at " + in_units(a), "");
         const std::string reached = "; the last equilibrium found is at ";
         if (const auto failure = impossible_length(path, a))
-            return fail(*failure, "at " + in_units(a), reached + in_units(walk.state.a));
-        if (const auto failure = advance(path, walk, a))
-            return fail(reason(path, walk.state, a, *failure), "at " + in_units(a),
-                        reached + in_units(walk.state.a));
-        Equilibrium point = equilibrium(path, walk.state);
-        if (options.error_bound) add_error_bound(path, walk.state, point);
+            return fail(*failure, "at " + in_units(a), reached + in_units(continuation.state.a));
+        if (const auto failure = advance(path, continuation, a))
+            return fail(reason(path, continuation.state, a, *failure), "at " + in_units(a),
+                        reached + in_units(continuation.state.a));
+        Equilibrium point = equilibrium(path, continuation.state);
+        if (options.error_bound) add_error_bound(path, continuation.state, point);
         point.poses = moved_by(std::move(point.poses), centre);
         point.bound.length += std::numeric_limits<double>::epsilon() * centre.norm();
         if (visit)

@@ -13,7 +13,7 @@ namespace {
 using Eigen::VectorXd;
 
 // Relative part of a disturbance outside the range of ∂E/∂x that counts as round-off.
-constexpr double unanswered_round_off = 1e-9;
+constexpr double remainder_round_off = 1e-9;
 
 // Largest displacement under F, over L: beyond it the stiffness is round-off.
 constexpr double farthest = 1e10;
@@ -104,7 +104,7 @@ Rate answered(const Linearisation& at, const VectorXd& E_rate) {
 
 // Whether the disturbance has a part outside the range of ∂E/∂x.
 bool is_pushed(const Rate& rate, const VectorXd& E_rate) {
-    return rate.mu.norm() > unanswered_round_off * E_rate.norm();
+    return rate.mu.norm() > remainder_round_off * E_rate.norm();
 }
 
 }  // namespace
@@ -146,7 +146,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
             return fail(Outcome::singular,
                         name_of(model, disturbance) + " meets hardly any resistance left");
         if (is_pushed(rate, E_rate)) {
-            const Failure why = unanswerable(system, at.modes.left * rate.mu);
+            const Failure why = unsolvable_load(system, at.modes.left * rate.mu);
             return fail(why.outcome, name_of(model, disturbance) + ": " + why.what);
         }
         const VectorXd dx = with_shortest_motion(system, at, rate.dx);

@@ -21,24 +21,25 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
     if (!std::ranges::all_of(points, [](double a) { return std::isfinite(a); }))
         return ended({Outcome::not_finite, "a point of the branch is not finite"});
 
-    Walk walk = start(system, options);
-    if (!walk.here.x.allFinite() || !system.at_design.allFinite() || !walk.here.E_rate.allFinite())
+    Continuation continuation = start(system, options);
+    if (!continuation.here.x.allFinite() || !system.at_design.allFinite() ||
+        !continuation.here.E_rate.allFinite())
         return ended({Outcome::not_finite,
                       "the equations give a number that is not finite at the design pose"});
     double reach = 0;
     for (const double a : points) reach = std::max(reach, std::abs(a));
-    auto failed = settle(walk, system, reach);
+    auto failed = settle(continuation, system, reach);
     for (auto a = points.begin(); a != points.end() && !failed; ++a) {
-        failed = advance(walk, *a);
+        failed = advance(continuation, *a);
         if (failed) break;
-        Equilibrium point = state_of(system, loading_at(walk, *a), walk.here.x);
-        if (options.error_bound) add_error_bound(walk, point);
+        Equilibrium point = state_of(system, loading_at(continuation, *a), continuation.here.x);
+        if (options.error_bound) add_error_bound(continuation, point);
         if (visit)
             visit(point);
         else
             path.points.push_back(std::move(point));
     }
-    path.counts = walk.counts;
+    path.counts = continuation.counts;
     return failed ? ended(*failed) : path;
 }
 

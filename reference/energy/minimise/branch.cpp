@@ -143,13 +143,14 @@ bool is_spent(const Modes& first, const Modes& now) {
 // turns back (limit point), unless z · b = 0 and another curve of equilibria crosses (bifurcation).
 // So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a dead
 // moment w is that of the minimum and does not classify the branch.
-Failure spent_mode(const Path& path, const Walk& walk, const VectorXd& t) {
-    if (unsymmetric_stiffness(path, walk.state)) return Failure{Outcome::branch_lost, unstable};
+Failure spent_mode(const Path& path, const Continuation& continuation, const VectorXd& t) {
+    if (unsymmetric_stiffness(path, continuation.state))
+        return Failure{Outcome::branch_lost, unstable};
     constexpr double still_there = 0.02;
     const auto softest = path.first.idle_motions().cols();
     const double left =
-        std::abs(walk.state.modes.stiffness[softest] / path.first.stiffness[softest]);
-    return left * largest(t) >= still_there * walk.first_tangent && largest(t) > 0
+        std::abs(continuation.state.modes.stiffness[softest] / path.first.stiffness[softest]);
+    return left * largest(t) >= still_there * continuation.first_tangent && largest(t) > 0
                ? Failure{Outcome::limit_point, turns_back}
                : Failure{Outcome::bifurcation_point, divides};
 }
@@ -175,8 +176,9 @@ Attempt lost(Attempt attempt, const char* why) {
 }
 
 // One continuation step; `expected` is the predictor along the tangent.
-Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expected) {
-    const State& from = walk.state;
+Attempt step(const Path& path, const Continuation& continuation, double a,
+             const VectorXd& expected) {
+    const State& from = continuation.state;
     Attempt attempt =
         minimum_from(path, a, moved(path, from.poses, expected), from.modes.idle_motions());
     const State& to = attempt.state;
@@ -186,24 +188,25 @@ Attempt step(const Path& path, const Walk& walk, double a, const VectorXd& expec
     if (attempt.failure) return attempt;
     if (!is_continuous(actual, expected, tangent(path, to) * (a - from.a)))
         return lost(attempt, jumped);
-    if (!within_laws(path.model, path.turning, to.poses)) return lost(attempt, turned_over);
-    if (!bushings_continue(path, from, to)) return lost(attempt, turned_over);
+    if (!within_laws(path.model, path.turning, to.poses)) return lost(attempt, law_ended);
+    if (!bushings_continue(path, from, to)) return lost(attempt, law_ended);
     if (to.modes.unstable()) return lost(attempt, unstable);
-    if (std::abs(a - from.a) > look * path.span && !as_foreseen(walk.record, a, to.modes))
+    if (std::abs(a - from.a) > look * path.span && !as_foreseen(continuation.record, a, to.modes))
         return lost(attempt, sudden);
     return attempt;
 }
 
 // Next value towards `to`: limited by the stride, by the range of the tangent and by the predicted
 // stability.
-double next_value(const Path& path, const Walk& walk, const VectorXd& t, double to) {
-    const double rest = to - walk.state.a;
-    double h = std::copysign(std::min(std::abs(rest), walk.stride), rest);
+double next_value(const Path& path, const Continuation& continuation, const VectorXd& t,
+                  double to) {
+    const double rest = to - continuation.state.a;
+    double h = std::copysign(std::min(std::abs(rest), continuation.next_step), rest);
     const double size = largest(t) * std::abs(h);
     if (size > largest_step) h *= largest_step / size;
-    const double seen = std::abs(foreseen_step(walk.record, h));
+    const double seen = std::abs(foreseen_step(continuation.record, h));
     h = std::copysign(std::min(std::abs(h), std::max(seen, look * path.span)), rest);
-    return std::abs(rest) <= std::abs(h) ? to : walk.state.a + h;
+    return std::abs(rest) <= std::abs(h) ? to : continuation.state.a + h;
 }
 
 }  // namespace
@@ -214,10 +217,10 @@ std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const V
     return poses(chart);
 }
 
-Walk walk_from(const Path& path, const State& state) {
-    Walk walk{state, first_stride * path.span, {}};
-    walk.record.add(state.a, state.modes);
-    return walk;
+Continuation start_continuation(const Path& path, const State& state) {
+    Continuation continuation{state, first_stride * path.span, {}};
+    continuation.record.add(state.a, state.modes);
+    return continuation;
 }
 
 State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
@@ -323,8 +326,8 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
             Failure{Outcome::iteration_limit, "the minimisation did not reach its tolerance"}};
 }
 
-std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
-    State& state = walk.state;
+std::optional<Failure> advance(const Path& path, Continuation& continuation, double to) {
+    State& state = continuation.state;
     const double smallest = resolution * std::max(std::abs(to), std::abs(state.a));
     int halved = 0;  // since the last equilibrium
     for (int points = 0; state.a != to; ++points) {
@@ -332,30 +335,32 @@ std::optional<Failure> advance(const Path& path, Walk& walk, double to) {
             return Failure{Outcome::iteration_limit, "too many steps were needed on the way"};
         const VectorXd t = tangent(path, state);
         if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
-        if (walk.record.samples.size() == 1) walk.first_tangent = largest(t);
-        const double a = next_value(path, walk, t, to), h = a - state.a;
-        const Attempt attempt = step(path, walk, a, t * h);
+        if (continuation.record.samples.size() == 1) continuation.first_tangent = largest(t);
+        const double a = next_value(path, continuation, t, to), h = a - state.a;
+        const Attempt attempt = step(path, continuation, a, t * h);
         if (!attempt.failure) {
-            walk.stride = std::max(a == to ? walk.stride : 0.0, 2 * std::abs(h));
+            continuation.next_step =
+                std::max(a == to ? continuation.next_step : 0.0, 2 * std::abs(h));
             halved = 0;
             state = attempt.state;
-            walk.record.add(a, state.modes);
+            continuation.record.add(a, state.modes);
             continue;
         }
         if (idle_mode_loaded(path, state, a))
             return Failure{Outcome::loaded_idle_mode,
                            "a motion that nothing resists is pushed by the load"};
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
-        walk.stride = 0.5 * std::abs(h);
+        continuation.next_step = 0.5 * std::abs(h);
         if (++halved <= halvings &&
-            (walk.stride > smallest ||
-             (walk.stride > finest / resolution * smallest && hardly_rises(path.model))))
+            (continuation.next_step > smallest ||
+             (continuation.next_step > finest / resolution * smallest && hardly_rises(path.model))))
             continue;
         // The end of a bushing's law takes precedence as the reason.
         const bool may_be_spent = attempt.failure->outcome == Outcome::iteration_limit ||
                                   (attempt.failure->outcome == Outcome::branch_lost &&
-                                   attempt.failure->what != turned_over);
-        if (may_be_spent && is_spent(path.first, state.modes)) return spent_mode(path, walk, t);
+                                   attempt.failure->what != law_ended);
+        if (may_be_spent && is_spent(path.first, state.modes))
+            return spent_mode(path, continuation, t);
         return attempt.failure;
     }
     return {};

@@ -12,7 +12,7 @@
 namespace elastocheck::reference::energy {
 
 // Reasons for the end of a branch, as half a sentence.
-inline constexpr const char* turned_over =
+inline constexpr const char* law_ended =
     "a bushing has turned to where its law ends, half a turn or what its angles allow";
 
 struct Failure {
@@ -42,14 +42,14 @@ struct Path {
 };
 
 // State of the continuation.
-struct Walk {
+struct Continuation {
     State state;               // the last accepted equilibrium
-    double stride;             // |step| to try next
+    double next_step;          // |step| to try next
     StiffnessRecord record;    // stiffnesses of the equilibria so far
     double first_tangent = 0;  // largest entry of the tangent at the start
 };
 
-Walk walk_from(const Path& path, const State& state);
+Continuation start_continuation(const Path& path, const State& state);
 
 // Poses, balance, Hessian and modes at parameter a; the poses need not be an equilibrium.
 State state_at(const Path& path, double a, const std::vector<Pose>& poses);
@@ -78,8 +78,8 @@ Eigen::VectorXd correction(const Path& path, const State& state, const Eigen::Ve
 // Tangent dξ/da of the branch at the equilibrium `state` [6nb].
 Eigen::VectorXd tangent(const Path& path, const State& state);
 
-// Continues the walk to parameter `to` with its own step-size control. On failure it stays at the
+// Continues the branch to parameter `to` with its own step-size control. On failure it stays at the
 // last equilibrium reached.
-std::optional<Failure> advance(const Path& path, Walk& walk, double to);
+std::optional<Failure> advance(const Path& path, Continuation& continuation, double to);
 
 }  // namespace elastocheck::reference::energy

@@ -95,9 +95,9 @@ std::optional<Failure> follow(const Path& settling, State& state) {
     }
     Path path = settling;
     path.first = state.modes;
-    Walk walk = walk_from(path, state);
-    const auto failure = advance(path, walk, 0);
-    state = walk.state;
+    Continuation continuation = start_continuation(path, state);
+    const auto failure = advance(path, continuation, 0);
+    state = continuation.state;
     if (!failure) return {};
     return Failure{failure->outcome, fmt::format("{}, with {:.3g} % of what is held applied",
                                                  failure->what, 100 * (1 - state.a))};
@@ -144,7 +144,7 @@ std::optional<Failure> settle(const Path& path, State& state) {
     if (!state.at.left.allFinite() || !state.at.Phi.allFinite() || !state.H.allFinite())
         return Failure{Outcome::not_finite, "the design pose has no finite potential"};
     if (!within_laws(path.model, path.turning, state.poses))
-        return Failure{Outcome::branch_lost, turned_over};
+        return Failure{Outcome::branch_lost, law_ended};
     if (is_stationary(path, state) && !state.modes.unstable()) return {};
 
     const Prescribed held = at(path.course, 0);

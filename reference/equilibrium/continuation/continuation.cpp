@@ -34,14 +34,14 @@ constexpr double last_correction = 1e-8;
 constexpr double held = 2e-15;
 
 // Relative part of a load on an idle mode that counts as round-off.
-constexpr double unanswered_round_off = 1e-9;
+constexpr double remainder_round_off = 1e-9;
 
 // However close the points, a step between two of them may be halved at least this often.
 constexpr int least_halvings = 6;
 
 // Trials to locate a knot before the step is shortened like any other; the error of each is O(h⁴)
 // of the previous.
-constexpr int most_aims = 20;
+constexpr int most_knot_trials = 20;
 
 // Steps between two requested points before the branch counts as too long: about sixty turns, or
 // four hundred L.
@@ -50,47 +50,51 @@ constexpr int most_steps = 2000;
 // Search past the smallest step before the branch counts as lost: length of the first probe in
 // smallest steps, growth factor, number of probes. A point that is singular within 1e-12 of the
 // stage shows its other side only farther on.
-constexpr double past_the_end = 3, farther = 4;
-constexpr int looks = 14;
+constexpr double first_probe = 3, probe_growth = 4;
+constexpr int most_probes = 14;
 
-Station station_at(Walk& walk, double t, VectorXd x, const Linearisation* last) {
+Station station_at(Continuation& continuation, double t, VectorXd x, const Linearisation* last) {
     Station station;
     station.t = t;
     station.x = std::move(x);
-    Derivatives by = derivatives(walk.system, loading_at(walk, t), station.x, walk.counts);
-    station.linearised = linearise(std::move(by.J), last, walk.counts);
+    Derivatives by = derivatives(continuation.system, loading_at(continuation, t), station.x,
+                                 continuation.counts);
+    station.linearised = linearise(std::move(by.J), last, continuation.counts);
     if (station.linearised.modes_are_new)
-        free_what_is_resisted(walk.system, loading_at(walk, t), station.x, station.linearised,
-                              walk.counts);
-    station.stiffness = stiffness(walk.system, station.linearised);
+        free_what_is_resisted(continuation.system, loading_at(continuation, t), station.x,
+                              station.linearised, continuation.counts);
+    station.stiffness = stiffness(continuation.system, station.linearised);
     station.E = std::move(by.E);
     station.E_rate = std::move(by.E_rate);
     const Rate rate = answer(station.linearised.bordered, station.E_rate);
     station.tangent = rate.dx;
     station.mu = rate.mu;
-    station.curves = on_curves(walk.system, loading_at(walk, t), station.x, station.tangent);
+    station.curves =
+        on_curves(continuation.system, loading_at(continuation, t), station.x, station.tangent);
     return station;
 }
 
 // Second-order term of the predictor over h, from the change of the tangent since the last station.
-std::optional<VectorXd> bend(const Walk& walk, double h) {
-    if (!walk.before || walk.before->t == walk.here.t) return std::nullopt;
-    return h * h / 2 * (walk.here.tangent - walk.before->tangent) / (walk.here.t - walk.before->t);
+std::optional<VectorXd> bend(const Continuation& continuation, double h) {
+    if (!continuation.before || continuation.before->t == continuation.here.t) return std::nullopt;
+    return h * h / 2 * (continuation.here.tangent - continuation.before->tangent) /
+           (continuation.here.t - continuation.before->t);
 }
 
 // Predictor: tangent and second-order term.
-VectorXd predicted_step(const Walk& walk, double h) {
-    VectorXd dx = h * walk.here.tangent;
-    if (const auto more = bend(walk, h); more && more->norm() < 0.5 * dx.norm()) dx += *more;
+VectorXd predicted_step(const Continuation& continuation, double h) {
+    VectorXd dx = h * continuation.here.tangent;
+    if (const auto more = bend(continuation, h); more && more->norm() < 0.5 * dx.norm())
+        dx += *more;
     return dx;
 }
 
-bool is_within_reach(const Walk& walk, double h, const VectorXd& dx) {
-    if (pose_size(walk.system, dx) <= longest_step) return true;
-    const auto more = bend(walk, h);
-    if (!dx.allFinite() || !more || !(pose_size(walk.system, *more) <= bent * longest_step))
+bool is_within_reach(const Continuation& continuation, double h, const VectorXd& dx) {
+    if (pose_size(continuation.system, dx) <= longest_step) return true;
+    const auto more = bend(continuation, h);
+    if (!dx.allFinite() || !more || !(pose_size(continuation.system, *more) <= bent * longest_step))
         return false;
-    for (int body = 0; body < walk.system.bodies; ++body)
+    for (int body = 0; body < continuation.system.bodies; ++body)
         if (dx.segment<3>(6 * body + 3).norm() > longest_step) return false;
     return true;
 }
@@ -108,30 +112,31 @@ bool is_continuation(const System& system, const Station& from, const Station& t
 // Midpoint of two equilibria by the cubic Hermite interpolant, with error O(h⁴),
 //
 //   x_m = x₀ + (x₁ - x₀) / 2 + h (x₀' - x₁') / 8
-Stability stability_between(Walk& walk, const Station& from, const Station& to) {
+Stability stability_between(Continuation& continuation, const Station& from, const Station& to) {
     const double h = to.t - from.t;
     const VectorXd dx =
-        step_between(walk.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
-    auto by = derivatives(walk.system, loading_at(walk, from.t + h / 2),
-                          moved(walk.system, from.x, dx), walk.counts);
-    const Linearisation middle = linearise(std::move(by.J), &from.linearised, walk.counts);
-    return over_step(from.stiffness, stiffness(walk.system, middle), to.stiffness);
+        step_between(continuation.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
+    auto by = derivatives(continuation.system, loading_at(continuation, from.t + h / 2),
+                          moved(continuation.system, from.x, dx), continuation.counts);
+    const Linearisation middle = linearise(std::move(by.J), &from.linearised, continuation.counts);
+    return over_step(from.stiffness, stiffness(continuation.system, middle), to.stiffness);
 }
 
 // Whether a continuation step stays on this side of every singular point. During the homotopy from
 // the design pose the bodies are held externally, and only the settled state is judged.
-Verdict side_of(Walk& walk, const Station& next) {
-    if (walk.stage == Stage::settling) return Verdict::accepted;
-    if (next.linearised.modes.count() > walk.here.linearised.modes.count())
-        return Verdict::turned_over;
+Verdict side_of(Continuation& continuation, const Station& next) {
+    if (continuation.stage == Stage::settling) return Verdict::accepted;
+    if (next.linearised.modes.count() > continuation.here.linearised.modes.count())
+        return Verdict::past_singular_point;
     if (!next.linearised.modes_are_new &&
-        next.linearised.orientation() != walk.here.linearised.orientation())
-        return Verdict::turned_over;
-    if (!constraints_keep_their_side(walk.system, walk.here.linearised, next.linearised))
-        return Verdict::turned_over;
-    switch (stability_between(walk, walk.here, next)) {
+        next.linearised.orientation() != continuation.here.linearised.orientation())
+        return Verdict::past_singular_point;
+    if (!constraints_keep_their_side(continuation.system, continuation.here.linearised,
+                                     next.linearised))
+        return Verdict::past_singular_point;
+    switch (stability_between(continuation, continuation.here, next)) {
         case Stability::kept: return Verdict::accepted;
-        case Stability::lost: return Verdict::turned_over;
+        case Stability::lost: return Verdict::past_singular_point;
         case Stability::uncertain: break;
     }
     return Verdict::uncertain;
@@ -163,52 +168,56 @@ bool directions_are_kept(const System& system, const VectorXd& from, const Vecto
 // Movement of a state under a rounding error of all constrained quantities; the signs come from
 // fractions of multiples of the golden ratio, which are independent of the system. A soft mode
 // moves more and is judged by its stiffness: its softening since the start is divided out.
-double moved_by_rounding(const Walk& walk, const Station& at) {
-    const int m = walk.system.constraint_rows;
-    VectorXd E = VectorXd::Zero(walk.system.equations());
+double moved_by_rounding(const Continuation& continuation, const Station& at) {
+    const int m = continuation.system.constraint_rows;
+    VectorXd E = VectorXd::Zero(continuation.system.equations());
     for (int k = 0; k < m; ++k)
-        E[6 * walk.system.bodies + k] =
+        E[6 * continuation.system.bodies + k] =
             std::fmod(0.6180339887498949 * (k + 1), 1.) < 0.5 ? held : -held;
     if (m == 0) return 0;
-    const double softer = walk.first_stiffness > 0 ? at.stiffness.least / walk.first_stiffness : 1;
+    const double softer =
+        continuation.first_stiffness > 0 ? at.stiffness.least / continuation.first_stiffness : 1;
     return std::clamp(softer, 0., 1.) *
-           pose_size(walk.system, answer(at.linearised.bordered, E).dx);
+           pose_size(continuation.system, answer(at.linearised.bordered, E).dx);
 }
 
-Trial try_step(Walk& walk, double t) {
-    const System& system = walk.system;
-    const Loading loading = loading_at(walk, t);
-    const VectorXd dx = predicted_step(walk, t - walk.here.t);
-    if (!is_within_reach(walk, t - walk.here.t, dx)) return {Verdict::out_of_reach};
+Trial try_step(Continuation& continuation, double t) {
+    const System& system = continuation.system;
+    const Loading loading = loading_at(continuation, t);
+    const VectorXd dx = predicted_step(continuation, t - continuation.here.t);
+    if (!is_within_reach(continuation, t - continuation.here.t, dx)) return {Verdict::out_of_reach};
 
-    Trial trial{Verdict::unsolved, newton(system, loading, moved(system, walk.here.x, dx),
-                                          walk.here.linearised, walk.options, walk.counts)};
+    Trial trial{Verdict::unsolved,
+                newton(system, loading, moved(system, continuation.here.x, dx),
+                       continuation.here.linearised, continuation.options, continuation.counts)};
     const Attempt& attempt = trial.attempt;
-    if (!(std::isfinite(attempt.residual) && attempt.residual <= walk.options.tolerance))
+    if (!(std::isfinite(attempt.residual) && attempt.residual <= continuation.options.tolerance))
         return trial;
 
-    trial.station = station_at(walk, t, attempt.x, &walk.here.linearised);
+    trial.station = station_at(continuation, t, attempt.x, &continuation.here.linearised);
     Station& next = trial.station;
     const VectorXd further = answer(next.linearised.bordered, next.E).dx;
     const double correction = further.norm();
-    const double h = t - walk.here.t;
-    if (!is_continuation(system, walk.here, next))
+    const double h = t - continuation.here.t;
+    if (!is_continuation(system, continuation.here, next))
         trial.verdict = Verdict::another_branch;
     else if (pose_size(system, dx) > longest_step &&
-             !directions_are_kept(system, walk.here.x, next.x))
+             !directions_are_kept(system, continuation.here.x, next.x))
         trial.verdict = Verdict::out_of_reach;
-    else if (const auto exit = first_exit(walk.here.curves, next.curves, h, walk.pieces))
-        trial.verdict = Verdict::past_knot, trial.knot = walk.here.t + *exit * h;
+    else if (const auto exit =
+                 first_exit(continuation.here.curves, next.curves, h, continuation.pieces))
+        trial.verdict = Verdict::past_knot, trial.knot = continuation.here.t + *exit * h;
     else if (!(std::isfinite(correction) && correction <= last_correction))
         trial.verdict = Verdict::unsettled;
-    else if (walk.stage == Stage::branch && !(moved_by_rounding(walk, next) <= last_correction))
+    else if (continuation.stage == Stage::branch &&
+             !(moved_by_rounding(continuation, next) <= last_correction))
         trial.verdict = Verdict::uncertain;
     else {
-        trial.verdict = side_of(walk, next);
+        trial.verdict = side_of(continuation, next);
         // The corrected state is kept: the error that a correction leaves is its square times the
         // ratio of axial to lateral member stiffness, 1e6 and more in a chain of beams.
         if (VectorXd x = moved(system, next.x, further);
-            largest(residual(system, loading, x)) <= walk.options.tolerance)
+            largest(residual(system, loading, x)) <= continuation.options.tolerance)
             next.x = std::move(x);
     }
     return trial;
@@ -216,55 +225,59 @@ Trial try_step(Walk& walk, double t) {
 
 // No step of h is accepted. Probes beyond decide whether the branch continues past the singular
 // point on its other side; a singular point that a probe hits exactly decides nothing.
-Failure the_end(Walk& walk, double h, double t, Trial refused) {
+Failure diagnose_end(Continuation& continuation, double h, double t, Trial refused) {
     const auto is_clear = [](const Trial& at) {
-        return at.verdict == Verdict::turned_over &&
+        return at.verdict == Verdict::past_singular_point &&
                at.station.stiffness.least < -at.station.stiffness.round_off;
     };
-    for (int k = 0; k < looks && walk.stage == Stage::branch && !is_clear(refused); ++k) {
-        const double past = walk.here.t + past_the_end * std::pow(farther, k) * h;
-        Trial probe = try_step(walk, past);
-        if (is_clear(probe) ||
-            (probe.verdict == Verdict::turned_over && refused.verdict != Verdict::turned_over)) {
+    for (int k = 0; k < most_probes && continuation.stage == Stage::branch && !is_clear(refused);
+         ++k) {
+        const double past = continuation.here.t + first_probe * std::pow(probe_growth, k) * h;
+        Trial probe = try_step(continuation, past);
+        if (is_clear(probe) || (probe.verdict == Verdict::past_singular_point &&
+                                refused.verdict != Verdict::past_singular_point)) {
             refused = std::move(probe);
             t = past;
         }
     }
-    return failure(walk, t, refused);
+    return failure(continuation, t, refused);
 }
 
 // Switches to the next piece wherever a deformation is at the end of its piece and leaves it. The
 // state stays, its tangent changes.
-std::optional<Failure> change_pieces(Walk& walk, double direction) {
+std::optional<Failure> change_pieces(Continuation& continuation, double direction) {
     const auto where = [&] {
-        const std::string a = parameter(*walk.system.branch, loading_at(walk, walk.here.t).a);
-        return walk.stage == Stage::settling
-                   ? fmt::format("while settling at {}, {:.0f} % of the way", a, 100 * walk.here.t)
+        const std::string a =
+            parameter(*continuation.system.branch, loading_at(continuation, continuation.here.t).a);
+        return continuation.stage == Stage::settling
+                   ? fmt::format("while settling at {}, {:.0f} % of the way", a,
+                                 100 * continuation.here.t)
                    : "at " + a;
     };
-    Pieces changed(walk.pieces.size(), ElementPieces{});  // by ±1, the others 0
+    Pieces changed(continuation.pieces.size(), ElementPieces{});  // by ±1, the others 0
     for (bool at_end = true; at_end;) {
         at_end = false;
-        for (const OnCurve& at : walk.here.curves) {
-            int& piece = walk.pieces[at.element][at.axis];
-            const int side = leaves(at, piece, direction, walk.length);
+        for (const OnCurve& at : continuation.here.curves) {
+            int& piece = continuation.pieces[at.element][at.axis];
+            const int side = leaves(at, piece, direction, continuation.length);
             if (side == 0) continue;
             int& before = changed[at.element][at.axis];
             if (before == -side)
                 return Failure{
                     Outcome::limit_point,
                     fmt::format("the branch turns back where the law of '{}' has a knot, {}",
-                                walk.system.model->elastics[at.element].name, where())};
+                                continuation.system.model->elastics[at.element].name, where())};
             before = side;
             piece += side;
             at_end = true;
             break;
         }
         if (!at_end) break;
-        walk.before.reset();
-        walk.here = station_at(walk, walk.here.t, walk.here.x, nullptr);
-        const Stiffness& now = walk.here.stiffness;
-        if (walk.stage == Stage::branch && over_step(now, now, now) != Stability::kept)
+        continuation.before.reset();
+        continuation.here =
+            station_at(continuation, continuation.here.t, continuation.here.x, nullptr);
+        const Stiffness& now = continuation.here.stiffness;
+        if (continuation.stage == Stage::branch && over_step(now, now, now) != Stability::kept)
             return Failure{
                 Outcome::singular,
                 fmt::format("the equilibrium loses its stability where a law has a knot, {}",
@@ -275,57 +288,64 @@ std::optional<Failure> change_pieces(Walk& walk, double direction) {
 
 // A state at a knot may be `at_knot` past it, on the old piece. The returned state is corrected to
 // an equilibrium of the system itself.
-std::optional<Failure> onto_its_own_pieces(Walk& walk) {
+std::optional<Failure> correct_to_current_pieces(Continuation& continuation) {
     constexpr int attempts = 3;
     const auto open = [&] {
-        Loading loading = loading_at(walk, walk.here.t);
+        Loading loading = loading_at(continuation, continuation.here.t);
         loading.pieces.clear();
-        return largest(residual(walk.system, loading, walk.here.x));
+        return largest(residual(continuation.system, loading, continuation.here.x));
     };
-    if (walk.here.curves.empty()) return std::nullopt;
+    if (continuation.here.curves.empty()) return std::nullopt;
     for (int attempt = 0; attempt < attempts; ++attempt) {
-        if (open() <= walk.options.tolerance) return std::nullopt;
-        walk.pieces = pieces_at(walk.system, loading_at(walk, walk.here.t), walk.here.x);
-        const Attempt solved = newton(walk.system, loading_at(walk, walk.here.t), walk.here.x,
-                                      walk.here.linearised, walk.options, walk.counts);
-        walk.before.reset();
-        walk.here = station_at(walk, walk.here.t, solved.x, nullptr);
+        if (open() <= continuation.options.tolerance) return std::nullopt;
+        continuation.pieces =
+            pieces_at(continuation.system, loading_at(continuation, continuation.here.t),
+                      continuation.here.x);
+        const Attempt solved = newton(
+            continuation.system, loading_at(continuation, continuation.here.t), continuation.here.x,
+            continuation.here.linearised, continuation.options, continuation.counts);
+        continuation.before.reset();
+        continuation.here = station_at(continuation, continuation.here.t, solved.x, nullptr);
     }
-    if (open() <= walk.options.tolerance) return std::nullopt;
+    if (open() <= continuation.options.tolerance) return std::nullopt;
     return Failure{
         Outcome::iteration_limit,
         fmt::format("the scaled residual stays at {:.1e} where a law has a knot, at {}", open(),
-                    parameter(*walk.system.branch, loading_at(walk, walk.here.t).a))};
+                    parameter(*continuation.system.branch,
+                              loading_at(continuation, continuation.here.t).a))};
 }
 
 }  // namespace
 
-Walk start(const System& system, const Options& options) {
-    Walk walk{system, options};
-    hold(walk);
-    return walk;
+Continuation start(const System& system, const Options& options) {
+    Continuation continuation{system, options};
+    hold(continuation);
+    return continuation;
 }
 
-void hold(Walk& walk) {
-    walk.stage = Stage::settling;
-    walk.length = 1;
-    walk.pieces = pieces_at(walk.system, loading_at(walk, 0), design_unknowns(walk.system));
-    walk.before.reset();
-    walk.here = station_at(walk, 0, design_unknowns(walk.system), nullptr);
+void hold(Continuation& continuation) {
+    continuation.stage = Stage::settling;
+    continuation.length = 1;
+    continuation.pieces = pieces_at(continuation.system, loading_at(continuation, 0),
+                                    design_unknowns(continuation.system));
+    continuation.before.reset();
+    continuation.here = station_at(continuation, 0, design_unknowns(continuation.system), nullptr);
 }
 
-std::optional<Failure> begin_branch(Walk& walk, double reach) {
-    walk.stage = Stage::branch;
-    walk.length = std::max(std::abs(walk.system.branch->to), reach);
-    walk.before.reset();
-    walk.here = station_at(walk, 0, walk.here.x, &walk.here.linearised);
+std::optional<Failure> begin_branch(Continuation& continuation, double reach) {
+    continuation.stage = Stage::branch;
+    continuation.length = std::max(std::abs(continuation.system.branch->to), reach);
+    continuation.before.reset();
+    continuation.here =
+        station_at(continuation, 0, continuation.here.x, &continuation.here.linearised);
     // A motion held only by a released load becomes idle only here.
-    if (std::abs(walk.here.stiffness.least) <= walk.here.stiffness.round_off)
-        walk.here = station_at(walk, 0, walk.here.x, nullptr);
-    walk.first_stiffness = walk.here.stiffness.least;
-    walk.first_tangent = pose_size(walk.system, walk.here.tangent);
-    const std::string at_0 = parameter(*walk.system.branch, 0);
-    switch (over_step(walk.here.stiffness, walk.here.stiffness, walk.here.stiffness)) {
+    if (std::abs(continuation.here.stiffness.least) <= continuation.here.stiffness.round_off)
+        continuation.here = station_at(continuation, 0, continuation.here.x, nullptr);
+    continuation.first_stiffness = continuation.here.stiffness.least;
+    continuation.first_tangent = pose_size(continuation.system, continuation.here.tangent);
+    const std::string at_0 = parameter(*continuation.system.branch, 0);
+    switch (over_step(continuation.here.stiffness, continuation.here.stiffness,
+                      continuation.here.stiffness)) {
         case Stability::kept: return std::nullopt;
         case Stability::lost:
             return Failure{Outcome::singular,
@@ -339,67 +359,73 @@ std::optional<Failure> begin_branch(Walk& walk, double reach) {
 }
 
 namespace {
-Failure too_long(const Walk& walk, double target) {
+Failure too_long(const Continuation& continuation, double target) {
     const auto at = [&](double t) {
-        return walk.stage == Stage::settling
+        return continuation.stage == Stage::settling
                    ? fmt::format("{:.0f} % of the way to what settles", 100 * t)
-                   : parameter(*walk.system.branch, t);
+                   : parameter(*continuation.system.branch, t);
     };
     return {Outcome::iteration_limit, fmt::format("{} steps have come to {}, and {} is too far",
-                                                  most_steps, at(walk.here.t), at(target))};
+                                                  most_steps, at(continuation.here.t), at(target))};
 }
 }  // namespace
 
-std::optional<Failure> advance(Walk& walk, double target) {
-    double h = target - walk.here.t;
-    const double smallest = std::min(std::ldexp(walk.length, -walk.options.halvings),
-                                     std::ldexp(std::abs(h), -least_halvings));
+std::optional<Failure> advance(Continuation& continuation, double target) {
+    double h = target - continuation.here.t;
+    const double smallest =
+        std::min(std::ldexp(continuation.length, -continuation.options.halvings),
+                 std::ldexp(std::abs(h), -least_halvings));
     std::optional<Trial> refused;  // most informative trial since the last step
     double knot = 0;               // a piece ends here, before the end of the step ...
-    int aims = 0;                  // ... number of attempts to locate it: 0 for the whole step
+    int knot_trials = 0;           // ... number of attempts to locate it: 0 for the whole step
     int steps = 0;
-    while (walk.here.t != target) {
-        if (auto failed = change_pieces(walk, target > walk.here.t ? 1 : -1)) return failed;
-        const double rest = target - walk.here.t;
-        const double unanswered = std::abs(rest) * walk.here.mu.norm(),
-                     asked = std::abs(rest) * walk.here.E_rate.norm();
+    while (continuation.here.t != target) {
+        if (auto failed = change_pieces(continuation, target > continuation.here.t ? 1 : -1))
+            return failed;
+        const double rest = target - continuation.here.t;
+        const double remainder = std::abs(rest) * continuation.here.mu.norm(),
+                     applied = std::abs(rest) * continuation.here.E_rate.norm();
         // A load below the tolerance is harmless on an idle motion, but not on a soft one.
-        const bool soft = walk.here.linearised.modes_are_soft;
-        if (unanswered >
-            std::max(soft ? 0 : walk.options.tolerance, unanswered_round_off * asked)) {
-            const VectorXd left = walk.here.linearised.modes.left * walk.here.mu;
-            return soft ? too_soft(walk.system, left) : unanswerable(walk.system, left);
+        const bool soft = continuation.here.linearised.modes_are_soft;
+        if (remainder >
+            std::max(soft ? 0 : continuation.options.tolerance, remainder_round_off * applied)) {
+            const VectorXd left = continuation.here.linearised.modes.left * continuation.here.mu;
+            return soft ? too_soft(continuation.system, left)
+                        : unsolvable_load(continuation.system, left);
         }
-        if (!walk.here.tangent.allFinite())
-            return Failure{
-                Outcome::singular,
-                fmt::format("the system is singular at {}",
-                            parameter(*walk.system.branch, loading_at(walk, walk.here.t).a))};
+        if (!continuation.here.tangent.allFinite())
+            return Failure{Outcome::singular,
+                           fmt::format("the system is singular at {}",
+                                       parameter(*continuation.system.branch,
+                                                 loading_at(continuation, continuation.here.t).a))};
 
         if (std::abs(h) >= std::abs(rest) * (1 - 1e-9)) h = rest;
-        const double t = aims > 0 ? knot : h == rest ? target : walk.here.t + h;
-        Trial trial = try_step(walk, t);
-        if (trial.verdict == Verdict::past_knot && aims < most_aims && trial.knot != walk.here.t) {
+        const double t = knot_trials > 0 ? knot : h == rest ? target : continuation.here.t + h;
+        Trial trial = try_step(continuation, t);
+        if (trial.verdict == Verdict::past_knot && knot_trials < most_knot_trials &&
+            trial.knot != continuation.here.t) {
             knot = trial.knot;
-            ++aims;
+            ++knot_trials;
         } else if (trial.verdict == Verdict::accepted) {
-            walk.before = std::move(walk.here);
-            walk.here = std::move(trial.station);
+            continuation.before = std::move(continuation.here);
+            continuation.here = std::move(trial.station);
             refused.reset();
-            if (++steps == most_steps && walk.here.t != target) return too_long(walk, target);
-            if (aims == 0) h *= 2;
-            aims = 0;
+            if (++steps == most_steps && continuation.here.t != target)
+                return too_long(continuation, target);
+            if (knot_trials == 0) h *= 2;
+            knot_trials = 0;
         } else {
-            const bool says_more = !refused || (refused->verdict != Verdict::turned_over &&
-                                                trial.verdict != Verdict::uncertain);
-            if (says_more) refused = std::move(trial);
-            h = aims > 0 ? (t - walk.here.t) / 2 : h / 2;
-            aims = 0;
+            const bool more_informative =
+                !refused || (refused->verdict != Verdict::past_singular_point &&
+                             trial.verdict != Verdict::uncertain);
+            if (more_informative) refused = std::move(trial);
+            h = knot_trials > 0 ? (t - continuation.here.t) / 2 : h / 2;
+            knot_trials = 0;
             if (std::abs(h) < smallest * (1 - 1e-9))
-                return the_end(walk, h, t, std::move(*refused));
+                return diagnose_end(continuation, h, t, std::move(*refused));
         }
     }
-    return onto_its_own_pieces(walk);
+    return correct_to_current_pieces(continuation);
 }
 
 }  // namespace elastocheck::reference::equilibrium

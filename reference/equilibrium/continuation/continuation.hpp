@@ -38,7 +38,7 @@ struct Station {
     std::vector<OnCurve> curves;
 };
 
-struct Walk {
+struct Continuation {
     const System& system;
     const Options& options;
     double length = 1;  // of the stage in t, the unit of the smallest step
@@ -52,9 +52,9 @@ struct Walk {
     Counts counts = {};
 };
 
-inline Loading loading_at(const Walk& walk, double t) {
-    return walk.stage == Stage::settling ? Loading{0, 1 - t, 0, -1, walk.pieces}
-                                         : Loading{t, 0, 1, 0, walk.pieces};
+inline Loading loading_at(const Continuation& continuation, double t) {
+    return continuation.stage == Stage::settling ? Loading{0, 1 - t, 0, -1, continuation.pieces}
+                                                 : Loading{t, 0, 1, 0, continuation.pieces};
 }
 
 enum class Verdict {
@@ -65,7 +65,7 @@ enum class Verdict {
     another_branch,  // an equilibrium, but not on this branch
     unsettled,       // on this branch, but a further Newton step is above its tolerance
     uncertain,       // on this branch, but ends and middle do not determine the stability between
-    turned_over,     // on this branch, but past a singular point
+    past_singular_point,  // on this branch, but past a singular point
 };
 
 struct Trial {
@@ -80,22 +80,22 @@ struct Failure {
     std::string what;
 };
 
-Walk start(const System& system, const Options& options);  // at the design pose, held
-void hold(Walk& walk);  // restarts at the design pose, with the present system
+Continuation start(const System& system, const Options& options);  // at the design pose, held
+void hold(Continuation& continuation);  // restarts at the design pose, with the present system
 
 // After settling: starts the branch at a = 0; its points extend to `reach`.
-std::optional<Failure> begin_branch(Walk& walk, double reach);
+std::optional<Failure> begin_branch(Continuation& continuation, double reach);
 
 // Continues from the current station to t = target with as few steps as possible.
-std::optional<Failure> advance(Walk& walk, double target);
+std::optional<Failure> advance(Continuation& continuation, double target);
 
 // Reason why the branch does not continue from the current station towards t, from the most
 // informative trial.
-Failure failure(Walk& walk, double t, const Trial& trial);
+Failure failure(Continuation& continuation, double t, const Trial& trial);
 
 // Reason of an unsolvable right-hand side, from its left null vector: a load on an idle mode, or
 // inconsistent joints.
-Failure unanswerable(const System& system, const Eigen::VectorXd& left);
+Failure unsolvable_load(const System& system, const Eigen::VectorXd& left);
 
 // Failure where a mode is resisted by elements but too softly for the precision of J.
 Failure too_soft(const System& system, const Eigen::VectorXd& left);

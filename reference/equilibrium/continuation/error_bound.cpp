@@ -103,10 +103,10 @@ Size rounding(const System& system, const Linearisation& at, const VectorXr& x) 
     return worst;
 }
 
-ErrorBound bound(const Walk& walk, double a) {
-    const System& system = walk.system;
-    const Linearisation& at = walk.here.linearised;
-    VectorXr x = walk.here.x.cast<Real>();
+ErrorBound bound(const Continuation& continuation, double a) {
+    const System& system = continuation.system;
+    const Linearisation& at = continuation.here.linearised;
+    VectorXr x = continuation.here.x.cast<Real>();
     for (int body = 0; body < system.bodies; ++body) x.segment<4>(7 * body + 3).normalize();
     const Size rounded = rounding(system, at, x);
     Size way, last;
@@ -128,7 +128,7 @@ ErrorBound bound(const Walk& walk, double a) {
     constexpr double digits = std::numeric_limits<double>::epsilon();
     double reach = 0;
     for (int body = 0; body < system.bodies; ++body)
-        reach = std::max(reach, walk.here.x.segment<3>(7 * body).norm());
+        reach = std::max(reach, continuation.here.x.segment<3>(7 * body).norm());
     return {system.length * (way.length + last.length + 3 * rounded.length + open) +
                 2 * digits * (system.length * reach + system.centre.norm()),
             way.angle + last.angle + 3 * rounded.angle + open + 4 * digits};
@@ -136,9 +136,10 @@ ErrorBound bound(const Walk& walk, double a) {
 
 }  // namespace
 
-void add_error_bound(const Walk& walk, Equilibrium& point) {
-    point.bound = walk.system.equations() == 0 ? ErrorBound{0, 0} : bound(walk, point.load);
-    point.stiffness_left = walk.here.stiffness.least / walk.first_stiffness;
+void add_error_bound(const Continuation& continuation, Equilibrium& point) {
+    point.bound =
+        continuation.system.equations() == 0 ? ErrorBound{0, 0} : bound(continuation, point.load);
+    point.stiffness_left = continuation.here.stiffness.least / continuation.first_stiffness;
 }
 
 }  // namespace elastocheck::reference::equilibrium

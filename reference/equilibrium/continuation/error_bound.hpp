@@ -27,6 +27,6 @@
 namespace elastocheck::reference::equilibrium {
 
 // Writes bound and stiffness of the current station of the continuation to `point`.
-void add_error_bound(const Walk& walk, Equilibrium& point);
+void add_error_bound(const Continuation& continuation, Equilibrium& point);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -40,21 +40,21 @@ std::string joints_in(const System& system, const VectorXd& by_row) {
 // Remaining gap of the constraints near x at a: Gauss-Newton with minimum-norm steps, Φ_q dq = -Φ.
 // Where the constraints are inconsistent the iteration ends at Φ_qᵀ Φ = 0, so that Φ names the
 // conflicting ones.
-VectorXd gap(Walk& walk, double a, VectorXd x) {
+VectorXd gap(Continuation& continuation, double a, VectorXd x) {
     // quadratic convergence for consistent constraints; no accuracy needed otherwise
     constexpr int iterations = 30;
-    const System& system = walk.system;
+    const System& system = continuation.system;
     const int m = system.constraint_rows;
     const auto Phi = [&] { return VectorXd(residual(system, {a}, x).tail(m)); };
     for (int iteration = 0; iteration < iterations; ++iteration) {
-        const Sparse J = derivatives(system, {a}, x, walk.counts).J;
+        const Sparse J = derivatives(system, {a}, x, continuation.counts).J;
         if (!is_finite(J)) break;
         VectorXd dx = VectorXd::Zero(system.equations());
         dx.head(6 * system.bodies) =
             -least_squares(J.bottomLeftCorner(m, 6 * system.bodies), Phi());
         if (!dx.allFinite()) break;
         x = moved(system, x, dx);
-        ++walk.counts.factorisations;
+        ++continuation.counts.factorisations;
     }
     return Phi();
 }
@@ -67,26 +67,27 @@ constexpr double closed = 1e-9;
 // least stiffness. It grows as μ falls unless u · dE/dt = 0, that is, unless dE/dt is in the range
 // of J and another curve crosses this one. So at a limit point μ |x'| keeps its value, at a
 // bifurcation it goes to zero with μ.
-bool turns_back(const Walk& walk) {
+bool turns_back(const Continuation& continuation) {
     constexpr double gone = 0.15, still_there = 0.02;  // relative to their values at a = 0
-    const double left = walk.here.stiffness.least / walk.first_stiffness;
-    return walk.stage == Stage::branch && std::abs(left) <= gone &&
-           std::abs(left) * pose_size(walk.system, walk.here.tangent) >=
-               still_there * walk.first_tangent;
+    const double left = continuation.here.stiffness.least / continuation.first_stiffness;
+    return continuation.stage == Stage::branch && std::abs(left) <= gone &&
+           std::abs(left) * pose_size(continuation.system, continuation.here.tangent) >=
+               still_there * continuation.first_tangent;
 }
 
 // Whether a bifurcation was passed: beyond the singular point the same curve continues with a
 // negative eigenvalue of M, so another curve crosses it. M does not show a bifurcation of the
 // constraints.
-bool has_divided(const Walk& walk, const Trial& trial) {
+bool has_divided(const Continuation& continuation, const Trial& trial) {
     const Stiffness& past = trial.station.stiffness;
-    return trial.verdict == Verdict::turned_over && past.least < -past.round_off &&
-           constraints_keep_their_side(walk.system, walk.here.linearised, trial.station.linearised);
+    return trial.verdict == Verdict::past_singular_point && past.least < -past.round_off &&
+           constraints_keep_their_side(continuation.system, continuation.here.linearised,
+                                       trial.station.linearised);
 }
 
 }  // namespace
 
-Failure unanswerable(const System& system, const VectorXd& left) {
+Failure unsolvable_load(const System& system, const VectorXd& left) {
     // Truly redundant joints balance each other, and leave only round-off on the bodies.
     constexpr double repeated = 1e-11;
     const double of_joints = left.tail(system.constraint_rows).norm(),
@@ -112,23 +113,24 @@ Failure too_soft(const System& system, const VectorXd& left) {
                                                   body_with_largest(system, left))};
 }
 
-Failure failure(Walk& walk, double t, const Trial& trial) {
-    const System& system = walk.system;
+Failure failure(Continuation& continuation, double t, const Trial& trial) {
+    const System& system = continuation.system;
     const Attempt& attempt = trial.attempt;
     const auto at = [&](double a) { return parameter(*system.branch, a); };
-    const bool settling = walk.stage == Stage::settling;
+    const bool settling = continuation.stage == Stage::settling;
     const std::string where =
-        settling
-            ? fmt::format("while settling at {}, {:.0f} % of the way", at(0), 100 * walk.here.t)
-        : at(walk.here.t) == at(t) ? "at " + at(t)
-                                   : fmt::format("between {} and {}", at(walk.here.t), at(t));
+        settling ? fmt::format("while settling at {}, {:.0f} % of the way", at(0),
+                               100 * continuation.here.t)
+        : at(continuation.here.t) == at(t)
+            ? "at " + at(t)
+            : fmt::format("between {} and {}", at(continuation.here.t), at(t));
 
-    if (!settling && has_divided(walk, trial))
+    if (!settling && has_divided(continuation, trial))
         return {Outcome::bifurcation_point,
                 "the branch divides: another curve of equilibria crosses it, and past that it is "
                 "unstable, " +
                     where};
-    if (trial.verdict == Verdict::turned_over)
+    if (trial.verdict == Verdict::past_singular_point)
         return {Outcome::singular,
                 "the system is singular and the branch may divide or lose its stability " + where};
     if (trial.verdict == Verdict::uncertain)
@@ -137,12 +139,13 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
     // A mechanism at the end of its range has almost no gap here: its gap is evaluated farther on.
     constexpr double further = 12, far = 1.8e-4;  // trial steps; share of the whole stage
     const double target =
-        settling
-            ? 0
-            : walk.here.t +
-                  std::copysign(std::max(further * std::abs(t - walk.here.t), far * walk.length),
-                                t - walk.here.t);
-    const VectorXd Phi = system.constraint_rows > 0 ? gap(walk, target, walk.here.x) : VectorXd();
+        settling ? 0
+                 : continuation.here.t +
+                       std::copysign(std::max(further * std::abs(t - continuation.here.t),
+                                              far * continuation.length),
+                                     t - continuation.here.t);
+    const VectorXd Phi =
+        system.constraint_rows > 0 ? gap(continuation, target, continuation.here.x) : VectorXd();
     if (const double open = largest(Phi); !(std::isfinite(open) && open <= closed))
         return {Outcome::inconsistent_constraints,
                 settling
@@ -150,10 +153,11 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
                                   "cannot be closed",
                                   at(0), joints_in(system, Phi))
                     : fmt::format("no pose satisfies all joints beyond {}: {} cannot be closed",
-                                  at(walk.here.t), joints_in(system, Phi))};
-    if (const std::string bushing = bushing_without_angles(system, walk.here.x); !bushing.empty())
+                                  at(continuation.here.t), joints_in(system, Phi))};
+    if (const std::string bushing = bushing_without_angles(system, continuation.here.x);
+        !bushing.empty())
         return {Outcome::branch_lost, fmt::format("{}, {}", bushing, where)};
-    if (turns_back(walk))
+    if (turns_back(continuation))
         return {Outcome::limit_point,
                 "a limit point, past which no equilibrium continues the branch, " + where};
     if (trial.verdict == Verdict::past_knot)
@@ -166,20 +170,20 @@ Failure failure(Walk& walk, double t, const Trial& trial) {
     if (trial.verdict == Verdict::unsolved) {
         if (!std::isfinite(attempt.residual))
             return {Outcome::not_finite, "the equations gave a number that is not finite " + where};
-        const VectorXd left_over = residual(system, loading_at(walk, t), attempt.x);
-        const Sparse& U = walk.here.linearised.modes.left;
+        const VectorXd left_over = residual(system, loading_at(continuation, t), attempt.x);
+        const Sparse& U = continuation.here.linearised.modes.left;
         constexpr double mostly = 0.9;
         if (U.cols() > 0 && (U.transpose() * left_over).norm() > mostly * left_over.norm())
-            return unanswerable(system, U * (U.transpose() * left_over));
+            return unsolvable_load(system, U * (U.transpose() * left_over));
         // At a limit point a large part of the step remains unsolved. A far smaller remainder is
         // the rounding limit, for poses of the model's own size, or proportionally larger farther
         // from the origin.
         constexpr double good_part = 1e-6, at_home = 1e-13;
         double away = 1;
         for (int body = 0; body < system.bodies; ++body)
-            away = std::max(away, walk.here.x.segment<3>(7 * body).norm());
+            away = std::max(away, continuation.here.x.segment<3>(7 * body).norm());
         const double end_of_arithmetic = away * at_home;
-        const double step = std::abs(t - walk.here.t) * largest(walk.here.E_rate);
+        const double step = std::abs(t - continuation.here.t) * largest(continuation.here.E_rate);
         if (attempt.out_of_time ||
             attempt.residual <= std::max(good_part * step, end_of_arithmetic))
             return {Outcome::iteration_limit,

@@ -29,21 +29,21 @@ void put_on_springs(System& system) {
 
 }  // namespace
 
-std::optional<Failure> settle(Walk& walk, System& system, double reach) {
+std::optional<Failure> settle(Continuation& continuation, System& system, double reach) {
     const auto settles = [&] {
-        auto failed = advance(walk, 1);
-        return failed ? failed : begin_branch(walk, reach);
+        auto failed = advance(continuation, 1);
+        return failed ? failed : begin_branch(continuation, reach);
     };
     const auto failed = settles();
     if (!failed) return failed;
-    let_joints_carry(system, walk.counts);
-    hold(walk);
+    let_joints_carry(system, continuation.counts);
+    hold(continuation);
     if (!settles()) return std::nullopt;
     let_forces_grow(system);
-    hold(walk);
+    hold(continuation);
     if (!settles()) return std::nullopt;
     put_on_springs(system);
-    hold(walk);
+    hold(continuation);
     if (!settles()) return std::nullopt;
     return failed;
 }

@@ -21,7 +21,7 @@ namespace elastocheck::reference::equilibrium {
 
 // Settles at a = 0, ready for a branch whose points extend to `reach`. Returns the failure of the
 // first homotopy if all fail.
-// Pre: `walk` is at its start, on `system`.
-std::optional<Failure> settle(Walk& walk, System& system, double reach);
+// Pre: `continuation` is at its start, on `system`.
+std::optional<Failure> settle(Continuation& continuation, System& system, double reach);
 
 }  // namespace elastocheck::reference::equilibrium

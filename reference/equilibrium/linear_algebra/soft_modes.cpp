@@ -29,7 +29,7 @@ constexpr double threshold = 1e-11;
 constexpr double no_part = 1e-12;
 
 // Relative to the largest entry of J: smaller stiffnesses are below its rounding.
-constexpr double told = 16 * std::numeric_limits<double>::epsilon();
+constexpr double entry_rounding = 16 * std::numeric_limits<double>::epsilon();
 
 // Largest allowed ratio of G to |J v|.
 constexpr double few = 4;
@@ -53,7 +53,8 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
             std::max(std::pow(no_deformation * motion, 2) * size, left * left / (threshold * size));
         // The elastic stiffness may be cancelled by the geometric one, as of a loaded bushing that
         // spins: then G exceeds |J v|.
-        const double stored = one.rate.dot(one.answer), most = few * left * motion + told * size;
+        const double stored = one.rate.dot(one.answer),
+                     most = few * left * motion + entry_rounding * size;
         if (motion < of_bodies * v.norm() || !(stored > nothing && stored <= most)) {
             idle.push_back(k);
         } else {
@@ -96,7 +97,7 @@ void free_what_is_resisted(const System& system, const Loading& loading, const V
     const Sorted right = sorted(system, loading, x, at.J, at.modes.right);
     if (right.resisted == 0) return;
     const Sorted left = sorted(system, loading, x, at.J.transpose(), at.modes.left);
-    at.modes_are_soft = !(right.least > told * size) || left.resisted != right.resisted;
+    at.modes_are_soft = !(right.least > entry_rounding * size) || left.resisted != right.resisted;
     if (at.modes_are_soft) return;
     at.modes = {right.idle, left.idle};
     at.bordered = bordered_like(at, at.J);

@@ -32,11 +32,12 @@ void at_stations(const See& see) {
                 const std::vector<double> points = {way.to / 3};
                 const System system = make_system(model, model.branches[0], points);
                 const Options options;
-                Walk walk = start(system, options);
+                Continuation continuation = start(system, options);
                 const std::string name = file + ", " + way.name;
-                if (advance(walk, 1) || begin_branch(walk, std::abs(points[0]))) continue;
-                see(walk, name + ", settled");
-                if (!advance(walk, points[0])) see(walk, name);
+                if (advance(continuation, 1) || begin_branch(continuation, std::abs(points[0])))
+                    continue;
+                see(continuation, name + ", settled");
+                if (!advance(continuation, points[0])) see(continuation, name);
             }
     }
 }
@@ -70,8 +71,8 @@ void expect_null_spaces_of(const MatrixXd& J, const NullSpaces& modes, const std
 
 TEST(EquilibriumSparse, NullSpacesAreTheDenseOnesFoundOrTracked) {
     int with_modes = 0;
-    at_stations([&](const Walk& walk, const std::string& what) {
-        const auto& at = walk.here.linearised;
+    at_stations([&](const Continuation& continuation, const std::string& what) {
+        const auto& at = continuation.here.linearised;
         expect_null_spaces_of(at.J, at.modes, what + ", tracked");
         expect_null_spaces_of(at.J, null_spaces(at.J), what + ", found");
         with_modes += at.modes.count() > 0;
@@ -82,13 +83,14 @@ TEST(EquilibriumSparse, NullSpacesAreTheDenseOnesFoundOrTracked) {
 // ---- Sparsity pattern
 
 TEST(EquilibriumSparse, APatternThatIsKeptHoldsWhatANewOneDoes) {
-    at_stations([&](const Walk& walk, const std::string& what) {
-        System fresh = walk.system;
+    at_stations([&](const Continuation& continuation, const std::string& what) {
+        System fresh = continuation.system;
         fresh.pattern = nullptr;
         Counts counts;
-        const Loading loading = loading_at(walk, walk.here.t);
-        const Sparse kept = derivatives(walk.system, loading, walk.here.x, counts).J,
-                     J = derivatives(fresh, loading, walk.here.x, counts).J;
+        const Loading loading = loading_at(continuation, continuation.here.t);
+        const Sparse kept =
+                         derivatives(continuation.system, loading, continuation.here.x, counts).J,
+                     J = derivatives(fresh, loading, continuation.here.x, counts).J;
         EXPECT_EQ((MatrixXd(kept) - MatrixXd(J)).cwiseAbs().maxCoeff(), 0) << what;
     });
 }
@@ -127,9 +129,9 @@ double dense_least(const System& system, const Linearisation& at) {
 
 TEST(EquilibriumSparse, TheLeastStiffnessIsThatOfTheDenseMatrix) {
     Worst worst;
-    at_stations([&](const Walk& walk, const std::string& what) {
-        const double least = dense_least(walk.system, walk.here.linearised);
-        worst.see(std::abs(walk.here.stiffness.least / least - 1), what);
+    at_stations([&](const Continuation& continuation, const std::string& what) {
+        const double least = dense_least(continuation.system, continuation.here.linearised);
+        worst.see(std::abs(continuation.here.stiffness.least / least - 1), what);
     });
     EXPECT_TRUE(within(worst, 1e-6));
 }
@@ -168,18 +170,18 @@ TEST(EquilibriumSparse, TheConstraintsSideIsThatOfTheDenseDeterminant) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> in(-1, 1);
     int kept = 0, changed = 0;
-    at_stations([&](const Walk& walk, const std::string& what) {
-        const System& system = walk.system;
+    at_stations([&](const Continuation& continuation, const std::string& what) {
+        const System& system = continuation.system;
         const Index n = 6 * system.bodies, m = system.constraint_rows;
-        const Linearisation& from = walk.here.linearised;
+        const Linearisation& from = continuation.here.linearised;
         if (m == 0) return;
         Counts counts;
         for (const double away : {0.1, 1., 2.}) {
             const VectorXd dx =
                 away * VectorXd::NullaryExpr(system.equations(), [&] { return in(random); });
             Linearisation to;
-            to.J = derivatives(system, loading_at(walk, walk.here.t),
-                               moved(system, walk.here.x, dx), counts)
+            to.J = derivatives(system, loading_at(continuation, continuation.here.t),
+                               moved(system, continuation.here.x, dx), counts)
                        .J;
             const MatrixXd begin = MatrixXd(from.J).bottomLeftCorner(m, n),
                            end = MatrixXd(to.J).bottomLeftCorner(m, n);
@@ -314,12 +316,12 @@ TEST(EquilibriumSparse, HundredsOfModesAreAsManySparseColumns) {
         const std::vector<double> points = {100};
         const System system = make_system(model, model.branches[0], points);
         const Options options;
-        Walk walk = start(system, options);
-        ASSERT_FALSE(advance(walk, 1));
-        ASSERT_FALSE(begin_branch(walk, 100));
-        const auto failed = advance(walk, 100);
+        Continuation continuation = start(system, options);
+        ASSERT_FALSE(advance(continuation, 1));
+        ASSERT_FALSE(begin_branch(continuation, 100));
+        const auto failed = advance(continuation, 100);
         ASSERT_FALSE(failed) << failed->what;
-        const NullSpaces& modes = walk.here.linearised.modes;
+        const NullSpaces& modes = continuation.here.linearised.modes;
         EXPECT_EQ(modes.count(), 2 * n);
         EXPECT_LE(modes.right.nonZeros(), 12 * modes.count());
         EXPECT_LE(modes.left.nonZeros(), 12 * modes.count());
