@@ -199,8 +199,12 @@ struct Trial {
 
 bool builds(const Paths& paths, const Trial& trial) {
     const std::string& target = trial.fault.target.empty() ? trial.program() : trial.fault.target;
-    return run(fmt::format("cmake --build '{}' --target '{}' >'{}/build.log' 2>&1", paths.build,
-                           target, trial.folder)) == 0;
+    const std::string log = trial.folder + "/build.log";
+    const int code =
+        run(fmt::format("cmake --build '{}' --target '{}' >'{}' 2>&1", paths.build, target, log));
+    if (code != 0 && read_file(log).find("interrupted by user") != std::string::npos)
+        throw std::runtime_error("interrupted");
+    return code == 0;
 }
 
 // A copy of the test program as it was built, so that the next build may go on beside it.
@@ -296,6 +300,7 @@ int run_faults(const Paths& paths, const std::vector<Fault>& all,
     };
     std::vector<std::future<void>> running;
     fmt::print("mutate: the sources hold faults until this ends: neither edit nor commit\n");
+    std::fflush(stdout);
     const std::string head_before = head(paths);
     for (Trial& trial : trials) {
         if (head(paths) != head_before)
