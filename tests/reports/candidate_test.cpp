@@ -191,9 +191,9 @@ TEST(CandidateCommand, NothingOfAProgramThatIsKilledGoesOn) {
     const Folder folder;
     const std::string mark = (folder.path / "mark").string();
     const auto ended = reports::run({"sh", "-c", "(sleep 2; touch " + mark + ") & sleep 30"}, 0.3);
-    EXPECT_EQ(ended.how, reports::Ended::How::too_long);
+    EXPECT_EQ(ended.how, reports::ProcessResult::How::too_long);
     const auto leaves = reports::run({"sh", "-c", "(sleep 2; touch " + mark + ") & exit 0"}, 30);
-    EXPECT_TRUE(leaves.well());
+    EXPECT_TRUE(leaves.succeeded());
     EXPECT_LT(leaves.seconds, 2);
     EXPECT_EQ(support::says("sleep 3").code, 0);
     EXPECT_FALSE(std::filesystem::exists(mark));
