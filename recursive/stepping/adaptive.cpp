@@ -57,12 +57,13 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
     const int orientation = node.orientation;
     // A bend of the path may be sharper than a short step: an imperfect column turns aside within
     // 1e-9 of its load. The reason why the branch ends is judged at the first short step that is
-    // refused; a step refused only for its interpolation error gives no reason.
+    // refused; a later one overrides it if the first was refused only for its interpolation error.
     constexpr double short_step = 1e-7,  // of the branch
         shortest_step = 1e-12;
     bool refused = false;  // a short step at refused_at, past which the path has not gone on
     double refused_at = 0;
     Outcome ended = Outcome::branch_lost;  // why
+    bool by_error = false;                 // refused only for its interpolation error
     double h = to / 8;
     int changes = 0;  // of pieces since the last accepted step
     // Factorisation and derivative at the node on the present pieces.
@@ -150,13 +151,13 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         const double change = judged ? 0.85 * std::pow(std::max(error, 1e-8), -0.25) : 0.3;
         h = step * std::clamp(change, 0.1, 4.0);
         if (!(std::abs(h) > std::abs(to) * short_step) && reached <= last) {
-            if (!refused) {
-                refused_at = node.p;
-                ended = Outcome::branch_lost;
+            const Outcome reason = end_reason(trial, node, curvature, step, s.length);
+            if (!refused) refused_at = node.p;
+            if (!refused || (by_error && !judged && reason != Outcome::branch_lost)) {
+                ended = reason;
+                by_error = judged;
             }
             refused = true;
-            if (!judged && ended == Outcome::branch_lost)
-                ended = end_reason(trial, node, curvature, step, s.length);
             if (!(std::abs(h) > std::abs(to) * shortest_step)) return ended;
         }
     }

@@ -85,9 +85,10 @@ void check_may_write(const fs::path& file, const FileKind& kind) {
         throw FileError(fmt::format("{}: is {}; only regular files are written", file.string(),
                                     type_of(entry)));
     if (!begins_as(file, kind))
-        throw FileError(fmt::format(
-            "{}: exists and is no {} written by elastocheck; choose another name, or remove it",
-            file.string(), kind.name));
+        throw FileError(
+            fmt::format("{}: exists and was not written by elastocheck as {}; choose another name, "
+                        "or remove it",
+                        file.string(), kind.name));
 }
 
 namespace {

@@ -51,11 +51,15 @@ TEST_P(Outcomes, AnArchEndsAtItsLimitPointInAnyNumberOfSteps) {
                 const auto path = solve(leg(), to(down, beyond * arch.limit()), steps);
                 const auto where = fmt::format("h {}, {} limit loads in {} steps: {}", h, beyond,
                                                steps, path.detail);
-                // On the flat arch the equilibrium leg does not tell the two apart so near.
+                // A limit and a bifurcation point are not distinguished on the flat arch by the
+                // equilibrium leg, nor at 1e-4 of the branch by adaptive steps, whose shortest is
+                // a share of the branch.
+                const bool too_near = leg().kind == Leg::equilibrium
+                                          ? h < 0.08
+                                          : leg().method.name == "adaptive" && beyond == 1e4;
                 EXPECT_TRUE(path.outcome == Outcome::limit_point ||
-                            (h < 0.08 && leg().kind == Leg::equilibrium &&
-                             path.outcome == Outcome::bifurcation_point))
-                    << where;
+                            (too_near && path.outcome == Outcome::bifurcation_point))
+                    << where << elastocheck::name(path.outcome);
                 EXPECT_TRUE(contains(path.detail, "'down'")) << where;
                 // The recursion also returns where it ended.
                 if (leg().kind != Leg::recursive) {
@@ -273,7 +277,8 @@ TEST_P(EveryMethod, JointsThatContradictEachOtherAreNamed) {
         std::get<AxialSpring>(s.elastics[0].kind).free_length = 0.4;
         const auto path = solve(leg(), side_of(compile(s, Detail::everything)), 1);
         EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << error << path.detail;
-        EXPECT_TRUE(contains(path.detail, "bar") || contains(path.detail, "joints contradict"))
+        EXPECT_TRUE(contains(path.detail, "bar") ||
+                    contains(path.detail, "redundant joints are inconsistent"))
             << path.detail;
         EXPECT_TRUE(path.points.empty());
     }

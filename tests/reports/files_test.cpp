@@ -58,14 +58,14 @@ TEST(WriteWhole, NeverWritesOverWhatItDidNotWrite) {
         for (const auto& file : {scene, empty, baseline}) {
             const std::string before = text_of(file);
             expect(file, kind,
-                   "is there, and is no " + std::string(kind.name) + " that elastocheck wrote");
+                   "exists and was not written by elastocheck as " + std::string(kind.name));
             EXPECT_EQ(text_of(file), before);
         }
         expect(folder.path, kind, "is a folder");
         expect("/dev/null", kind, "is a character device");
     }
     EXPECT_EQ(refusal(baseline, baseline_file), "");
-    expect(scene, baseline_file, "is no baseline");
+    expect(scene, baseline_file, "was not written by elastocheck as baseline");
 
     // A link to a file of this program, to nothing, or to itself.
     const auto ours = folder.path / "s.md";

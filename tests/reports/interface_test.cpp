@@ -163,7 +163,7 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
                                         " && env -u CI " ELASTOCHECK_COMMAND " " + given);
         EXPECT_EQ(said.code, 2) << given;
         EXPECT_EQ(said.out, "") << given;
-        EXPECT_TRUE(contains(said.err, "'-' is no name")) << given << ": " << said.err;
+        EXPECT_TRUE(contains(said.err, "'-' is no file name")) << given << ": " << said.err;
     }
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
@@ -257,7 +257,7 @@ TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
     const auto help = [&] {
         return support::says((prefix / "bin/elastocheck").string() + " --help").out;
     };
-    EXPECT_TRUE(contains(help(), "The scene files: models/scenes/README.md\n"))
+    EXPECT_TRUE(contains(help(), "Scene files: models/scenes/README.md\n"))
         << "copied away from all of them";
     for (const char* name : {"models/scenes/README.md", "reports/README.md"}) {
         folder.write("prefix/share/doc/elastocheck/" + std::string(name), "");
@@ -361,7 +361,7 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
     const Said said = support::says("env LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l " +
                                     folder.write("e.1", page));
     EXPECT_EQ(said.err, "");
-    EXPECT_TRUE(contains(said.out, "verification of suspension solvers by independent solutions"))
+    EXPECT_TRUE(contains(said.out, "verification of suspension solvers by independent solu"))
         << said.out.substr(0, 500);
 }
 
@@ -443,7 +443,7 @@ TEST(ReportCommand, OpenSaysBeforeTheWorkThatNobodyCanLook) {
     EXPECT_TRUE(contains(said.err, "there is nothing to open a page with")) << said.err;
     said = report.draws("--open", "CI=true BROWSER=true");
     EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "--open: not where CI is set")) << said.err;
+    EXPECT_TRUE(contains(said.err, "--open: not in CI")) << said.err;
     EXPECT_EQ(report.draws("--open --archive", "BROWSER=true").code, 2);
     EXPECT_FALSE(std::filesystem::exists(report.folder.path / "out"));
 }

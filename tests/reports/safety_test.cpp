@@ -46,7 +46,7 @@ TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
               "gate a.yaml --junit " + target, "gate a.yaml --summary " + target}) {
             const Said said = in(folder, arguments);
             EXPECT_EQ(said.code, 2) << arguments << said.out;
-            EXPECT_TRUE(contains(said.err, target + ": is ")) << arguments << "\n" << said.err;
+            EXPECT_TRUE(contains(said.err, target + ": ")) << arguments << "\n" << said.err;
             EXPECT_TRUE(said.out.empty()) << "refused before the work: " << arguments;
         }
         for (const char* command : {"compare", "report", "trade", "converge"}) {
@@ -228,8 +228,7 @@ TEST(Harm, AMeasurementWithNothingToCompareIsNoPass) {
     folder.write("far.csv", "load_N,tip_x_mm\n1e9,0\n");
     const Said said = in(folder, "report " + scene + " --measured far.csv -o out");
     EXPECT_EQ(said.code, 3) << said.err;
-    EXPECT_TRUE(
-        contains(said.err, "no point of far.csv lies where the legs could be compared with it"))
+    EXPECT_TRUE(contains(said.err, "no point of far.csv is within the range of the legs"))
         << said.err;
 }
 

@@ -155,8 +155,9 @@ TEST(Verdict, SaysHowMuchOfTheErrorStepsCannotRemove) {
 // Where a motion prescribes every position, the error is in the force.
 TEST(Verdict, PositionsThatAreDictatedAreNotCalledExactInAll) {
     const std::string text = said(sample_result("arch_driven"));
-    EXPECT_TRUE(
-        contains(text, "is exact in its positions and angles, but its guide.drive force is off by"))
+    EXPECT_TRUE(contains(
+        text,
+        "is exact in its positions and angles, but the error of its guide.drive force is up to"))
         << text;
     EXPECT_TRUE(contains(said(sample_result("slider_crank")),
                          "The error of its crank.drive moment is up to"))
@@ -217,7 +218,8 @@ TEST(Verdict, WhatCouldNotBeJudgedIsNotSaidToHaveFailed) {
     for (const auto& section : sections(result))
         if (section.id == "price") {
             const std::string text = render("text/price", section.words, Escape::nothing);
-            EXPECT_TRUE(contains(text, "Nothing is recommended. Inconclusive: jounce: energy leg"))
+            EXPECT_TRUE(
+                contains(text, "No configuration is recommended. Inconclusive: jounce: energy leg"))
                 << text;
         }
 }
@@ -236,7 +238,7 @@ TEST(Verdict, AReferenceThatStoppedIsNotSaidToAgree) {
     for (const auto& section : sections(result))
         if (section.id == "deviation")
             for (const auto& group : section.figures) {
-                EXPECT_TRUE(contains(group.caption, "The references did not both go all the way"))
+                EXPECT_TRUE(contains(group.caption, "Not both references reached the end"))
                     << group.caption;
                 EXPECT_FALSE(contains(group.figures[0].description, "apart"))
                     << group.figures[0].description;

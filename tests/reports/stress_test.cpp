@@ -54,9 +54,9 @@ TEST(Survival, TheMapIsOnThePageAndInItsTwin) {
     for (const char* part :
          {"<b class=\"some\">3</b><b class=\"many\">9</b>",
           "<b class=\"wrong\">X</b><b class=\"failed\">!</b>",
-          "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>", "Of 8 answers 3 are right",
+          "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>", "Of 8 results 3 are right",
           "1 are wrong", "far &lt;away&gt;", "off by 2 mm",
-          "by steps, series; the most, 1.2: arch, series; of digits that were right, none",
+          "by steps, series; the most: 1.2: arch, series; of correct digits: none",
           "rounded &lt;up&gt;", "<td class=\"words\">0.0 1.2</td>",
           "arch, rounded up: chord: too | far."})
         EXPECT_TRUE(contains(html, part)) << part;
@@ -113,8 +113,7 @@ TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
           {"report " + scenes + "/single_bushing.yaml -o never --stress " + scenes +
                "/single_bushing.yaml",
            "single_bushing.yaml"},
-          {"report --from a.json -o never --stress b.json",
-           "--stress belongs to what is solved"}}) {
+          {"report --from a.json -o never --stress b.json", "--stress: not with --from"}}) {
         const auto said = elastocheck_says(arguments);
         EXPECT_EQ(said.code, 2) << arguments;
         EXPECT_TRUE(contains(said.err, says)) << arguments << ": " << said.err;
