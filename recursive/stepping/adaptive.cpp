@@ -153,7 +153,8 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         if (!(std::abs(h) > std::abs(to) * short_step) && reached <= last) {
             const Outcome reason = end_reason(trial, node, curvature, step, s.length);
             if (!refused) refused_at = node.p;
-            if (!refused || (by_error && !judged && reason != Outcome::branch_lost)) {
+            const bool better = ended == Outcome::branch_lost || (by_error && !judged);
+            if (!refused || (better && reason != Outcome::branch_lost)) {
                 ended = reason;
                 by_error = judged;
             }
