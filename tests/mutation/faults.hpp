@@ -42,6 +42,9 @@ Place locate(const std::string& root, const Edit& edit);
 // white space, and the changes.
 std::string stamp(const std::string& root, const Fault& fault);
 
+// Number of faults without a result: ./dev mutate runs them.
+std::size_t never_run(const std::vector<Fault>& faults, const nlohmann::ordered_json& results);
+
 // What `results`, an array of {fault, suite, first, stamp, ...}, leaves open: a fault without a
 // result, one of another stamp or suite, one that survived, a result of no fault. And a fault
 // without its place, or of a suite that is not among `suites`.

@@ -352,8 +352,9 @@ int check(const Paths& paths, const std::vector<Fault>& faults) {
     auto found = problems(paths.root, faults, read_results(paths), built_suites(paths));
     if (fs::exists(paths.seeded())) found.push_back("a fault is still in the checkout");
     for (const auto& problem : found) fmt::print("{}\n", problem);
-    fmt::print("{} faults, {} problems{}\n", faults.size(), found.size(),
-               found.empty() ? "" : "; ./dev mutate runs what has no current result");
+    fmt::print(
+        "{} faults, {} problems, {} not run yet; ./dev mutate runs what has no current result\n",
+        faults.size(), found.size(), never_run(faults, read_results(paths)));
     return found.empty() ? 0 : 1;
 }
 
