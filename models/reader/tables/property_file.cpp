@@ -174,7 +174,8 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         if (row.size() != block.table.columns.size())
             wrong(fmt::format("{} values in a table of {} columns", row.size(),
                               block.table.columns.size()));
-        if (++rows > most_property_rows) wrong(fmt::format("more than {} rows", most_property_rows));
+        if (++rows > most_property_rows)
+            wrong(fmt::format("more than {} rows", most_property_rows));
         block.table.rows.push_back(std::move(row));
         block.table.lines.push_back(line_number);
     }
