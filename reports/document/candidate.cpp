@@ -1,6 +1,7 @@
 #include "reports/document/candidate.hpp"
 
 #include "compare/outputs/readings.hpp"
+#include "reports/tables/judgement.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -104,24 +105,12 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
                           {"second", name(left.second)},
                           {"by_second", residuals_json(left.by_second)},
                           {"why_not", left.why_not}});
-    return {{"name", j.name},
-            {"verdict", compare::name(j.verdict)},
-            {"sentence", sentence},
-            {"tolerance",
-             {{"mm", j.tolerance.mm},
-              {"deg", j.tolerance.deg},
-              {"N", j.tolerance.newton},
-              {"Nm", j.tolerance.newton_metre},
-              {"share", j.tolerance.share},
-              {"asked", j.asked}}},
-            {"worst", worst},
-            {"findings", j.hints},
-            {"reasons", j.reasons},
-            {"not_given", j.not_given},
-            {"notes", j.notes},
-            {"numbers", j.compared},
-            {"channels", channels},
-            {"branches", branches},
+    return {{"name", j.name},       {"verdict", compare::name(j.verdict)},
+            {"sentence", sentence}, {"tolerance", tolerance_json(j.tolerance, j.asked)},
+            {"worst", worst},       {"findings", j.hints},
+            {"reasons", j.reasons}, {"not_given", j.not_given},
+            {"notes", j.notes},     {"numbers", j.compared},
+            {"channels", channels}, {"branches", branches},
             {"states", states}};
 }
 

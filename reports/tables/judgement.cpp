@@ -149,6 +149,11 @@ std::string sentence(const Assessment& j) {
     return {};
 }
 
+nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool asked) {
+    return {{"mm", tolerance.mm},           {"deg", tolerance.deg},     {"N", tolerance.newton},
+            {"Nm", tolerance.newton_metre}, {"share", tolerance.share}, {"asked", asked}};
+}
+
 json judgement_json(const Assessment& j) {
     json rate = nullptr;
     if (j.wheel_rate)
@@ -161,13 +166,7 @@ json judgement_json(const Assessment& j) {
     return {{"verdict", compare::name(j.verdict)},
             {"sentence", sentence(j)},
             {"method", j.method},
-            {"tolerance",
-             {{"mm", j.tolerance.mm},
-              {"deg", j.tolerance.deg},
-              {"N", j.tolerance.newton},
-              {"Nm", j.tolerance.newton_metre},
-              {"share", j.tolerance.share},
-              {"asked", j.asked}}},
+            {"tolerance", tolerance_json(j.tolerance, j.asked)},
             {"position", worst_json(j.position)},
             {"angle", worst_json(j.angle)},
             {"position_across", worst_json(j.position_across)},

@@ -14,6 +14,9 @@ std::string sentence(const compare::Assessment& judgement);
 // the last part only if `others`, outputs that are neither positions nor angles, are judged.
 std::string tolerance_text(const compare::Tolerance& tolerance, bool others);
 
+// A tolerance: mm, deg, N, Nm, share, and whether the user requested it ("asked").
+nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool asked);
+
 //   verdict         "pass", "fail", "not judged"
 //   sentence        as above
 //   method          of the recursion
