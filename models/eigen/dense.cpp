@@ -10,11 +10,6 @@ template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const Vecto
 template class JacobiSVD<MatrixXd>;
 template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
 SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
-template class SelfAdjointEigenSolver<MatrixXd>;
-template SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(
-    const EigenBase<MatrixXd>&, int);
-template class EigenSolver<MatrixXd>;
-template EigenSolver<MatrixXd>& EigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&, bool);
 
 template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheLeft(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);
@@ -22,8 +17,6 @@ template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheRight(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);
 
 namespace internal {
-template void tridiagonalization_inplace(MatrixXd&, VectorXd&, VectorXd&, VectorXd&, bool);
-template ComputationInfo computeFromTridiagonal_impl(VectorXd&, VectorXd&, Index, bool, MatrixXd&);
 template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<MatrixXd>&,
                                                   const VectorBlock<const VectorXd>&, bool);
 template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, 0, 0, 1>, 4, 4,

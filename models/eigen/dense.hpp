@@ -16,12 +16,6 @@ extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(cons
 extern template class JacobiSVD<MatrixXd>;
 extern template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
 SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
-extern template class SelfAdjointEigenSolver<MatrixXd>;
-extern template SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(
-    const EigenBase<MatrixXd>&, int);
-extern template class EigenSolver<MatrixXd>;
-extern template EigenSolver<MatrixXd>& EigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&,
-                                                                      bool);
 
 extern template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheLeft(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);
@@ -29,9 +23,6 @@ extern template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheRight(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);
 
 namespace internal {
-extern template void tridiagonalization_inplace(MatrixXd&, VectorXd&, VectorXd&, VectorXd&, bool);
-extern template ComputationInfo computeFromTridiagonal_impl(VectorXd&, VectorXd&, Index, bool,
-                                                            MatrixXd&);
 extern template void apply_block_householder_on_the_left(Block<MatrixXd>&, const Block<MatrixXd>&,
                                                          const VectorBlock<const VectorXd>&, bool);
 extern template struct gebp_kernel<double, double, Index, blas_data_mapper<double, Index, 0, 0, 1>,
