@@ -65,7 +65,7 @@ void touch(Touched& t, const ElasticKind& element) {
 // Sorts and removes duplicates.
 void sort_once(std::vector<int>& numbers) {
     std::ranges::sort(numbers);
-    numbers.erase(std::ranges::unique(numbers).begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
 // Rows of Φ from k on, and the curvature of the constraint.

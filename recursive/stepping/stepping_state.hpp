@@ -80,7 +80,8 @@ std::vector<std::vector<Moved>> moved_elements(const Model& model, const Held<Re
                 moved.push_back({k, held.at(c, i), held.at(c, j)});
             }
         std::ranges::sort(moved, {}, &Moved::element);
-        moved.erase(std::ranges::unique(moved, {}, &Moved::element).begin(), moved.end());
+        const auto same = [](const Moved& a, const Moved& b) { return a.element == b.element; };
+        moved.erase(std::unique(moved.begin(), moved.end(), same), moved.end());
     }
     return all;
 }
@@ -170,7 +171,7 @@ struct SteppingState {
         for (const auto& elements : moved)
             for (const Moved& each : elements) at_idle.push_back(each.element);
         std::ranges::sort(at_idle);
-        at_idle.erase(std::ranges::unique(at_idle).begin(), at_idle.end());
+        at_idle.erase(std::unique(at_idle.begin(), at_idle.end()), at_idle.end());
         std::ranges::copy_if(at_idle, std::back_inserter(pushing), [this](std::size_t k) {
             return may_push(branch, model.elastics[k].kind, static_cast<int>(k));
         });
