@@ -249,6 +249,7 @@ struct Entry {
     const char* undefined;
     double (*formula)(const Wheels& wheels,
                       std::size_t k);  // k: wheel, or spring in Model::elastics, or damper; SI
+    bool swing_arm = false;
 };
 
 constexpr const char* never = "";
@@ -301,7 +302,8 @@ const std::array table{
               const Motions by = raised(x, w);
               const Vector3d v = moved(x.state, by, x.centre(w));
               return ratio(x.side(w) * v.z(), turned(by, x[w].body).x(), nowhere);
-          }},
+          },
+          true},
     Entry{Of::every_wheel, "side_view_swing_arm", Unit::mm,
           "distance from the wheel centre, along the vehicle, to where the carrier seen from the "
           "side turns "
@@ -312,7 +314,8 @@ const std::array table{
               const Motions by = raised(x, w);
               const Vector3d v = moved(x.state, by, x.centre(w));
               return ratio(v.z(), turned(by, x[w].body).y(), nowhere);
-          }},
+          },
+          true},
     Entry{Of::every_wheel, "wheel_rate", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, all "
           "wheels "
@@ -581,6 +584,8 @@ double value_of(const Model& model, const Characteristic& what, const Equilibriu
     const Entry& entry = table[what.entry];
     return response.why_not.empty() ? entry.formula({model, state, response}, what.of) : nan;
 }
+
+bool is_swing_arm(const Characteristic& what) { return table[what.entry].swing_arm; }
 
 Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
                            const WheelResponse& response) {

@@ -22,6 +22,9 @@ std::vector<Channel> characteristics(const Model& model);
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
                 const WheelResponse& response);
 
+// A swing arm, endless where two links are parallel: compared by its reciprocal.
+bool is_swing_arm(const Characteristic& what);
+
 // ---- Compliance.
 
 // Compliance matrix of the wheels, ground axes [6 × 6 per wheel]: rows are the displacement of the

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -42,22 +43,19 @@ const GatedBranch* find(const Measurement& in, const std::string& branch) {
 }
 
 bool is_channel(Quantity q) { return q == Quantity::recursive || q == Quantity::equilibrium; }
-bool is_characteristic(Quantity q) {
+bool is_at_stations(Quantity q) {
     return q == Quantity::characteristic_recursive || q == Quantity::characteristic_equilibrium;
+}
+bool is_range(Quantity q) {
+    return q == Quantity::range_equilibrium || q == Quantity::range_characteristic_equilibrium;
+}
+bool is_characteristic(Quantity q) {
+    return is_at_stations(q) || q == Quantity::range_characteristic_equilibrium;
 }
 bool is_compliance(Quantity q) {
     return q == Quantity::compliance_recursive || q == Quantity::compliance_equilibrium;
 }
 
-// Indices at which a characteristic is kept: the first parameter, the one nearest to 0, the last.
-std::vector<std::size_t> landmarks(const std::vector<double>& a) {
-    const auto nearest = std::ranges::min_element(a, {}, [](double x) { return std::abs(x); });
-    std::vector<std::size_t> at;
-    for (const auto k :
-         {std::size_t{0}, static_cast<std::size_t>(nearest - a.begin()), a.size() - 1})
-        if (at.empty() || at.back() != k) at.push_back(k);
-    return at;
-}
 bool is_deviation(Quantity q) {
     return q == Quantity::deviation_at_equal_parameter ||
            q == Quantity::deviation_at_equal_abscissa;
@@ -69,7 +67,7 @@ double range(const Series& s) {
 }
 
 double scale(const Measurement& accepted, const Series& s) {
-    if (is_channel(s.quantity)) return range(s);
+    if (is_channel(s.quantity) || s.quantity == Quantity::range_equilibrium) return range(s);
     if (is_characteristic(s.quantity) || is_compliance(s.quantity))
         return std::abs(
             *std::ranges::max_element(s.values, {}, [](double v) { return std::abs(v); }));
@@ -110,7 +108,10 @@ bool is_inner(const Offence& o) { return o.unit == "N" || o.unit == "N·m" || o.
 
 int rank(const Offence& o) {
     if (o.of_limit) return 0;
-    return (o.noticed() > 1 ? 1 : 3) + (is_inner(o) ? 1 : 0);
+    const bool at_design = o.a && *o.a == 0,
+               of_reference = o.quantity == Quantity::equilibrium ||
+                              o.quantity == Quantity::characteristic_equilibrium;
+    return (o.noticed() > 1 ? 1 : 5) + (is_inner(o) ? 3 : !at_design ? 2 : of_reference ? 0 : 1);
 }
 
 // Judges one accepted series against its measurement.
@@ -133,9 +134,9 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
     const GatedBranch* branch = find(baseline.accepted, was.branch);
     if (is_channel(was.quantity) && (branch == nullptr || branch->a.size() != was.values.size()))
         return cannot("has not as many numbers as its branch has points");
-    if (is_characteristic(was.quantity) && (branch == nullptr || branch->a.empty() ||
-                                            landmarks(branch->a).size() != was.values.size()))
-        return cannot("has not as many numbers as its branch has landmarks");
+    if (is_at_stations(was.quantity) &&
+        (branch == nullptr || stations(branch->a).size() != was.values.size()))
+        return cannot("has not as many numbers as its branch has stations");
     const Allowance* tolerance = tolerance_of(tolerances, was);
     if (!sane(tolerance))
         return cannot(fmt::format("has no usable tolerance in class {}", name(verdict.kind)));
@@ -154,36 +155,63 @@ void judge_series(const Baseline& baseline, const Tolerances& tolerances, const 
                         .tolerance = allowed,
                         .noticeable = noticeable(baseline, was)};
         if (is_channel(was.quantity)) offence.a = branch->a[k], offence.a_unit = branch->unit;
-        if (is_characteristic(was.quantity))
-            offence.a = branch->a[landmarks(branch->a)[k]], offence.a_unit = branch->unit;
+        if (is_at_stations(was.quantity))
+            offence.a = branch->a[stations(branch->a)[k]], offence.a_unit = branch->unit;
         verdict.offences.push_back(offence);
     }
 }
 
-void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& verdict) {
-    bool found = false;
-    for (const auto& s : measurement.series) {
-        if (s.quantity != limit.deviation || s.channel != limit.channel) continue;
-        found = true;
-        if (s.values.size() != 1 || !std::isfinite(s.values.front()) || !sane(limit.max)) {
-            verdict.reasons.push_back("limit on " + described(s) +
-                                      " has nothing finite to compare");
-            continue;
-        }
-        ++verdict.compared;
-        if (s.values.front() <= limit.max) continue;
-        verdict.offences.push_back({.branch = s.branch,
-                                    .quantity = s.quantity,
-                                    .channel = s.channel,
-                                    .unit = s.unit,
-                                    .of_limit = true,
-                                    .was = limit.max,
-                                    .is = s.values.front(),
-                                    .tolerance = limit.max});
+// Values of a series that a limit is on: at the design position, or all.
+std::vector<std::size_t> limited(const Limit& limit, const Series& s, const Measurement& in) {
+    std::vector<std::size_t> places;
+    const GatedBranch* branch = find(in, s.branch);
+    for (std::size_t k = 0; k < s.values.size(); ++k) {
+        const bool everywhere = is_deviation(s.quantity) || !limit.over.empty();
+        const std::size_t at =
+            is_at_stations(s.quantity) && branch != nullptr ? stations(branch->a).at(k) : k;
+        if (everywhere || (branch != nullptr && at < branch->a.size() && branch->a[at] == 0))
+            places.push_back(k);
     }
-    if (!found)
-        verdict.reasons.push_back(fmt::format("limit on {}: {}: nothing of that name was measured",
-                                              name(limit.deviation), limit.channel));
+    return places;
+}
+
+void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& verdict) {
+    const std::string title = fmt::format(
+        "limit on {}: {}{}", limit.of == Quantity::equilibrium ? "a figure" : name(limit.of),
+        limit.channel, limit.over.empty() ? "" : fmt::format(" over branch '{}'", limit.over));
+    const auto cannot = [&](const std::string& why) {
+        verdict.reasons.push_back(title + ": " + why);
+    };
+    const bool usable =
+        is_deviation(limit.of)
+            ? sane(limit.max)
+            : limit.min <= limit.max && (std::isfinite(limit.min) || std::isfinite(limit.max));
+    if (!usable) return cannot("has nothing finite to compare");
+    const int before = verdict.compared;
+    for (const auto& s : measurement.series) {
+        if (!is_of(limit, s)) continue;
+        if (!is_deviation(limit.of) && s.unit != limit.unit)
+            return cannot(fmt::format("is in {}, and {} is in {}", limit.unit, s.channel, s.unit));
+        const GatedBranch* branch = find(measurement, s.branch);
+        for (const std::size_t k : limited(limit, s, measurement)) {
+            if (!std::isfinite(s.values[k])) return cannot("has nothing finite to compare");
+            ++verdict.compared;
+            if (s.values[k] >= limit.min && s.values[k] <= limit.max) continue;
+            const double bound = s.values[k] > limit.max ? limit.max : limit.min;
+            Offence offence{.branch = s.branch,
+                            .quantity = s.quantity,
+                            .channel = s.channel,
+                            .unit = s.unit,
+                            .of_limit = true,
+                            .was = bound,
+                            .is = s.values[k],
+                            .tolerance = std::abs(bound)};
+            if (!is_deviation(limit.of) && limit.over.empty())
+                offence.a = 0, offence.a_unit = branch->unit;
+            verdict.offences.push_back(offence);
+        }
+    }
+    if (verdict.compared == before) cannot("nothing of that name was measured");
 }
 
 std::string described(const GatedBranch& branch) {
@@ -217,6 +245,44 @@ std::vector<std::string> common_branches(const Baseline& baseline, const Measure
         if (find(baseline.accepted, is.name) == nullptr)
             cannot(is.name, "is new: the baseline does not have it");
     return common;
+}
+
+// A channel by both legs at the kept points `at`, a characteristic at the stations among them; and
+// the range of the equilibrium leg.
+void add_curves(const BranchComparison& branch, std::size_t c, const Channel& channel,
+                const GatedBranch& kept, const std::vector<std::size_t>& at, Measurement& result) {
+    const auto* rate = std::get_if<Characteristic>(&channel.reads);
+    const bool arm = rate != nullptr && is_swing_arm(*rate);
+    const std::string unit = arm ? per_metre : symbol(channel.unit);
+    const auto value = [&](const Curve& curve, std::size_t point) {
+        const double v = curve.values[point][c];
+        return rounded(arm ? 1e3 / v : v);
+    };
+    const auto add = [&](Quantity quantity, std::vector<double> values, bool main) {
+        result.series.push_back(
+            {branch.branch, quantity, channel.name, unit, std::move(values), main});
+    };
+    const Curve& of_r = branch.runs[static_cast<std::size_t>(Leg::recursive)].curve;
+    const Curve& of_e = branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
+    const std::size_t before = std::min(of_r.start, of_e.start);
+    const auto kept_of = [&](const Curve& curve) {
+        std::vector<double> values;
+        for (const std::size_t k : at) values.push_back(value(curve, curve.start - before + k));
+        if (rate == nullptr) return values;
+        std::vector<double> few;
+        for (const std::size_t k : stations(kept.a)) few.push_back(values[k]);
+        return few;
+    };
+    add(rate ? Quantity::characteristic_recursive : Quantity::recursive, kept_of(of_r), false);
+    add(rate ? Quantity::characteristic_equilibrium : Quantity::equilibrium, kept_of(of_e),
+        rate || std::holds_alternative<Steering>(channel.reads) ? result.branches.empty()
+                                                                : channel.main);
+    if (!rate && !channel.kinematic()) return;
+    std::vector<double> all;
+    for (std::size_t k = 0; k < of_e.values.size(); ++k) all.push_back(value(of_e, k));
+    if (all.empty() || !all_finite(all)) all = {nan};
+    add(rate ? Quantity::range_characteristic_equilibrium : Quantity::range_equilibrium,
+        {*std::ranges::min_element(all), *std::ranges::max_element(all)}, false);
 }
 
 // Compliance matrices at the start of the first branch, one series per row.
@@ -268,8 +334,11 @@ const char* name(Quantity quantity) {
     switch (quantity) {
         case Quantity::recursive: return "recursive";
         case Quantity::equilibrium: return "equilibrium";
+        case Quantity::range_equilibrium: return "range of equilibrium";
         case Quantity::characteristic_recursive: return "characteristic of recursive";
         case Quantity::characteristic_equilibrium: return "characteristic of equilibrium";
+        case Quantity::range_characteristic_equilibrium:
+            return "range of characteristic of equilibrium";
         case Quantity::compliance_recursive: return "compliance of recursive";
         case Quantity::compliance_equilibrium: return "compliance of equilibrium";
         case Quantity::deviation_at_equal_parameter: return "deviation at equal parameter";
@@ -291,8 +360,8 @@ const char* name(Judgement judgement) {
 }
 
 double Offence::share() const {
-    const double part = of_limit ? std::abs(is) : std::abs(difference());
-    return tolerance > 0 ? part / tolerance : std::numeric_limits<double>::infinity();
+    return tolerance > 0 ? (of_limit ? 1 : 0) + std::abs(difference()) / tolerance
+                         : std::numeric_limits<double>::infinity();
 }
 
 double Offence::noticed() const {
@@ -344,6 +413,24 @@ Tolerances default_tolerances(ToleranceClass kind) {
     return {};
 }
 
+std::vector<std::size_t> stations(const std::vector<double>& a) {
+    std::vector<std::size_t> at;
+    const std::size_t last = a.empty() ? 0 : a.size() - 1, quarter = (last + 2) / 4;
+    for (std::size_t k = 0; k < a.size(); ++k)
+        if (a[k] == 0 || k == 0 || k == quarter || k == last / 2 || k == last - quarter ||
+            k == last)
+            at.push_back(k);
+    return at;
+}
+
+bool is_of(const Limit& limit, const Series& s) {
+    if (is_deviation(limit.of)) return s.quantity == limit.of && s.channel == limit.channel;
+    const bool kept = limit.over.empty() ? s.quantity == Quantity::equilibrium ||
+                                               s.quantity == Quantity::characteristic_equilibrium
+                                         : is_range(s.quantity) && s.branch == limit.over;
+    return kept && (s.channel == limit.channel || s.channel.ends_with("." + limit.channel));
+}
+
 Measurement measure(const Model& model, const Comparison& comparison) {
     Measurement result;
     result.scene = model.name;
@@ -364,32 +451,16 @@ Measurement measure(const Model& model, const Comparison& comparison) {
         const std::size_t count = std::min<std::size_t>(points, points_per_branch);
         for (std::size_t k = 0; k < count; ++k)
             at.push_back(count == 1 ? 0 : (k * (points - 1) + (count - 1) / 2) / (count - 1));
+        if (before < points && !std::ranges::binary_search(at, before))
+            at.insert(std::ranges::upper_bound(at, before), before);
         for (const std::size_t k : at) kept.a.push_back(rounded(of_e.a[of_e.start - before + k]));
 
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
-            if (!branch.determined[c]) continue;
             const auto& channel = comparison.channels[c];
-            const std::string unit = symbol(channel.unit);
-            if (std::holds_alternative<Characteristic>(channel.reads)) {
-                for (const auto& [quantity, run] :
-                     {std::pair{Quantity::characteristic_recursive, &recursive},
-                      {Quantity::characteristic_equilibrium, &equilibrium}}) {
-                    Series few{branch.branch, quantity, channel.name, unit, {}};
-                    for (const std::size_t k : landmarks(kept.a))
-                        few.values.push_back(
-                            rounded(run->curve.values[run->curve.start - before + at[k]][c]));
-                    result.series.push_back(std::move(few));
-                }
-                continue;
-            }
-            for (const auto& [quantity, run] : {std::pair{Quantity::recursive, &recursive},
-                                                {Quantity::equilibrium, &equilibrium}}) {
-                Series curve{branch.branch, quantity, channel.name, unit, {}};
-                for (const std::size_t k : at)
-                    curve.values.push_back(
-                        rounded(run->curve.values[run->curve.start - before + k][c]));
-                result.series.push_back(std::move(curve));
-            }
+            const auto* rate = std::get_if<Characteristic>(&channel.reads);
+            if (branch.determined[c] || (rate != nullptr && is_swing_arm(*rate)))
+                add_curves(branch, c, channel, kept, at, result);
+            if (!branch.determined[c] || rate != nullptr) continue;
             for (const auto& [quantity, reading] :
                  {std::pair{Quantity::deviation_at_equal_parameter,
                             &branch.deviation.equal_parameter},
@@ -398,7 +469,7 @@ Measurement measure(const Model& model, const Comparison& comparison) {
                     result.series.push_back({branch.branch,
                                              quantity,
                                              channel.name,
-                                             unit,
+                                             symbol(channel.unit),
                                              {rounded(reading->channels[c].max)}});
         }
         add_counters(branch.branch, Quantity::work_recursive, recursive, result.series);

@@ -5,6 +5,7 @@
 // be compared is never a pass.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,11 +27,13 @@ const char* name(ToleranceClass kind);  // "same-build", ...
 
 // Quantity of a series on a branch.
 enum class Quantity {
-    recursive,    // a channel of the recursion along the branch
-    equilibrium,  // ... of the equilibrium leg
-    // kinematics and compliance at the start and the ends of the branch, by the recursion
+    recursive,          // a channel of the recursion along the branch
+    equilibrium,        // ... of the equilibrium leg
+    range_equilibrium,  // smallest and largest value of a position or angle over all its points
+    // kinematics and compliance at the stations of the branch, by the recursion
     characteristic_recursive,
-    characteristic_equilibrium,  // ... by the equilibrium leg
+    characteristic_equilibrium,        // ... by the equilibrium leg
+    range_characteristic_equilibrium,  // its smallest and largest value over all points
     // row of the compliance matrix at the start of the first branch, by the recursion
     compliance_recursive,
     compliance_equilibrium,
@@ -43,8 +46,10 @@ enum class Quantity {
 };
 inline constexpr std::array quantities{Quantity::recursive,
                                        Quantity::equilibrium,
+                                       Quantity::range_equilibrium,
                                        Quantity::characteristic_recursive,
                                        Quantity::characteristic_equilibrium,
+                                       Quantity::range_characteristic_equilibrium,
                                        Quantity::compliance_recursive,
                                        Quantity::compliance_equilibrium,
                                        Quantity::deviation_at_equal_parameter,
@@ -59,17 +64,24 @@ struct Series {
     std::string branch;
     Quantity quantity = Quantity::recursive;
     std::string channel;  // or name of the counter
-    std::string unit;     // "mm", "deg", "N", "N·m", "count"
-    // per kept parameter of the branch for a channel; for a characteristic at the first, the one
-    // nearest to 0 and the last; a row of a matrix; else one value
+    std::string unit;     // "mm", "deg", "N", "N·m", "1/m", "count"
+    // per kept parameter of the branch for a channel; per station for a characteristic; a row of a
+    // matrix; smallest and largest; else one value
     std::vector<double> values;
+    bool main = false;  // a figure that a reviewer of a baseline reads
 };
+
+// A swing arm is kept as 1 / arm: a change from -110 m to -476 m is next to none.
+inline constexpr const char* per_metre = "1/m";
 
 struct GatedBranch {
     std::string name;
     std::string unit;       // of the parameter: "N", "mm", ...
     std::vector<double> a;  // parameters at which channel values are kept
 };
+
+// The stations of a branch among its kept parameters: five, evenly spaced, and the design position.
+std::vector<std::size_t> stations(const std::vector<double>& a);
 
 struct Measurement {
     std::string scene;
@@ -80,28 +92,35 @@ struct Measurement {
     std::vector<std::string> inconclusive;
 };
 
-// Keeps up to eleven evenly spaced points per branch, both ends included. Values are rounded to the
-// digits of a baseline file.
+// Keeps up to eleven evenly spaced points per branch, both ends included, and the design position.
+// Values are rounded to the digits of a baseline file.
 Measurement measure(const Model& model, const Comparison& comparison);
 
-// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve for a channel; the
-// largest entry for a characteristic or a row of compliances; the range of the equilibrium leg's
+// |new - old| <= atol + rtol × scale. Scale: the range of the accepted curve for a channel and its
+// range; the largest entry for a characteristic or a row of compliances; the range of the leg's
 // curve for a deviation; the accepted number for a counter, so that rtol 0.1 is 10 %.
 struct Allowance {
     double atol = 0, rtol = 0;
 };
 
-// Keys: the channel where listed, else "characteristic", "compliance", else the unit.
+// Keys: the channel where listed, else "characteristic", "compliance", else the unit. A range has
+// the tolerance of its curve.
 using Tolerances = std::map<std::string, Allowance>;
 Tolerances default_tolerances(ToleranceClass kind);
 
-// Absolute bound on a deviation over every branch, in the channel's unit: it limits the error, not
-// the change.
+// Absolute bounds on a result, whatever was accepted: on a deviation over every branch, or on a
+// figure (Quantity::equilibrium): an output or characteristic of the equilibrium leg.
 struct Limit {
-    Quantity deviation = Quantity::deviation_at_equal_abscissa;
+    Quantity of = Quantity::deviation_at_equal_abscissa;
+    // of a figure also without its first part: "bump_steer" for "left." and "right.bump_steer"
     std::string channel;
-    double max = 0;
+    double max = std::numeric_limits<double>::infinity();
+    double min = -std::numeric_limits<double>::infinity();  // of a figure, like the following
+    std::string unit = {};                                  // unit of the bounds
+    std::string over = {};  // a branch, at all of its points; empty: at the design position
 };
+// Whether the limit is on this series.
+bool is_of(const Limit& limit, const Series& series);
 
 struct Baseline {
     Measurement accepted;
@@ -116,21 +135,23 @@ struct Offence {
     std::string channel, unit;
     std::optional<double> a = {};  // parameter of a channel value, ...
     std::string a_unit = {};       // ... in the unit of the branch parameter
-    bool of_limit = false;         // an absolute limit is exceeded; `was` is that limit
+    bool of_limit = false;         // beyond an absolute limit, which is `was`
     double was = 0, is = 0;        // accepted, measured
     double tolerance = 0;
     // tolerance in class `physical`: the smallest change that an engineer notices
     double noticeable = 0;
 
     double difference() const { return is - was; }
-    double share() const;    // ratio to the tolerance, or to the limit; infinite for tolerance zero
-    double noticed() const;  // ratio to `noticeable`, or to the limit
+    // ratio to the tolerance, infinite for tolerance zero; of a limit 1 + excess / |limit|
+    double share() const;
+    double noticed() const;  // ratio to `noticeable`; of a limit its share
 };
 
 // Report order of two offences: exceeded limits first, then changes above `noticeable`, then the
-// others; within each class, wheel outputs before inner forces and counters of work; then the
-// larger ratio to `noticeable`. The ratio to the tolerance does not decide: 0.18 N of a joint
-// reaction may be 10⁸ round-off tolerances and still be irrelevant.
+// others; within each class wheel outputs at the design position (the reference's, then the
+// recursion's), then elsewhere, then inner forces and counters of work; then the larger ratio to
+// `noticeable`. The ratio to the tolerance does not decide: 0.18 N of a joint reaction may be 10⁸
+// round-off tolerances and still be irrelevant.
 bool comes_before(const Offence& a, const Offence& b);
 
 enum class Judgement { passed, failed, could_not_judge };

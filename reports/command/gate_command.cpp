@@ -12,6 +12,7 @@
 #include "compare/comparison/changes.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
@@ -79,8 +80,7 @@ std::vector<Task> tasks(const GateOptions& options) {
                 "{}: {}; names are one line of UTF-8 text",
                 (folder / for_terminal(entry.path().filename().string())).string(), wrong));
         try {
-            const BaselineFile file =
-                parse_baseline(read_whole(entry.path(), largest_baseline), entry.path().string());
+            const BaselineFile file = read_baseline(entry.path());
             all.push_back({(folder / file.scene_file).lexically_normal(), entry.path(), ""});
         } catch (const std::runtime_error& error) {  // BaselineError, FileError
             all.push_back({entry.path(), entry.path(), error.what()});
@@ -108,8 +108,7 @@ std::string name_beside(const Task& task) {
 
 // Measurement of a scene by this build, or the one given by --from.
 BaselineFile measured(const Task& task, const GateOptions& options) {
-    if (!options.from.empty())
-        return parse_baseline(read_whole(options.from, largest_baseline), options.from);
+    if (!options.from.empty()) return read_baseline(options.from);
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
@@ -152,8 +151,7 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         return std::nullopt;
     }
     try {
-        BaselineFile file =
-            parse_baseline(read_whole(task.baseline, largest_baseline), task.baseline.string());
+        BaselineFile file = read_baseline(task.baseline);
         scene.accepted = file.baseline.accepted;
         scene.reason = file.baseline.reason;
         return file;
@@ -164,6 +162,33 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
     }
 }
 
+// Reason why a limit is on nothing that was measured, with the nearest names.
+std::string what_is_there(const compare::Limit& limit, const compare::Measurement& measurement) {
+    const bool figure = limit.of == compare::Quantity::equilibrium;
+    const auto is_branch = [&](const compare::GatedBranch& branch) {
+        return limit.over.empty() || branch.name == limit.over;
+    };
+    std::vector<std::string> names;
+    if (std::ranges::none_of(measurement.branches, is_branch)) {
+        for (const auto& branch : measurement.branches) names.push_back(branch.name);
+        return fmt::format("limit on {}: there is no branch {}{}", limit.channel,
+                           reader::quote(limit.over),
+                           reader::did_you_mean(limit.over, names, "branches"));
+    }
+    compare::Limit any = limit;
+    for (const auto& series : measurement.series) {
+        any.channel = series.channel;
+        if (!is_of(any, series)) continue;
+        for (const std::string& name :
+             {series.channel, series.channel.substr(series.channel.find('.') + 1)})
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+    return fmt::format(
+        "limit on {}: nothing of that name was measured{}",
+        figure ? limit.channel : fmt::format("{}: {}", name(limit.of), limit.channel),
+        reader::did_you_mean(limit.channel, names, "allowed"));
+}
+
 void judge(const BaselineFile& was, const BaselineFile& is, const std::string& forced,
            GatedScene& scene) {
     const BuildDistance apart = distance(was.provenance, is.provenance);
@@ -171,16 +196,22 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     scene.differs = apart.differs;
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
-    scene.verdict = compare::judge(was.baseline, is.baseline.accepted, kind);
-    if (was.numbers && is.numbers) scene.changed = compare::changes(*was.numbers, *is.numbers);
+    compare::Baseline baseline = was.baseline;
+    const auto misnamed = std::ranges::partition(baseline.limits, [&](const compare::Limit& limit) {
+        return std::ranges::any_of(is.baseline.accepted.series,
+                                   [&](const auto& series) { return is_of(limit, series); });
+    });
+    std::vector<std::string> unknown;
+    for (const auto& limit : misnamed)
+        unknown.push_back(what_is_there(limit, is.baseline.accepted));
+    baseline.limits.erase(misnamed.begin(), misnamed.end());
+    scene.verdict = compare::judge(baseline, is.baseline.accepted, kind);
+    std::ranges::copy(unknown, std::back_inserter(scene.verdict.reasons));
+    scene.changed = compare::changes(was.numbers, is.numbers);
     if (was.input_hash == is.input_hash) return;
-    const char* what = !was.numbers || !is.numbers
-                           ? "; the changed numbers are unknown (this older baseline does not "
-                             "contain the numbers of the scene)"
-                       : scene.changed.empty() ? "; none of its numbers changed"
-                                               : "";
-    scene.notes.push_back(fmt::format("the scene file differs from the accepted one ({}, now {}){}",
-                                      was.input_hash, is.input_hash, what));
+    scene.notes.push_back(
+        fmt::format("the scene file differs from the accepted one ({}, now {}){}", was.input_hash,
+                    is.input_hash, scene.changed.empty() ? "; none of its numbers changed" : ""));
 }
 
 // Judges by the default tolerance, independent of the baseline, since no accepted result applies to
@@ -232,10 +263,10 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
             judge(*was, measured(task, options), options.kind, scene);
             if (options.candidate.wanted()) judge_candidate(task, options, scene);
             // A baseline made in the same run would always agree.
-            if (says_yes("CI"))
-                if (const std::string why = not_committed(task.baseline); !why.empty())
-                    scene.verdict.reasons.push_back(fmt::format("the baseline {} is unreviewed: {}",
-                                                                task.baseline.string(), why));
+            for (const auto& part : {task.baseline, curves_of(task.baseline)})
+                if (const std::string why = says_yes("CI") ? not_committed(part) : ""; !why.empty())
+                    scene.verdict.reasons.push_back(
+                        fmt::format("the baseline {} is unreviewed: {}", part.string(), why));
         } else {
             compile(read_scene(task.scene,
                                // distinguishes a bad scene from a missing baseline
@@ -315,14 +346,14 @@ int accept_scene(const Task& task, const GateOptions& options) {
         const auto text_without_reason = [](BaselineFile file) {
             file.baseline.reason.clear();
             file.provenance = {};
-            return baseline_text(file);
+            return baseline_text(file).review;  // with the hash of the curves
         };
         if (text_without_reason(*was) == text_without_reason(is) && !blank(was->baseline.reason)) {
             print("{}: left as it is\n", task.baseline.string());
             return fine;
         }
     }
-    write_whole(task.baseline, baseline_text(is), baseline_file);
+    write_baseline(task.baseline, is);
     print("{}: written\n", task.baseline.string());
     return fine;
 }

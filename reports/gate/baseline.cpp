@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <tuple>
 
 #include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
@@ -15,11 +17,14 @@
 namespace elastocheck::reports {
 namespace {
 
+namespace fs = std::filesystem;
 using compare::Quantity;
 using compare::ToleranceClass;
 using json = nlohmann::ordered_json;
 
-bool is_known(const std::string& unit) { return unit == "count" || compare::find_unit(unit); }
+bool is_known(const std::string& unit) {
+    return unit == "count" || unit == compare::per_metre || compare::find_unit(unit);
+}
 
 // The element of `kinds` with this name.
 template <class Kinds>
@@ -64,19 +69,40 @@ std::map<ToleranceClass, compare::Tolerances> tolerances_of(const JsonCursor& in
     return result;
 }
 
-compare::Series series_of(const JsonCursor& in) {
-    in.only_keys({"branch", "of", "channel", "unit", "values"});
-    compare::Series s{in["branch"].text(), named(in["of"], compare::quantities),
-                      in["channel"].text(), in["unit"].text(), in["values"].numbers()};
-    if (!is_known(s.unit)) in["unit"].fail(fmt::format("'{}' is not known", s.unit));
-    return s;
+compare::Limit limit_of(const JsonCursor& in) {
+    if (!in.find("figure")) {
+        in.only_keys({"of", "channel", "max"});
+        constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
+                                        Quantity::deviation_at_equal_abscissa};
+        return {.of = named(in["of"], deviations),
+                .channel = in["channel"].text(),
+                .max = in["max"].number()};
+    }
+    compare::Limit limit{
+        .of = Quantity::equilibrium, .channel = in["figure"].text(), .unit = in["unit"].text()};
+    for (const auto& [key, value] : in.entries()) {
+        if (key == "max")
+            limit.max = value.number();
+        else if (key == "min")
+            limit.min = value.number();
+        else if (key == "over")
+            limit.over = value.text();
+        else if (key != "figure" && key != "unit")
+            in.fail(fmt::format("'{}' is not known", key));
+    }
+    if (!in.value->contains("min") && !in.value->contains("max")) in.fail("needs min or max");
+    if (!is_known(limit.unit)) in["unit"].fail(fmt::format("'{}' is not known", limit.unit));
+    return limit;
 }
 
-compare::Limit limit_of(const JsonCursor& in) {
-    in.only_keys({"of", "channel", "max"});
-    constexpr std::array deviations{Quantity::deviation_at_equal_parameter,
-                                    Quantity::deviation_at_equal_abscissa};
-    return {named(in["of"], deviations), in["channel"].text(), in["max"].number()};
+json limit_json(const compare::Limit& limit) {
+    if (limit.of != Quantity::equilibrium)
+        return {{"of", name(limit.of)}, {"channel", limit.channel}, {"max", limit.max}};
+    json out = {{"figure", limit.channel}, {"unit", limit.unit}};
+    if (!limit.over.empty()) out["over"] = limit.over;
+    if (!std::isinf(limit.min)) out["min"] = limit.min;
+    if (!std::isinf(limit.max)) out["max"] = limit.max;
+    return out;
 }
 
 // ["points.tie_rod_inner.z", -0.055, "m"]
@@ -86,53 +112,204 @@ Number number_of(const JsonCursor& in) {
     return {parts[0].text(), parts[1].number(), parts[2].text()};
 }
 
-// [\n  one,\n  two\n ]
-std::string one_a_line(const std::vector<json>& entries) {
-    std::string lines;
-    for (const auto& entry : entries) lines += (lines.empty() ? "\n  " : ",\n  ") + entry.dump();
-    return "[" + lines + (entries.empty() ? "]" : "\n ]");
+// "toe [deg]"
+std::string heading(const compare::Series& s) { return fmt::format("{} [{}]", s.channel, s.unit); }
+
+std::pair<std::string, std::string> channel_and_unit(const std::string& key,
+                                                     const JsonCursor& field) {
+    const auto at = key.rfind(" [");
+    if (at == key.npos || !key.ends_with("]")) field.fail("is not a name with its [unit]");
+    const std::string unit = key.substr(at + 2, key.size() - at - 3);
+    if (!is_known(unit)) field.fail(fmt::format("the unit '{}' is not known", unit));
+    return {key.substr(0, at), unit};
 }
 
-BaselineFile parse(const JsonCursor& top) {
+// Numbers of a series that depends on the branch: at its kept points, its stations; else 0.
+std::size_t size_of(Quantity quantity, const std::vector<double>& a) {
+    switch (quantity) {
+        case Quantity::recursive:
+        case Quantity::equilibrium: return a.size();
+        case Quantity::characteristic_recursive:
+        case Quantity::characteristic_equilibrium: return compare::stations(a).size();
+        case Quantity::range_equilibrium:
+        case Quantity::range_characteristic_equilibrium: return 2;
+        default: return 0;
+    }
+}
+
+// A number alone stands for that number everywhere.
+json values_json(const compare::Series& s, const std::vector<double>& a) {
+    const bool all_alike = s.values.size() == size_of(s.quantity, a) && !s.values.empty() &&
+                           std::ranges::count(s.values, s.values.front()) ==
+                               static_cast<std::ptrdiff_t>(s.values.size());
+    return all_alike ? json(s.values.front()) : json(s.values);
+}
+
+// ---- The figures to review.
+
+// To the digits that an engineer notices.
+double shown(double value, const std::string& unit) {
+    static const std::map<std::string_view, int> decimals{
+        {"mm", 2}, {"deg", 3}, {"N", 0}, {"N·m", 1}, {"%", 1}};
+    if (!std::isfinite(value)) return value;
+    const auto own = decimals.find(unit);
+    const std::string text = own != decimals.end()    ? fmt::format("{:.{}f}", value, own->second)
+                             : std::abs(value) < 1e-6 ? "0"
+                                                      : fmt::format("{:.4g}", value);
+    return std::strtod(text.c_str(), nullptr) + 0.0;
+}
+
+json figures_json(const compare::Measurement& measurement) {
+    json all = json::object();
+    for (const auto& branch : measurement.branches) {
+        const auto at = compare::stations(branch.a);
+        json lines = json::object();
+        for (const auto& s : measurement.series) {
+            if (!s.main || s.branch != branch.name) continue;
+            json values = json::array();
+            for (std::size_t k = 0; k < at.size(); ++k) {
+                const std::size_t place = s.values.size() == at.size() ? k : at[k];
+                if (place < s.values.size()) values.push_back(shown(s.values[place], s.unit));
+            }
+            lines[heading(s)] = values;
+        }
+        json parameters = json::array();
+        for (const std::size_t k : at) parameters.push_back(branch.a[k]);
+        if (!lines.empty())
+            all[branch.name] = {{"at", parameters}, {"unit", branch.unit}, {"figures", lines}};
+    }
+    return all;
+}
+
+// Marks the series that the file shows.
+void mark_main(const JsonCursor& figures, compare::Measurement& measurement) {
+    for (const auto& [branch, of_branch] : figures.entries()) {
+        of_branch.only_keys({"at", "unit", "figures"});
+        for (const auto& [key, field] : of_branch["figures"].entries()) {
+            const auto [channel, unit] = channel_and_unit(key, field);
+            bool found = false;
+            for (auto& s : measurement.series)
+                if (s.branch == branch && s.channel == channel && s.unit == unit &&
+                    (s.quantity == Quantity::equilibrium ||
+                     s.quantity == Quantity::characteristic_equilibrium))
+                    s.main = found = true;
+            if (!found) field.fail("is not among the curves");
+        }
+    }
+}
+
+// ---- Text.
+
+// "KEY": [\n  one,\n  two\n ]
+std::string one_a_line(const char* key, const std::vector<json>& entries) {
+    std::string lines;
+    for (const auto& entry : entries) lines += (lines.empty() ? "\n  " : ",\n  ") + entry.dump();
+    return fmt::format(" \"{}\": [{}{}]", key, lines, entries.empty() ? "" : "\n ");
+}
+
+// The entries of objects within objects, those of the innermost one a line.
+std::string nested(const json& object, int depth, int indent = 1) {
+    if (depth == 0 || object.empty()) return object.dump();
+    std::string lines;
+    for (const auto& [key, value] : object.items())
+        lines += fmt::format(
+            "{}\n{:{}}{}: {}", lines.empty() ? "" : ",", "", indent + 1, json(key).dump(),
+            value.is_object() ? nested(value, depth - 1, indent + 1) : value.dump());
+    return fmt::format("{{{}\n{:{}}}}", lines, "", indent);
+}
+
+std::string curves_text(const BaselineFile& file) {
+    const compare::Measurement& m = file.baseline.accepted;
+    json branches = json::object();
+    for (const auto& branch : m.branches) {
+        json& of_branch = branches[branch.name] = {{"unit", branch.unit}, {"parameter", branch.a}};
+        for (const auto& s : m.series)
+            if (s.branch == branch.name)
+                of_branch[name(s.quantity)][heading(s)] = values_json(s, branch.a);
+    }
+    std::vector<json> numbers;
+    for (const auto& n : file.numbers) numbers.push_back(json::array({n.path, n.value, n.unit}));
+    return fmt::format("{{\n \"schema\": \"{}\",\n{},\n \"branches\": {}\n}}\n",
+                       baseline_curves_schema, one_a_line("numbers", numbers), nested(branches, 3));
+}
+
+void check_schema(const JsonCursor& top, const char* wanted) {
     if (!top.value->is_object() || !top.value->contains("schema"))
         top.fail("has no schema: it is not a baseline");
-    if (const std::string schema = top["schema"].text(); schema != baseline_schema)
-        top["schema"].fail(
-            fmt::format("'{}' cannot be read by this version, which needs '{}'; accept anew",
-                        schema, baseline_schema));
+    if (const std::string schema = top["schema"].text(); schema != wanted)
+        top["schema"].fail(fmt::format(
+            "'{}' cannot be read by this version, which needs '{}'; accept anew", schema, wanted));
+}
+
+void parse_curves(const JsonCursor& top, BaselineFile& file) {
+    check_schema(top, baseline_curves_schema);
+    top.only_keys({"schema", "numbers", "branches"});
+    for (const auto& entry : top["numbers"].items()) file.numbers.push_back(number_of(entry));
+    compare::Measurement& m = file.baseline.accepted;
+    for (const auto& [branch, of_branch] : top["branches"].entries()) {
+        m.branches.push_back({branch, of_branch["unit"].text(), of_branch["parameter"].numbers()});
+        const auto& a = m.branches.back().a;
+        for (const auto& [key, list] : of_branch.entries()) {
+            if (key == "unit" || key == "parameter") continue;
+            const auto quantity =
+                std::ranges::find(compare::quantities, key, [](Quantity q) { return name(q); });
+            if (quantity == compare::quantities.end())
+                of_branch.fail(fmt::format("'{}' is not known", key));
+            for (const auto& [title, values] : list.entries()) {
+                const auto [channel, unit] = channel_and_unit(title, values);
+                const bool alike = !values.value->is_array();
+                m.series.push_back(
+                    {branch, *quantity, channel, unit,
+                     alike ? std::vector<double>(size_of(*quantity, a), values.number())
+                           : values.numbers()});
+            }
+        }
+    }
+    std::ranges::sort(m.series, {}, [](const compare::Series& s) {
+        return std::tie(s.branch, s.quantity, s.channel);
+    });
+}
+
+BaselineFile parse_review(const JsonCursor& top, const JsonCursor& curves) {
+    check_schema(top, baseline_schema);
     top.only_keys(
-        {"schema", "scene", "accepted", "provenance", "tolerances", "limits", "branches", "series"},
-        "numbers");
+        {"schema", "scene", "accepted", "provenance", "curves", "tolerances", "limits", "figures"});
     BaselineFile file;
     const JsonCursor scene = top["scene"];
     scene.only_keys({"file", "name", "input_hash"});
     file.scene_file = scene["file"].text();
     file.baseline.accepted.scene = scene["name"].text();
     file.input_hash = scene["input_hash"].text();
-    if (top.value->contains("numbers")) {
-        file.numbers.emplace();
-        for (const auto& entry : top["numbers"].items()) file.numbers->push_back(number_of(entry));
-    }
     top["accepted"].only_keys({"reason"});
     file.baseline.reason = top["accepted"]["reason"].lines();
     file.provenance = provenance_of(top["provenance"]);
+    top["curves"].only_keys({"hash"});
     file.baseline.tolerances = tolerances_of(top["tolerances"]);
     for (const auto& limit : top["limits"].items()) file.baseline.limits.push_back(limit_of(limit));
-    std::set<std::string> branches;
-    for (const auto& branch : top["branches"].items()) {
-        branch.only_keys({"name", "unit", "parameter"});
-        file.baseline.accepted.branches.push_back(
-            {branch["name"].text(), branch["unit"].text(), branch["parameter"].numbers()});
-        if (!branches.insert(file.baseline.accepted.branches.back().name).second)
-            branch.fail("the branch is given twice");
-    }
-    std::set<std::tuple<std::string, Quantity, std::string>> seen;
-    for (const auto& entry : top["series"].items()) {
-        file.baseline.accepted.series.push_back(series_of(entry));
-        const compare::Series& s = file.baseline.accepted.series.back();
-        if (!seen.emplace(s.branch, s.quantity, s.channel).second) entry.fail("is given twice");
-    }
+    parse_curves(curves, file);
+    mark_main(top["figures"], file.baseline.accepted);
     return file;
+}
+
+// Both files as JSON, handed to `use`.
+template <class Use>
+auto with_json(const BaselineText& text, const std::string& file_name, Use use) {
+    const std::string curves_name = curves_of(file_name).string();
+    const auto whole = [](const std::string& part, const std::string& of) {
+        if (part.empty()) throw BaselineError(of + ": the file is empty");
+        try {
+            return parse_json(part);
+        } catch (const JsonError& error) {
+            throw BaselineError(
+                fmt::format("{}: is not the JSON of a baseline: {}", of, error.what()));
+        }
+    };
+    const json review = whole(text.review, file_name), curves = whole(text.curves, curves_name);
+    try {
+        return use(JsonCursor{&review, "", &file_name}, JsonCursor{&curves, "", &curves_name});
+    } catch (const ResultError& error) {
+        throw BaselineError(error.what());
+    }
 }
 
 // First line of the output of a command, "" when it fails.
@@ -147,56 +324,58 @@ std::string first_line(const std::string& command) {
 
 }  // namespace
 
-std::string baseline_text(const BaselineFile& file) {
+BaselineText baseline_text(const BaselineFile& file) {
     const compare::Baseline& b = file.baseline;
-    std::vector<json> limits, numbers, branches, series;
-    if (file.numbers)
-        for (const auto& n : *file.numbers)
-            numbers.push_back(json::array({n.path, n.value, n.unit}));
-    for (const auto& limit : b.limits)
-        limits.push_back(
-            {{"of", name(limit.deviation)}, {"channel", limit.channel}, {"max", limit.max}});
-    for (const auto& branch : b.accepted.branches)
-        branches.push_back({{"name", branch.name}, {"unit", branch.unit}, {"parameter", branch.a}});
-    for (const auto& s : b.accepted.series)
-        series.push_back({{"branch", s.branch},
-                          {"of", name(s.quantity)},
-                          {"channel", s.channel},
-                          {"unit", s.unit},
-                          {"values", s.values}});
+    const std::string curves = curves_text(file);
+    std::vector<json> limits;
+    for (const auto& limit : b.limits) limits.push_back(limit_json(limit));
+    json tolerances = json::object();
+    for (const auto& [kind, of_kind] : b.tolerances)
+        tolerances[name(kind)] = tolerances_json(of_kind);
     const auto line = [](const char* key, const json& value) {
         return fmt::format(" \"{}\": {},\n", key, value.dump());
     };
     std::string text = "{\n" + line("schema", baseline_schema);
+    text += line("accepted", {{"reason", b.reason}});
+    text += fmt::format(" \"figures\": {},\n", nested(figures_json(b.accepted), 3));
+    text += one_a_line("limits", limits) + ",\n";
+    text += fmt::format(" \"tolerances\": {},\n", nested(tolerances, 1));
     text += line(
         "scene",
         {{"file", file.scene_file}, {"name", b.accepted.scene}, {"input_hash", file.input_hash}});
-    text += line("accepted", {{"reason", b.reason}});
     text += line("provenance", provenance_json(file.provenance));
-    text += " \"tolerances\": {";
-    for (const char* separator = "\n"; const auto& [kind, tolerances] : b.tolerances) {
-        text += fmt::format("{}  \"{}\": {}", separator, name(kind),
-                            tolerances_json(tolerances).dump());
-        separator = ",\n";
-    }
-    text += "\n },\n \"limits\": " + one_a_line(limits);
-    if (file.numbers) text += ",\n \"numbers\": " + one_a_line(numbers);
-    text += ",\n \"branches\": " + one_a_line(branches) + ",\n \"series\": " + one_a_line(series) +
-            "\n}\n";
-    return text;
+    text +=
+        fmt::format(" \"curves\": {}\n}}\n", json::object({{"hash", input_hash(curves)}}).dump());
+    return {text, curves};
 }
 
-BaselineFile parse_baseline(std::string_view text, const std::string& file_name) {
-    if (text.empty()) throw BaselineError(file_name + ": the file is empty");
-    try {
-        const json whole = parse_json(text);
-        return parse({&whole, "", &file_name});
-    } catch (const ResultError& error) {
-        throw BaselineError(error.what());
-    } catch (const JsonError& error) {
-        throw BaselineError(
-            fmt::format("{}: is not the JSON of a baseline: {}", file_name, error.what()));
-    }
+BaselineFile parse_baseline(const BaselineText& text, const std::string& file_name) {
+    return with_json(text, file_name, parse_review);
+}
+
+fs::path curves_of(const fs::path& baseline) {
+    return baseline.parent_path() / "curves" / baseline.filename();
+}
+
+BaselineFile read_baseline(const fs::path& file) {
+    const BaselineText text{read_whole(file, largest_baseline),
+                            read_whole(curves_of(file), largest_baseline)};
+    return with_json(text, file.string(), [&](const JsonCursor& top, const JsonCursor& curves) {
+        BaselineFile read = parse_review(top, curves);
+        if (top["curves"]["hash"].text() != input_hash(text.curves))
+            top["curves"]["hash"].fail(
+                fmt::format("{} is of another acceptance", curves_of(file).string()));
+        if (top["figures"].value->dump() != figures_json(read.baseline.accepted).dump())
+            top["figures"].fail("are not those of the accepted curves; figures are not edited");
+        return read;
+    });
+}
+
+void write_baseline(const fs::path& file, const BaselineFile& baseline) {
+    const BaselineText text = baseline_text(baseline);
+    check_may_write(file, baseline_file);
+    write_whole(curves_of(file), text.curves, baseline_curves_file);
+    write_whole(file, text.review, baseline_file);
 }
 
 BuildDistance distance(const Provenance& was, const Provenance& is) {
@@ -218,7 +397,7 @@ BuildDistance distance(const Provenance& was, const Provenance& is) {
     return {differs.empty() ? ToleranceClass::same_build : ToleranceClass::cross_build, differs};
 }
 
-std::string not_committed(const std::filesystem::path& file) {
+std::string not_committed(const fs::path& file) {
     // A container's checkout often belongs to another user, which git rejects; only blobs are
     // compared.
     const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";

@@ -1,29 +1,34 @@
-// Baseline files: accepted results of one scene, small enough to be reviewed.
+// Baseline files: accepted results of one scene, in two files. The same format carries a measurement
+// from another machine.
 //
-// Stored in baselines/SCENE.json beside each scene: one line per curve, sorted. The same format
-// carries a measurement from another machine.
+// baselines/SCENE.json is what a person reviews: reason, tolerances, limits, and the main figures,
+// one line each, at the stations of the branches, to the digits that an engineer notices.
+// baselines/curves/SCENE.json holds every number that is compared, to nine decimals, and the
+// numbers of the scene. The first names the hash of the second.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "compare/gate/gate.hpp"
 #include "elastocheck/scene.hpp"
+#include "reports/files/files.hpp"
 #include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
 
 // Incremented when a field changes its meaning or is removed.
-inline constexpr const char* baseline_schema = "elastocheck/baseline/2";
+inline constexpr const char* baseline_schema = "elastocheck/baseline/3";
+inline constexpr const char* baseline_curves_schema = "elastocheck/baseline-curves/3";
+inline constexpr FileKind baseline_curves_file{"curves of a baseline",
+                                               R"({"schema": "elastocheck/baseline-curves/)"};
 
 struct BaselineFile {
     std::string scene_file;  // relative to the folder of the baseline
     std::string input_hash;  // of the scene file
-    // numbers of the scene; empty for older files without them
-    std::optional<std::vector<Number>> numbers;
+    std::vector<Number> numbers;
     Provenance provenance;
     compare::Baseline baseline;
 };
@@ -33,11 +38,23 @@ struct BaselineError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-std::string baseline_text(const BaselineFile& file);
+struct BaselineText {
+    std::string review, curves;
+};
+BaselineText baseline_text(const BaselineFile& file);
 
 // Strict: a missing, unknown or mistyped field is an error, so that a misspelt limit is not
-// silently ignored. A null among the numbers is NaN.
-BaselineFile parse_baseline(std::string_view text, const std::string& file_name);
+// silently ignored. A null among the numbers is NaN. The hash and the values of the figures are
+// checked by read_baseline alone.
+BaselineFile parse_baseline(const BaselineText& text, const std::string& file_name);
+
+// Path of the second file of a baseline.
+std::filesystem::path curves_of(const std::filesystem::path& baseline);
+
+// Throws BaselineError, also for a pair of files that were not written together, and FileError.
+BaselineFile read_baseline(const std::filesystem::path& file);
+// The curves first: a pair of which only one was written is not read.
+void write_baseline(const std::filesystem::path& file, const BaselineFile& baseline);
 
 // Closest tolerance class for the two builds, and the differences as text ("" for the same build).
 struct BuildDistance {

@@ -260,8 +260,8 @@ std::string describe(const Offence& o) {
     std::string line = fmt::format("branch '{}', {}: {}", o.branch, name(o.quantity), o.channel);
     if (o.a) line += fmt::format(" at {:g} {}", *o.a, o.a_unit);
     if (o.of_limit)
-        return line +
-               fmt::format(": {:.6g} {} is over its limit of {:g} {}", o.is, o.unit, o.was, o.unit);
+        return line + fmt::format(": {:.6g} {} is {} its limit of {:g} {}", o.is, o.unit,
+                                  o.is < o.was ? "below" : "over", o.was, o.unit);
     line += fmt::format(": accepted {:.10g} {}, measured {:.10g} {}, difference {:+.3g}", o.was,
                         o.unit, o.is, o.unit, o.difference());
     line += o.tolerance > 0

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <map>
 
-#include "reports/files/files.hpp"
 #include "reports/gate/baseline.hpp"
 
 namespace {
@@ -24,11 +23,10 @@ struct Worst {
 std::map<std::string, Worst> worst_of(const fs::path& accepted, const fs::path& other) {
     std::map<std::string, Worst> worst;
     for (const auto& entry : fs::directory_iterator(accepted)) {
+        if (entry.is_directory()) continue;
         const auto leaf = entry.path().filename();
-        const auto a = reports::parse_baseline(reports::read_whole(entry.path()), entry.path())
-                           .baseline.accepted;
-        const auto b = reports::parse_baseline(reports::read_whole(other / leaf), other / leaf)
-                           .baseline.accepted;
+        const auto a = reports::read_baseline(entry.path()).baseline.accepted;
+        const auto b = reports::read_baseline(other / leaf).baseline.accepted;
         for (std::size_t s = 0; s < a.series.size(); ++s) {
             const auto &was = a.series[s], &is = b.series.at(s);
             if (was.channel != is.channel || was.branch != is.branch || was.quantity != is.quantity)

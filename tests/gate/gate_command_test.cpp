@@ -22,7 +22,12 @@ using support::text_of;
 
 const std::string scenes = ELASTOCHECK_SCENES;
 const std::string scene = scenes + "/single_bushing.yaml";
-const std::string committed = text_of(scenes + "/baselines/single_bushing.json");
+using compare::Quantity;
+using reports::BaselineFile;
+using reports::BaselineText;
+
+const std::filesystem::path baselines = scenes + "/baselines";
+const BaselineFile committed = reports::read_baseline(baselines / "single_bushing.json");
 
 // Not in CI, whatever the tests themselves run in.
 Said gate(const std::string& arguments, const std::string& environment = "CI= GITHUB_ACTIONS=") {
@@ -30,60 +35,76 @@ Said gate(const std::string& arguments, const std::string& environment = "CI= GI
 }
 
 // The committed baseline against itself as a measurement, either of them edited first. Nothing is solved.
-Said crafted(const std::string& baseline, const std::string& measurement) {
-    const Folder folder;
-    folder.write("single_bushing.json", baseline);
+Said crafted(const BaselineText& baseline, const BaselineText& measurement) {
+    const Folder folder, other;
+    for (const auto* in : {&folder, &other}) {
+        std::filesystem::create_directory(in->path / "curves");
+        const BaselineText& text = in == &folder ? baseline : measurement;
+        in->write("single_bushing.json", text.review);
+        in->write("curves/single_bushing.json", text.curves);
+    }
     return gate(scene + " --baseline " + folder.path.string() + " --from " +
-                folder.write("m", measurement));
+                (other.path / "single_bushing.json").string());
 }
 
-using Edit = std::function<void(ordered_json&)>;
-std::string edited(const Edit& edit) {
-    ordered_json file = ordered_json::parse(committed);
+using Edit = std::function<void(BaselineFile&)>;
+BaselineText edited(const Edit& edit) {
+    BaselineFile file = committed;
     edit(file);
-    return file.dump();
+    return reports::baseline_text(file);
 }
-ordered_json& first_moving(ordered_json& file) {  // a curve whose end is not where it starts
-    for (auto& s : file["series"])
-        if (s["values"].back() != s["values"].front()) return s;
-    return file["series"][0];
+std::vector<compare::Series>& series(BaselineFile& file) { return file.baseline.accepted.series; }
+compare::Series& first_moving(BaselineFile& file) {  // a curve whose end is not where it starts
+    for (auto& s : series(file))
+        if (s.values.back() != s.values.front()) return s;
+    return series(file)[0];
 }
 
 TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
-    const std::string& good = committed;
+    const BaselineText good = reports::baseline_text(committed);
     struct Case {
         const char* what;
         int code;
-        std::string baseline, measurement;
+        BaselineText baseline, measurement;
     };
-    const double atol = ordered_json::parse(good)["tolerances"]["same-build"]["mm"]["atol"];
-    const Edit set_to_zero = [](auto& file) {
-        for (auto& s : file["series"])
-            if (s["unit"] == "mm") return void(s["values"][0] = 0.0);
-    };
+    const double atol =
+        committed.baseline.tolerances.at(compare::ToleranceClass::same_build).at("mm").atol;
     const auto set_first = [&](double value) {
         return edited([&](auto& file) {
-            for (auto& s : file["series"])
-                if (s["unit"] == "mm") return void(s["values"][0] = value);
+            for (auto& s : series(file))
+                if (s.unit == "mm") return void(s.values[0] = value);
         });
     };
-    const auto truncated = [&](const std::string& text) {
+    const auto truncated = [](const std::string& text) {
         return text.substr(0, text.size() * 2 / 3);
     };
-    const std::string nan = edited([](auto& f) { first_moving(f)["values"].back() = nullptr; });
-    const std::string less = edited([](auto& f) { f["series"].erase(f["series"].begin()); });
-    const std::string fewer = edited([](auto& f) { first_moving(f)["values"].erase(3); });
-    const std::string swapped = edited([](auto& f) {
-        auto& moving = first_moving(f);
-        for (auto& s : f["series"])
-            if (s["unit"] == moving["unit"] && s["of"] == moving["of"] &&
-                s["values"] != moving["values"])
-                return std::swap(s["values"], moving["values"]);
-    });
-    const std::string older = edited([](auto& f) { f["schema"] = "elastocheck/baseline/1"; });
-    const std::string nothing = edited([](auto& f) { f["series"].clear(), f["branches"].clear(); });
-    const std::string other_scene = edited([](auto& f) { f["scene"]["name"] = "another"; });
-    const std::string elsewhere = edited([](auto& f) { f["branches"][0]["parameter"][5] = 1.0; });
+    const auto replaced = [&](const std::string& what, const std::string& by) {
+        BaselineText text = good;
+        const auto at = text.review.find(what);
+        EXPECT_NE(at, std::string::npos) << what;
+        text.review.replace(at, what.size(), by);
+        return text;
+    };
+    const auto limited = [&](const compare::Limit& limit) {
+        return edited([&](auto& f) { f.baseline.limits = {limit}; });
+    };
+    const double nowhere = std::nan("");
+    const auto nan = edited([&](auto&f) { first_moving(f).values.back() = nowhere; }),
+               less = edited([](auto&f) { series(f).erase(series(f).begin() + 1); }),
+               fewer = edited([](auto&f) { first_moving(f).values.pop_back(); }),
+               swapped = edited([](auto&f) {
+                   auto& moving = first_moving(f);
+                   for (auto& s : series(f))
+                       if (s.unit == moving.unit && s.quantity == moving.quantity &&
+                           s.values != moving.values)
+                           return std::swap(s.values, moving.values);
+               }),
+               older = replaced("baseline/3", "baseline/2"),
+               nothing =
+                   edited([](auto&f) { series(f).clear(), f.baseline.accepted.branches.clear(); }),
+               other_scene = edited([](auto&f) { f.baseline.accepted.scene = "another"; }),
+               elsewhere = edited([](auto&f) { f.baseline.accepted.branches[0].a[5] = 1.0; });
+    constexpr auto at_load = Quantity::deviation_at_equal_parameter, figure = Quantity::equilibrium;
     const std::vector<Case> cases{
         {"as accepted", 0, good, good},
         {"NaN measured", 3, good, nan},
@@ -96,37 +117,41 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
         {"no numbers measured", 3, good, nothing},
         {"no numbers accepted", 3, nothing, good},
         {"no numbers in both", 3, nothing, nothing},
-        {"empty measurement", 3, good, ""},
-        {"empty baseline", 3, "", good},
-        {"on the tolerance", 0, edited(set_to_zero), set_first(atol)},
-        {"one ulp over", 1, edited(set_to_zero), set_first(std::nextafter(atol, 1))},
-        {"one ulp under", 1, edited(set_to_zero), set_first(std::nextafter(-atol, -1))},
+        {"empty measurement", 3, good, {}},
+        {"empty baseline", 3, {}, good},
+        {"on the tolerance", 0, set_first(0), set_first(atol)},
+        {"one ulp over", 1, set_first(0), set_first(std::nextafter(atol, 1))},
+        {"one ulp under", 1, set_first(0), set_first(std::nextafter(-atol, -1))},
         {"swapped channels", 1, good, swapped},
         {"older measurement", 3, good, older},
         {"older baseline", 3, older, good},
-        {"truncated measurement", 3, good, truncated(good)},
-        {"truncated baseline", 3, truncated(good), good},
+        {"truncated measurement", 3, good, {truncated(good.review), good.curves}},
+        {"truncated baseline", 3, {truncated(good.review), good.curves}, good},
+        {"truncated curves", 3, {good.review, truncated(good.curves)}, good},
+        {"curves of another acceptance", 3, {good.review, set_first(0).curves}, good},
+        {"figures of another acceptance", 3, {set_first(0).review, good.curves}, good},
         {"another scene", 3, good, other_scene},
         {"other parameters", 3, good, elsewhere},
-        {"no reason", 3, edited([](auto& f) { f["accepted"]["reason"] = ""; }), good},
+        {"no reason", 3, edited([](auto& f) { f.baseline.reason = ""; }), good},
         {"a bound that is no number", 3,
-         edited([](auto& f) { f["tolerances"]["same-build"]["mm"]["atol"] = nullptr; }), good},
+         replaced("\"mm\":{\"atol\":2e-09", "\"mm\":{\"atol\":null"), good},
         {"an infinite bound", 3,  // 1e999 is no JSON number that a double holds
-         std::string(good).replace(good.find("\"atol\":"), 7, "\"atol\":1e999,\"x\":"), good},
-        {"a limit that holds", 0, edited([](auto& f) {
-             f["limits"] = {
-                 {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
-         }),
+         replaced("\"atol\":2e-09", "\"atol\":1e999"), good},
+        {"a limit that holds", 0, limited({at_load, "centre_z", 1e6}), good},
+        {"a limit on nothing", 3, limited({at_load, "centre", 1e6}), good},
+        {"a limit on a figure that holds", 0,
+         limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "mm"}), good},
+        {"a limit on a figure that is broken", 1,
+         limited({.of = figure, .channel = "centre_z", .max = -1e6, .unit = "mm"}), good},
+        {"a limit on a figure in another unit", 3,
+         limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "deg"}), good},
+        {"a limit over a branch that is not there", 3,
+         limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "mm", .over = "x"}),
          good},
-        {"a limit on nothing", 3, edited([](auto& f) {
-             f["limits"] = {
-                 {{"of", "deviation at equal parameter"}, {"channel", "centre"}, {"max", 1e6}}};
-         }),
-         good},
-        {"a NaN and a broken bound", 1, edited(set_to_zero), edited([](auto& f) {
-             f["series"].back()["values"][0] = nullptr;
-             for (auto& s : f["series"])
-                 if (s["unit"] == "mm") return void(s["values"][0] = 1.0);
+        {"a NaN and a broken bound", 1, set_first(0), edited([&](auto& f) {
+             series(f).back().values[0] = nowhere;
+             for (auto& s : series(f))
+                 if (s.unit == "mm") return void(s.values[0] = 1.0);
          })},
     };
     for (const auto& [what, code, baseline, measurement] : cases) {
@@ -136,6 +161,45 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
         EXPECT_TRUE(code != 3 || contains(said.out, "could not judge: ")) << what << "\n"
                                                                           << said.out;
     }
+}
+
+// "Bump steer at most 2 deg/m", as a person writes it.
+TEST(GateCommand, AFigureIsLimitedAtTheDesignPositionAndOverABranchAndMisspeltNamesAreHelped) {
+    const BaselineFile axle = reports::read_baseline(baselines / "front_axle.json");
+    const Folder folder;
+    const auto judged = [&](const std::string& limit) {
+        reports::write_baseline(folder.path / "front_axle.json", axle);
+        std::string text = text_of(folder.path / "front_axle.json");
+        const auto at = text.find("\"limits\": []");
+        EXPECT_NE(at, text.npos);
+        text.replace(at, 12, "\"limits\": [" + limit + "]");
+        folder.write("front_axle.json", text);
+        return gate(scenes + "/front_axle.yaml --baseline " + folder.path.string() + " --from " +
+                    (baselines / "front_axle.json").string());
+    };
+    // -2.16 deg/m at the design position, -8.8 to -1.9 deg/m over the branch
+    Said said = judged(R"({"figure": "bump_steer", "unit": "deg/m", "min": -3, "max": 3})");
+    EXPECT_EQ(said.code, 0) << said.out << said.err;
+    said = judged(R"({"figure": "bump_steer", "unit": "deg/m", "min": -2, "max": 2})");
+    EXPECT_EQ(said.code, 1) << said.out << said.err;
+    EXPECT_TRUE(contains(said.out, "left.bump_steer [deg/m]")) << said.out;
+    EXPECT_TRUE(contains(said.out, "right.bump_steer [deg/m]")) << said.out;
+    said = judged(
+        R"({"figure": "left.bump_steer", "unit": "deg/m", "min": -3, "max": 3, "over": "parallel"})");
+    EXPECT_EQ(said.code, 1) << said.out << said.err;
+    EXPECT_FALSE(contains(said.out, "right.bump_steer [deg/m]")) << said.out;
+    said = judged(R"({"figure": "bump_steer", "unit": "deg/m", "min": -9, "over": "parallel"})");
+    EXPECT_EQ(said.code, 0) << said.out << said.err;
+    said = judged(R"({"figure": "bump_ster", "unit": "deg/m", "max": 2})");
+    EXPECT_EQ(said.code, 3);
+    EXPECT_TRUE(contains(said.out,
+                         "limit on bump_ster: nothing of that name was measured, did "
+                         "you mean 'bump_steer'?"))
+        << said.out;
+    said = judged(R"({"figure": "toe", "unit": "deg", "max": 2, "over": "paralel"})");
+    EXPECT_EQ(said.code, 3);
+    EXPECT_TRUE(contains(said.out, "there is no branch 'paralel', did you mean 'parallel'?"))
+        << said.out;
 }
 
 TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
@@ -149,7 +213,7 @@ TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
     EXPECT_EQ(gate("nowhere.yaml" + there).code, 2);
     EXPECT_EQ(gate(scene + there + " --from /nowhere").code,
               3);  // no baseline, so not even looked for
-    folder.write("single_bushing.json", committed);
+    reports::write_baseline(folder.path / "single_bushing.json", committed);
     EXPECT_EQ(gate(scene + there + " --from /nowhere").code, 2);
     EXPECT_EQ(gate(scene + " --from x " + scene).code, 2);
     EXPECT_EQ(gate(scene + " --class none").code, 2);
@@ -178,7 +242,7 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
                       baseline = folder.path / "baselines/own.json";
     Said said = gate(own + " --accept --reason 'first of all'");
     EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_EQ(reports::parse_baseline(text_of(baseline), "").baseline.reason, "first of all");
+    EXPECT_EQ(reports::read_baseline(baseline).baseline.reason, "first of all");
     said = gate(own);
     EXPECT_EQ(said.code, 0) << said.out;
     EXPECT_TRUE(contains(said.out, "same-build")) << said.out;
@@ -187,7 +251,7 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
 
     // The same again is no reason to touch the file.
     EXPECT_EQ(gate(own + " --accept --reason 'again'").code, 0);
-    EXPECT_EQ(reports::parse_baseline(text_of(baseline), "").baseline.reason, "first of all");
+    EXPECT_EQ(reports::read_baseline(baseline).baseline.reason, "first of all");
 
     std::string changed = text_of(scene);
     const auto rates = changed.find("rates: [");
@@ -209,7 +273,7 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
 
     // By --set too, where the file is as it was; by a comment alone no number changes.
     folder.write("own.yaml", text_of(scene));
-    const std::string path = reports::parse_baseline(text_of(baseline), "").numbers->back().path;
+    const std::string path = reports::read_baseline(baseline).numbers.back().path;
     said = gate(own + " --set " + path + "=7");
     EXPECT_TRUE(contains(said.out, "  changed: " + path + ": 7")) << said.out;
     folder.write("own.yaml", text_of(scene) + "# a comment\n");
@@ -217,28 +281,22 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     EXPECT_EQ(said.code, 0) << said.out;
     EXPECT_TRUE(contains(said.out, "; none of its numbers changed")) << said.out;
 
-    // A baseline of before numbers were kept judges as ever, and says what it cannot say.
-    reports::BaselineFile older = reports::parse_baseline(text_of(baseline), "");
-    older.numbers.reset();
-    folder.write("baselines/own.json", reports::baseline_text(older));
-    said = gate(own);
-    EXPECT_EQ(said.code, 0) << said.out;
-    EXPECT_TRUE(contains(said.out, "the changed numbers are unknown")) << said.out;
     folder.write("own.yaml", changed);
 
     // Accepting prints the difference first, and keeps what was set by hand.
     ordered_json file = ordered_json::parse(text_of(baseline));
     file["tolerances"]["physical"]["mm"]["atol"] = 0.5;
     file["limits"] = {
-        {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}}};
+        {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}},
+        {{"figure", "centre_z"}, {"unit", "mm"}, {"max", 1e6}, {"over", "pull"}}};
     folder.write("baselines/own.json", file.dump());
     said = gate(own + " --accept --reason 'stiffer'");
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(
         contains(said.out, "numbers out of tolerance, same-build (every change beyond rounding)"));
-    const auto accepted = reports::parse_baseline(text_of(baseline), "").baseline;
+    const auto accepted = reports::read_baseline(baseline).baseline;
     EXPECT_EQ(accepted.reason, "stiffer");
-    EXPECT_EQ(accepted.limits.size(), 1u);
+    EXPECT_EQ(accepted.limits.size(), 2u);
     EXPECT_EQ(accepted.tolerances.at(compare::ToleranceClass::physical).at("mm").atol, 0.5);
     EXPECT_EQ(gate(own).code, 0);
 }
@@ -248,16 +306,15 @@ TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
     const std::string own = folder.write("own.yaml", text_of(scenes + "/pinned_bar.yaml")),
                       baseline = folder.path / "baselines/own.json";
     ASSERT_EQ(gate(own + " --accept --reason first").code, 0);
-    ordered_json file = ordered_json::parse(text_of(baseline));
-    file["limits"] = {
-        {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", -0.0}}};
+    BaselineFile file = reports::read_baseline(baseline);
     std::string channel;
-    for (const auto& s : file["series"])
-        if (s["of"] == "deviation at equal parameter" && s["unit"] == "mm" && s["values"][0] > 0)
-            channel = s["channel"];
+    for (const auto& s : series(file))
+        if (s.quantity == Quantity::deviation_at_equal_parameter && s.unit == "mm" &&
+            s.values[0] > 0)
+            channel = s.channel;
     ASSERT_NE(channel, "");
-    file["limits"][0]["channel"] = channel;
-    const std::string limited = file.dump();
+    file.baseline.limits = {{Quantity::deviation_at_equal_parameter, channel, -0.0}};
+    const std::string limited = reports::baseline_text(file).review;
     folder.write("baselines/own.json", limited);
     EXPECT_EQ(gate(own).code, 1);
     const Said said = gate(own + " --accept --reason second");

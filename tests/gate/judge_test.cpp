@@ -7,6 +7,8 @@
 
 #include "compare/comparison/changes.hpp"
 #include "compare/gate/gate.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -287,6 +289,135 @@ TEST(Gate, OfWhatIsNoticedAlikeTheLargerShareComesFirstAndABrokenLimitBeforeAll)
     const Verdict verdict = judged(b, m);
     ASSERT_EQ(verdict.offences.size(), 4u);  // in both branches
     EXPECT_TRUE(verdict.offences[0].of_limit && verdict.offences[1].of_limit);
+}
+
+// One branch from -10 to 10 with the design position in the middle.
+Baseline car() {
+    Baseline b;
+    auto& m = b.accepted;
+    m.scene = "car", b.reason = "a test";
+    m.branches = {{"travel", "mm", {-10, -5, 0, 5, 10}}};
+    const auto add = [&](Quantity quantity, const char* channel, const char* unit,
+                         std::vector<double> values) {
+        m.series.push_back({"travel", quantity, channel, unit, std::move(values)});
+    };
+    for (const char* wheel : {"left.", "right."}) {
+        const std::string name = std::string(wheel) + "bump_steer";
+        add(Quantity::characteristic_equilibrium, name.c_str(), "deg/m", {1, 2, 3, 4, 5});
+        add(Quantity::range_characteristic_equilibrium, name.c_str(), "deg/m", {1, 5.5});
+    }
+    add(Quantity::equilibrium, "left.toe", "deg", {-2, -1, 0, 1, 2});
+    add(Quantity::range_equilibrium, "left.toe", "deg", {-2, 2.5});
+    for (const auto kind : tolerance_classes)
+        b.tolerances[kind] = {{"deg", {0.001, 0}}, {"characteristic", {0.001, 0}}};
+    return b;
+}
+
+TEST(Gate, AFigureIsLimitedOnBothSidesAtTheDesignPositionOrAtEveryPointOfABranch) {
+    struct Case {
+        Limit limit;
+        std::size_t broken;
+        int compared;
+    };
+    const auto figure = [](const char* name, double min, double max, const char* over = "") {
+        return Limit{.of = Quantity::equilibrium,
+                     .channel = name,
+                     .max = max,
+                     .min = min,
+                     .unit = std::string(name).ends_with("toe") ? "deg" : "deg/m",
+                     .over = over};
+    };
+    Baseline b = car();
+    const int all = judged(b, b.accepted).compared;
+    EXPECT_EQ(all, 2 * (5 + 2) + 5 + 2);
+    for (const auto& [limit, broken, compared] :
+         {Case{figure("bump_steer", -3, 3), 0, 2},  // of both wheels, on the limit
+          Case{figure("bump_steer", -3, std::nextafter(3, 0)), 2, 2},
+          Case{figure("left.bump_steer", -3, 2), 1, 1},
+          Case{figure("bump_steer", std::nextafter(3, 9), infinity), 2, 2},
+          Case{figure("bump_steer", -6, 5, "travel"), 2, 4},  // 5.5 between the stations
+          Case{figure("bump_steer", 0, 5.5, "travel"), 0, 4},
+          Case{figure("toe", -2, 2, "travel"), 1, 2}, Case{figure("toe", -2, 2), 0, 1}}) {
+        b.limits = {limit};
+        const Verdict verdict = judged(b, b.accepted);
+        EXPECT_EQ(verdict.compared, all + compared) << limit.channel << limit.max;
+        EXPECT_EQ(verdict.offences.size(), broken) << limit.channel << limit.max;
+        EXPECT_EQ(verdict.judgement(), broken > 0 ? Judgement::failed : Judgement::passed);
+        for (const auto& offence : verdict.offences) {
+            EXPECT_TRUE(offence.of_limit && offence.share() > 1) << offence.channel;
+            EXPECT_EQ(offence.was, offence.is > limit.max ? limit.max : limit.min);
+        }
+    }
+}
+
+TEST(Gate, ALimitThatSaysNothingOrIsOnNothingIsNotAPass) {
+    for (const Limit& limit :
+         {Limit{Quantity::equilibrium, "bump_steer", nan, 0, "deg/m"},
+          Limit{Quantity::equilibrium, "bump_steer", 1, nan, "deg/m"},
+          Limit{Quantity::equilibrium, "bump_steer", 1, 2, "deg/m"},
+          Limit{Quantity::equilibrium, "bump_steer", infinity, -infinity, "deg/m"},
+          Limit{Quantity::equilibrium, "bump_steer", 9, 0, "deg"},
+          Limit{Quantity::equilibrium, "steer", 9, 0, "deg/m"},
+          Limit{Quantity::equilibrium, "bump_steer", 9, 0, "deg/m", "lateral"}}) {
+        Baseline b = car();
+        b.limits = {limit};
+        EXPECT_EQ(judged(b, b.accepted).judgement(), Judgement::could_not_judge)
+            << limit.channel << limit.min << limit.max << limit.unit;
+    }
+    // a branch that does not pass through the design position has no figure there
+    Baseline b = car();
+    b.accepted.branches[0].a = {1, 2, 3, 4, 5};
+    b.limits = {{Quantity::equilibrium, "bump_steer", 9, 0, "deg/m"}};
+    EXPECT_EQ(judged(b, b.accepted).judgement(), Judgement::could_not_judge);
+}
+
+TEST(Gate, FiguresAtTheDesignPositionComeBeforeCurves) {
+    const Baseline b = car();
+    Measurement m = b.accepted;
+    value(m, Quantity::equilibrium, "left.toe", 4) += 1;  // 1000 times what is noticed
+    value(m, Quantity::range_characteristic_equilibrium, "right.bump_steer", 1) += 0.5;
+    value(m, Quantity::characteristic_equilibrium, "left.bump_steer", 2) += 0.01;  // 10 times
+    EXPECT_EQ(order(judged(b, m)),
+              (std::vector<std::string>{"left.bump_steer", "left.toe", "right.bump_steer"}));
+}
+
+TEST(Gate, StationsAreFiveEvenlySpacedAndTheDesignPosition) {
+    using Places = std::vector<std::size_t>;
+    EXPECT_EQ(stations({-5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5}), (Places{0, 3, 5, 7, 10}));
+    EXPECT_EQ(stations({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}), (Places{0, 3, 5, 7, 10}));
+    EXPECT_EQ(stations({-1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9}), (Places{0, 1, 3, 5, 7, 10}));
+    EXPECT_EQ(stations({0}), Places{0});
+    EXPECT_EQ(stations({}), Places{});
+}
+
+// From -110 m to -476 m is next to nothing.
+TEST(Gate, ASwingArmIsKeptAsItsReciprocalAndAnEndlessOneAsZero) {
+    const Model model = compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml"));
+    Comparison comparison = compare(model);
+    const auto channel = [&](const char* name) {
+        return static_cast<std::size_t>(find_channel(comparison.channels, name));
+    };
+    auto& branch = comparison.branches[0];
+    for (auto& run : branch.runs)  // as for a wheel guided by parallel links
+        for (auto& point : run.curve.values) point[channel("front_view_swing_arm")] = undefined;
+    branch.determined[channel("front_view_swing_arm")] = false;
+    const auto& curve = branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
+    const Measurement m = measure(model, comparison);
+    int arms = 0;
+    for (const auto& s : m.series) {
+        if (s.branch != branch.branch) continue;
+        const bool side = s.channel == "side_view_swing_arm";
+        if (!side && s.channel != "front_view_swing_arm") continue;
+        ++arms;
+        EXPECT_EQ(s.unit, per_metre);
+        if (!side) {
+            EXPECT_EQ(s.values, std::vector<double>(s.values.size(), 0.0));
+        } else if (s.quantity == Quantity::characteristic_equilibrium) {
+            const double arm = curve.values.front()[channel("side_view_swing_arm")];  // [mm]
+            EXPECT_NEAR(s.values.front() * arm, 1e3, 1e-3);
+        }
+    }
+    EXPECT_EQ(arms, 2 * 3);  // of each leg, and the range
 }
 
 TEST(Gate, WhereABaselineDoesNotSayWhatIsNoticedTheUsualIs) {

@@ -147,14 +147,23 @@ TEST(Harm, AWayThroughAFolderWhoseNameIsNoTextStandsInNoBaseline) {
 
 TEST(Harm, ANewlineInABaselineInjectsNoAnnotation) {
     const Folder folder;
-    std::string baseline = text_of(scenes + "/baselines/pinned_bar.json");
+    const fs::path accepted = scenes + "/baselines/pinned_bar.json",
+                   curves = scenes + "/baselines/curves/pinned_bar.json";
+    fs::create_directory(folder.path / "curves");
     for (const char* field :
-         {"\"file\":\"", "\"name\":\"", "\"channel\":\"", "\"branch\":\"", "\"input_hash\":\""}) {
-        std::string text = baseline;
-        const auto at = text.find(field);
-        ASSERT_NE(at, text.npos) << field;
-        text.insert(at + std::string(field).size(), "x\\n::error file=a::b");
-        folder.write("pinned_bar.json", text);
+         {"\"file\":\"", "\"name\":\"", "\"input_hash\":\"", "\"tip_", "\"up"}) {
+        std::string texts[2];
+        bool found = false;
+        for (const int which : {0, 1}) {
+            std::string& text = texts[which] = text_of(which == 0 ? accepted : curves);
+            const auto at = text.find(field);
+            if (at == text.npos) continue;
+            found = true;
+            text.insert(at + std::string(field).size(), "x\\n::error file=a::b");
+        }
+        ASSERT_TRUE(found) << field;
+        folder.write("pinned_bar.json", texts[0]);
+        folder.write("curves/pinned_bar.json", texts[1]);
         const Said said =
             support::says(std::string("env CI= GITHUB_ACTIONS=true ") + ELASTOCHECK_COMMAND +
                           " gate " + scene + " --baseline " + folder.path.string());
