@@ -1,4 +1,4 @@
-// Which driver moves what: the values of a model that a branch changes, each start + rate · a.
+// Drivers of a branch: the values of a model that the branch changes, each start + rate · a.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ struct DrivenInputs {
     std::vector<DrivenLoad<Affine>> loads;        // static loads, then those of the drivers
 };
 
-// The inputs of the model on the branch: the values as drawn plus those of the drivers. Throws
-// std::invalid_argument if a driver has no target.
+// The inputs of the model on the branch: the values at the design position plus those of the
+// drivers. Throws std::invalid_argument if a driver has no target.
 template <class Affine>
 DrivenInputs<Affine> driven_inputs(const Model& model, const Branch& branch) {
     using Value = decltype(Affine::start);
@@ -72,7 +72,7 @@ DrivenInputs<Affine> driven_inputs(const Model& model, const Branch& branch) {
                     const auto& joint = model.joints.at(static_cast<std::size_t>(motion.joint));
                     if (joint.driven < 0)
                         throw std::invalid_argument("joint '" + joint.name +
-                                                    "' has no offset to be driven");
+                                                    "' has no offset that a branch can drive");
                     add(inputs.values[static_cast<std::size_t>(joint.driven)], 1);
                 },
                 [&](const FreeLength& length) {

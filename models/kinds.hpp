@@ -16,7 +16,8 @@
 
 namespace elastocheck {
 
-// ---- Members whose C++ type does not say what they are. T is the type of the number, const or not.
+// ---- Members whose C++ type does not say what they are. T is the type of the number, const or
+// not.
 
 template <class T>
 struct Length {
@@ -432,7 +433,7 @@ void each_curve(const ElasticKind& element, F&& f) {
         if (const Curve* curve = curve_of(element, axis)) f(axis, *curve);
 }
 
-// What a driver drives; -1 or nullptr where it drives something else.
+// The part that a driver drives; -1 or nullptr for other kinds of drivers.
 inline const Load* driven_load(const Driven& driven) { return member<Load>(driven); }
 inline Load* driven_load(Driven& driven) { return member<Load>(driven); }
 inline int driven_joint(const Driven& driven) {

@@ -87,13 +87,13 @@ void name_what_cannot_move(Model& model) {
             if (joint.driven >= 0) return false;
             model.omitted.push_back(
                 {reduce::named("motion of joint", joint.name),
-                 "it has no length, offset or angle (branch '" + branch.name + "')"});
+                 "the joint has no length, offset or angle (branch '" + branch.name + "')"});
             return true;
         });
         if (std::ranges::none_of(branch.drivers,
                                  [](const Driver& driver) { return driver.rate != 0; }))
             model.omitted.push_back(
-                {reduce::named("branch", branch.name), "nothing that it moves is left"});
+                {reduce::named("branch", branch.name), "everything that it drives was removed"});
     }
 }
 

@@ -86,7 +86,7 @@ void drop_duplicates(Scene& scene) {
                 kept.joints[joints[k]] = false;
                 leave_out(scene, named("joint", scene.joints[joints[k]].name),
                           "joint '" + scene.joints[joints[l]].name +
-                              "' holds the same; its reaction is part of that one's");
+                              "' imposes the same constraint and carries the whole reaction");
             }
     }
     keep_only(scene, kept);

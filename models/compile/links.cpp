@@ -79,10 +79,10 @@ void shorten_links(Scene& scene) {
             if (scene.joints[k].name != name)
                 leave_out(scene, named("joint", scene.joints[k].name),
                           "an end of " + named("body", scene.bodies[b].name) +
-                              "; its reaction is no output, that of joint '" + name + "' is");
-        leave_out(
-            scene, named("body", scene.bodies[b].name),
-            "a link with a ball at each end and no load: it is the distance joint '" + name + "'");
+                              "; its reaction is not an output, that of joint '" + name + "' is");
+        leave_out(scene, named("body", scene.bodies[b].name),
+                  "a link with a ball at each end and no load: replaced by the distance joint '" +
+                      name + "'");
         joint = {name, Distance{first_ball->on_other, second_ball->on_other, length}};
         kept.joints[second] = false;
         kept.bodies[b] = false;

@@ -150,7 +150,7 @@ void keep_only(Scene& scene, Kept kept) {
             const auto [i, j] = ends(list[k].kind);
             if (!stay[k] || (stays(i) && stays(j))) continue;
             stay[k] = false;
-            leave_out(scene, named(kind, list[k].name), "a body it connects is left out");
+            leave_out(scene, named(kind, list[k].name), "a body that it connects is left out");
         }
     };
     keep_attached(scene.joints, kept.joints, "joint");

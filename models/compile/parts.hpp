@@ -37,7 +37,7 @@ DrivenParts driven_parts(const Scene& scene);
 
 // ---- At the design position.
 
-// [m], or of a unit vector: tolerance for equality as drawn
+// [m], or of a unit vector: tolerance for equality at the design position
 inline constexpr double as_drawn = 1e-12;
 
 Pose design(const Scene& scene, BodyId body);

@@ -15,8 +15,8 @@ void drop_what_does_nothing(Scene& scene);
 // without law and preload, unless their preload is driven.
 void drop_what_never_stands(Scene& scene);
 
-// Merges bodies connected by Fixed joints as drawn into one, with the name of the first, or into
-// ground. A body with a wheel or a probe is never merged into ground.
+// Merges bodies connected by Fixed joints at the design position into one, with the name of the
+// first, or into ground. A body with a wheel or a probe is never merged into ground.
 void weld(Scene& scene);
 
 // Removes joints and elements with both ends on one body, or on ground: nothing deforms or moves

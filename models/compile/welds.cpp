@@ -1,7 +1,7 @@
 // Merges bodies held together by Fixed joints.
 //
-// Body b is fixed to body c as drawn and keeps its pose in the axes of c: with r, A the design
-// positions,
+// Body b is fixed to body c at the design position and keeps its pose in the axes of c: with r, A
+// the design positions,
 //
 //   s_c = A_cᵀ (r_b + A_b s_b - r_c)      u_c = A_cᵀ A_b u_b      A_local,c = A_cᵀ A_b A_local,b
 //
@@ -120,8 +120,9 @@ void weld(Scene& scene) {
             continue;
         if (!sets.unite(fixed->i.body, fixed->j.body)) continue;
         kept.joints[k] = false;
-        leave_out(scene, named("joint", scene.joints[k].name),
-                  "the bodies that it fixes to each other are one; its reaction is no output");
+        leave_out(
+            scene, named("joint", scene.joints[k].name),
+            "the bodies that it fixes to each other become one; its reaction is not an output");
     }
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         const BodyId first = sets.first(static_cast<BodyId>(b));
@@ -132,7 +133,7 @@ void weld(Scene& scene) {
             "fixed to " + (first == ground
                                ? "ground"
                                : named("body", scene.bodies[static_cast<std::size_t>(first)].name) +
-                                     ", with which it is one"));
+                                     ", with which it becomes one body"));
     }
 
     std::erase_if(scene.static_loads,

@@ -88,7 +88,7 @@ void drop_what_is_within_one_body(Scene& scene) {
             continue;
         kept.joints[k] = false;
         leave_out(scene, named("joint", scene.joints[k].name),
-                  "both its ends are on " + name_of_body(i) + "; its reaction is no output");
+                  "both its ends are on " + name_of_body(i) + "; its reaction is not an output");
     }
     for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
         const ElasticKind& kind = scene.elastics[k].kind;

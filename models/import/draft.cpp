@@ -224,7 +224,7 @@ std::vector<std::string> described(const Notes& notes) {
         const auto& [place, what] = *kind.worst;
         std::string line = fmt::format("Warning: {}: {}", described(place), what);
         if (kind.all.size() > 1) {
-            line += fmt::format(" ({} of this kind, this the largest; also ", kind.all.size());
+            line += fmt::format(" ({} of this kind, this is the largest; also ", kind.all.size());
             std::string others;
             std::size_t shown = 0;
             for (const auto* warning : kind.all)
@@ -238,7 +238,7 @@ std::vector<std::string> described(const Notes& notes) {
     for (const auto& [place, what] : notes.missing)
         lines.push_back(fmt::format("MISSING: {}: {}.", described(place), printable(what)));
     if (!notes.missing.empty())
-        lines.emplace_back("So this scene is NOT the model of the file: it lacks what is missing.");
+        lines.emplace_back("This scene is NOT equivalent to the file: it lacks the entries above.");
     return lines;
 }
 

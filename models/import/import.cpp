@@ -32,7 +32,8 @@ std::string where(const SourceLocation& place) {
         message +=
             fmt::format("\n... and {} more of this kind", notes.missing.size() - most_errors);
     message += fmt::format(
-        "\n{} a scene cannot represent; --allow-missing imports the rest, and says so in its head",
+        "\n{} a scene cannot represent; --allow-missing imports the rest and lists the missing "
+        "entries in the head",
         notes.missing.size() == 1 ? "This" : fmt::format("These {}", notes.missing.size()));
     throw SceneError(message);
 }
@@ -52,7 +53,7 @@ std::string where(const SourceLocation& place) {
                                     : SourceLocation{};
     throw SceneError(fmt::format("{}{}: {}{}", file, where(from),
                                  from.what.empty() ? "" : reader::shown(from.what) + ": ",
-                                 fmt::format("the scene made of it is refused: {}", message)));
+                                 fmt::format("the resulting scene is refused: {}", message)));
 }
 
 std::string extension(const std::string& file) {
@@ -67,22 +68,23 @@ std::string extension(const std::string& file) {
 Imported import_text(std::string_view text, const std::string& file, const Options& options) {
     const std::string ending = extension(file);
     if (ending != ".adm" && ending != ".json" && ending != ".sub")
-        reader::fail(file, 0, "",
-                     fmt::format("{} is no ending that is known here; allowed: .adm (ADAMS "
-                                 "datasets), .json (Chrono::Vehicle "
-                                 "suspensions), .sub (hardpoints of Adams/Car)",
-                                 reader::quote(ending)));
+        reader::fail(
+            file, 0, "",
+            fmt::format("{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
+                        ".json (Chrono::Vehicle suspensions), .sub (hardpoints of Adams/Car)",
+                        reader::quote(ending)));
     if (!options.axes.empty() && ending != ".sub")
         reader::fail(
             file, 0, "--axes",
-            "for hardpoints of Adams/Car (.sub) alone; the axes of a model are those of its file");
+            "only for hardpoints of Adams/Car (.sub); the axes of a model are those of its file");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
                                             : import_subsystem(text, file, options);
     if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
     if (draft.bodies.empty() && ending != ".sub")
         reader::fail(file, 0, "",
-                     "nothing of it moves: no part is held by anything that a scene has");
+                     "the model has no moving part: no part has a joint or element that a scene "
+                     "can represent");
     const Text written = write(draft);
     Imported result{.yaml = written.yaml, .notes = draft.notes};
     result.bodies = static_cast<int>(draft.bodies.size());
@@ -107,7 +109,7 @@ Imported import_file(const std::filesystem::path& file, const Options& options) 
     const reader::TextFile read = reader::read_text(file, reader::Pipes::refused, largest_file);
     if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
     if (read.text.size() > largest_file)
-        reader::fail(name, 0, "", "larger than 16 MiB, which no model of a suspension is");
+        reader::fail(name, 0, "", "larger than 16 MiB, the limit for a model");
     return import_text(read.text, name, options);
 }
 

@@ -32,9 +32,8 @@ using Folder = std::optional<std::filesystem::path>;
 void check_version(const Cursor& scene) {
     const Cursor version = scene.require("elastocheck");
     if (version.text("the version of the format") != std::to_string(format_version))
-        version.fail(
-            fmt::format("{} is not a version of the format that this program reads; allowed: {}",
-                        version.found(), format_version));
+        version.fail(fmt::format("{} is not a supported version of the format; allowed: {}",
+                                 version.found(), format_version));
 }
 
 // Every body must be attached to some joint or element.
@@ -49,7 +48,8 @@ void check_all_held(const Cursor& scene, const Scene& result) {
     for (std::size_t b = 0; b < held.size(); ++b)
         if (!held[b])
             bodies.require(result.bodies[b].name)
-                .fail("nothing holds it; a joint, spring or bushing is needed");
+                .fail(
+                    "no joint or element is attached to it; a joint, spring or bushing is needed");
 }
 
 // The mirrored entry, still with its own name.
@@ -132,9 +132,9 @@ void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel
     if (one && scene.optional("wheels"))
         one->fail("given together with wheels; allowed: one of the two");
     if (one && defs.mirror)
-        one->fail(fmt::format(
-            "a scene that mirrors itself has wheels with names; give wheels: {{{}: ...}}",
-            defs.mirror->from));
+        one->fail(
+            fmt::format("a scene with a mirror needs wheels with names; give wheels: {{{}: ...}}",
+                        defs.mirror->from));
     if (one) wheels.push_back(read_wheel(*one, defs));
     read_section(scene, "wheels", defs, Sides::both, wheels,
                  [](const std::string& name, const Cursor& at, const Definitions& definitions) {
@@ -182,10 +182,10 @@ void require_own_names(const Cursor& scene, const Definitions& defs,
                 const auto twin = defs.mirror ? turned(*defs.mirror, name) : std::nullopt;
                 for (const std::string& made : {name, twin.value_or(name)})
                     if (called[made] > 1)
-                        stop->fail(fmt::format(
-                            "needs an element of its own called {}, but there is one already; call "
-                            "that one something else",
-                            quote(made)));
+                        stop->fail(
+                            fmt::format("the element name {} is reserved for its stop, but already "
+                                        "in use; rename the other element",
+                                        quote(made)));
             }
     }
 }
@@ -200,10 +200,9 @@ void require_own_names(const Cursor& scene, const Scene& result) {
             const Cursor section = scene.require("dampers");
             section.optional(damper.name)
                 .value_or(section)
-                .fail(fmt::format(
-                    "a spring is called {} as well, and each has an output of its name; call one "
-                    "of the two something else",
-                    quote(damper.name)));
+                .fail(fmt::format("a spring has the same name {}, and each has an output of that "
+                                  "name; rename one of the two",
+                                  quote(damper.name)));
         }
 }
 
@@ -248,7 +247,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder) {
     if (const auto vehicle = scene.optional("vehicle"))
         result.vehicle = read_vehicle(*vehicle, defs);
     if (result.wheels.empty() && result.probes.empty())
-        scene.fail("no output; a wheel or a probe is needed");
+        scene.fail("no outputs; a wheel or a probe is needed");
 
     std::map<std::string, Load> by_name;
     for (const Load& load : loads) by_name.emplace(load.name, load);

@@ -50,7 +50,8 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
     if (!rest.empty()) {
         const std::string head = setting.path.substr(0, setting.path.size() - rest.size());
         const std::string in = head.empty() ? "the file" : shown(head.substr(0, head.size() - 1));
-        if (names.empty()) fail(file, value->line, shown_path, fmt::format("{} is one value", in));
+        if (names.empty())
+            fail(file, value->line, shown_path, fmt::format("{} is a single value", in));
         const bool ends_in_dot = rest.find('.') + 1 == rest.size();
         const std::string_view wrong = ends_in_dot ? rest : rest.substr(0, rest.find('.'));
         fail(file, 0, shown_path,
@@ -58,7 +59,8 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
     }
     if (value->kind == Value::Kind::map || value->kind == Value::Kind::list)
         fail(file, value->line, shown_path,
-             fmt::format("not one value; there: {}", names.empty() ? "nothing" : listed(names)));
+             fmt::format("not a single value; it contains: {}",
+                         names.empty() ? "nothing" : listed(names)));
     const std::string& text = setting.value;
     const auto is_control = [](char c) {
         return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
@@ -83,9 +85,9 @@ void apply(std::span<const Setting> settings, Value& tree, const std::string& fi
 Setting parse_setting(std::string_view text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals == 0 || equals + 1 == text.size())
-        throw SceneError(
-            fmt::format("{} is no setting; expected path=value, like points.ball_joint.z=-0.17",
-                        reader::quote(text)));
+        throw SceneError(fmt::format(
+            "{} is not a setting; expected path=value, such as points.ball_joint.z=-0.17",
+            reader::quote(text)));
     return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 

@@ -22,7 +22,7 @@ nlohmann::ordered_json parse_json(std::string_view text) {
             depth += opens - (c == ']' || c == '}');
             size += opens ? of_value + of_list : c == ',' ? of_value : 0;
             if (depth > deepest_json)
-                throw JsonError(fmt::format("nested more than {} deep", deepest_json));
+                throw JsonError(fmt::format("nested more than {} levels deep", deepest_json));
         }
     }
     if (size > largest_json)

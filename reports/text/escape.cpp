@@ -50,7 +50,7 @@ std::string flaw(std::string_view text) {
         if (!c.valid) return fmt::format("byte {:#04x} is not UTF-8", code);
         if (c.control()) return fmt::format("it has the control character U+{:04X}", code);
         if (c.turns_writing())
-            return fmt::format("it has U+{:04X}, which turns the direction of writing", code);
+            return fmt::format("it has U+{:04X}, which changes the direction of writing", code);
         text.remove_prefix(c.bytes.size());
     }
     return "";

@@ -27,7 +27,7 @@ void use(const Scene& scene) {
 // Refused with the place and the reason, in a line that a terminal can be shown.
 void expect_refusal(const SceneError& error, const std::string& file) {
     const std::string_view what = error.what();
-    if (!what.starts_with(file + ":") && what.find(" is no setting; ") == what.npos)
+    if (!what.starts_with(file + ":") && what.find(" is not a setting; ") == what.npos)
         throw Fault("a refusal without a place: " + std::string(what));
 }
 

@@ -157,7 +157,7 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
     for (const auto& [text, answer] : std::vector<Damage>{
              {"", "the file is empty"},
              {" \n", "is not the JSON of a baseline"},
-             {std::string(100'000, '['), "nested more than 64 deep"},
+             {std::string(100'000, '['), "nested more than 64 levels deep"},
              {"{}", "has no schema"},
              {"[]", "has no schema"},
              {"null", "has no schema"},

@@ -312,9 +312,9 @@ TEST(Beam, SaysWhatIsWrong) {
         sound,
         {{"segments: 5", "segment: 5",
           "beams.bar: unknown field 'segment', did you mean 'segments'? allowed: " + names},
-         {"segments: 5, ", "", "beams.bar.segments: missing, it must be given"},
+         {"segments: 5, ", "", "beams.bar.segments: missing; this field is required"},
          {"segments: 5", "segments: 1",
-          "beams.bar.segments: '1' for 2 legs; allowed: at least one a leg"},
+          "beams.bar.segments: '1' segments for 2 straight parts; allowed: at least one per part"},
          {"segments: 5", "segments: 1001",
           "beams.bar.segments: expected a whole number from 1 to 1000, found '1001'"},
          {"[root, bend, tip]", "[root]",
@@ -322,44 +322,42 @@ TEST(Beam, SaysWhatIsWrong) {
          {"[root, bend, tip]", "root",
           "beams.bar.through: expected a list of two hardpoints or more, found 'root'"},
          {"[root, bend, tip]", "[root, bent, tip]",
-          "beams.bar.through: no hardpoint is called 'bent', did you mean 'bend'? defined: bend, "
-          "root, tip, "
-          "up"},
+          "beams.bar.through: there is no hardpoint called 'bent', did you mean 'bend'? defined: "
+          "bend, root, tip, up"},
          {"[root, bend, tip]", "[root, bend, bend]",
-          "beams.bar.through: 'bend' is where the hardpoint before it is; each leg needs a length"},
+          "beams.bar.through: 'bend' coincides with the hardpoint before it; each straight part of "
+          "a beam needs a length"},
          {"bodies: [ground, tip], through: [root, bend, tip], segments: 5",
           "bodies: [tip, tip], through: [root, bend], segments: 1",
-          "beams.bar.bodies: 'tip' twice, with nothing between; one segment needs two different "
+          "both ends are on beams.bar.bodies: 'tip'; a beam of one segment needs two different "
           "bodies"},
          {"E: 2", "E: 0", "beams.bar.E: '0' is too small; allowed: above zero"},
          {"J: 13", "J: -1", "beams.bar.J: '-1' is too small; allowed: above zero"},
-         {", J: 13", "", "beams.bar.J: missing, it must be given"},
+         {", J: 13", "", "beams.bar.J: missing; this field is required"},
          {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "up: z",
           "beams.bar: no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J"},
          {"A: 5", "diameter: 1",
           "beams.bar.I_y: given together with diameter; allowed: diameter and wall, or A, I_y, I_z "
           "and J"},
          {"A: 5", "wall: 1, A: 5",
-          "beams.bar.wall: of a tube without a diameter; give its diameter"},
+          "beams.bar.wall: wall of a tube without a diameter; give the diameter"},
          {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "diameter: 1, wall: 0.6",
           "beams.bar.wall: '0.6' is more than half the diameter"},
          {", up: z", "",
-          "beams.bar: up is missing: y and z of its cross-section are not the same, and it says "
-          "where z "
-          "points"},
-         {"up: z", "up: x", "beams.bar.up: along one of the legs, across which z must be"},
+          "beams.bar: up is missing: the cross-section differs in y and z, so the direction of z "
+          "is needed"},
+         {"up: z", "up: x",
+          "beams.bar.up: parallel to a straight part of the beam; z must be perpendicular to it"},
          {"bodies: {tip", "bodies: {bar.3: {origin: bend}, tip",
-          "beams.bar: needs a body of its own called 'bar.3', but there is one already; call that "
-          "one "
-          "something else"}});
-    expect_complaints(
-        axle, {{"segments: 9", "segments: 8",
-                "beams.antiroll.segments: '8' cannot be shared out evenly over the two sides; "
-                "one more or one less can"},
-               {"clamp_left, clamp_right, corner_right, end_right", "clamp_left",
-                "beams.antiroll: shared by both sides, as 'left' is not in its name, but "
-                "refers to 'clamp_left' and not "
-                "to 'clamp_right'"}});
+          "beams.bar: the body name 'bar.3' is reserved for a node of this beam, but already in "
+          "use; rename the other body"}});
+    expect_complaints(axle,
+                      {{"segments: 9", "segments: 8",
+                        "beams.antiroll.segments: '8' segments cannot be divided equally between "
+                        "the two sides; one more or one less can"},
+                       {"clamp_left, clamp_right, corner_right, end_right", "clamp_left",
+                        "beams.antiroll: shared by both sides, since its name does not contain "
+                        "'left', but refers to 'clamp_left' and not to 'clamp_right'"}});
 }
 
 }  // namespace

@@ -115,8 +115,8 @@ std::map<std::string, std::string> omitted(const Model& model) {
 
 const std::string unconnected = "no output is connected to it";
 const std::string follower =
-    "it hangs on one other body and carries no load, no preload and no output";
-const std::string with_its_body = "a body it connects is left out";
+    "it is attached to one other body only and has no load, no preload and no output";
+const std::string with_its_body = "a body that it connects is left out";
 
 // ---- Removed parts.
 

@@ -351,11 +351,11 @@ TEST(CurveFile, HasNoNumbersThatCanBeSet) {
 TEST(CurveFile, IsRefusedWithItsOwnLine) {
     const std::pair<std::string, std::string> cases[] = {
         {"x,f\n0,0\n10,900\n20,800\n",
-         ":4: springs.coil.curve.file: row 3: force '800' is below that of the row before; it may "
-         "stay, but "
-         "not fall"},
+         ":4: springs.coil.curve.file: row 3: force '800' is smaller than that of the row before; "
+         "it must not decrease"},
         {"0,0\n# note\n10,900\n10,901\n",
-         ":4: springs.coil.curve.file: row 3: deflection '10' is not above that of the row before"},
+         ":4: springs.coil.curve.file: row 3: deflection '10' is not larger than that of the row "
+         "before"},
         {"0,0\n10,900,3\n",
          ":2: springs.coil.curve.file: row 2: expected two numbers, deflection and force, found a "
          "list of 3"},
@@ -407,11 +407,10 @@ TEST(CurveFile, IsARegularFileInTheFolderOfTheScene) {
     EXPECT_EQ(refusal(beside), "read");
     fs::remove(curve);
     fs::create_symlink(elsewhere.path / "coil.csv", curve);
-    EXPECT_NE(
-        refusal(beside).find(
-            ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that leads out of the "
-            "scene's folder; allowed: a file in it, or in a folder below"),
-        std::string::npos)
+    EXPECT_NE(refusal(beside).find(
+                  ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that is outside the "
+                  "scene's folder; allowed: a file in it, or in a folder below"),
+              std::string::npos)
         << refusal(beside);
     fs::remove(curve);
     const support::Pipe pipe(curve);
@@ -429,19 +428,15 @@ TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
         {"none.csv", "", ":11: springs.coil.curve.file: 'none.csv': no such file"},
         {".", "", ":11: springs.coil.curve.file: '.': a directory; a file is needed"},
         {"../coil.csv", "0,0\n1,1\n",
-         ":11: springs.coil.curve.file: '../coil.csv' leads out of the scene's folder; allowed: a "
-         "file in "
-         "it, or in a "
-         "folder below"},
+         ":11: springs.coil.curve.file: '../coil.csv' is outside the scene's folder; allowed: a "
+         "file in it, or in a folder below"},
         {"/tmp/coil.csv", "0,0\n1,1\n",
-         ":11: springs.coil.curve.file: '/tmp/coil.csv' leads out of the scene's folder; allowed: "
-         "a file in "
-         "it, or in a "
-         "folder below"},
+         ":11: springs.coil.curve.file: '/tmp/coil.csv' is outside the scene's folder; allowed: a "
+         "file in it, or in a folder below"},
         {"coil.csv", "0,0\n1,\xFF\n",
          ":11: springs.coil.curve.file: 'coil.csv': not plain text (UTF-8)"},
         {"coil.csv", std::string((1 << 20) + 1, '#'),
-         ":11: springs.coil.curve.file: 'coil.csv': larger than 1 MiB, which no table is"},
+         ":11: springs.coil.curve.file: 'coil.csv': larger than 1 MiB, the limit for a table"},
     };
     for (const auto& [file, csv, message] : cases) {
         const Beside beside(csv, file);
@@ -460,7 +455,7 @@ TEST(CurveFile, ThatCannotBeReadIsRefusedInTheScene) {
     } catch (const SceneError& error) {
         EXPECT_EQ(error.what(),
                   (beside.folder.path / "coil.csv").string() +
-                      ":1: springs.coil.curve.file: 10001 rows; a table has 10000 at most");
+                      ":1: springs.coil.curve.file: 10001 rows; allowed: at most 10000");
     }
 }
 

@@ -245,47 +245,41 @@ const std::string allowed_here =
 TEST(Driven, WhatCannotBeIsRefused) {
     const std::pair<std::string, std::string> cases[] = {
         {"{drive: travell, to: 1, steps: 1}",
-         "drive: 'travell' is nothing that can be driven, did you mean 'travel'? " + allowed_here},
+         "drive: 'travell' cannot be driven, did you mean 'travel'? " + allowed_here},
         {"{drive: {joints.rack: 1}, to: 1, steps: 1}",
-         "drive.joints.rack: 'joints.rack' is nothing that can be driven, did you mean "
-         "'joints.rod'? " +
+         "drive.joints.rack: 'joints.rack' cannot be driven, did you mean 'joints.rod'? " +
              allowed_here},
         {"{drive: joints.square, to: 1, steps: 1}",
-         "drive: 'joints.square' is a perpendicular joint, which has nothing to drive; allowed: "
-         "the length "
-         "of a "
-         "distance, the offset of an in_plane, the displacement of a translational, the angle of a "
-         "revolute "
-         "or "
-         "cylindrical joint"},
+         "drive: 'joints.square' is a perpendicular joint cannot be driven; allowed: the length of "
+         "a distance, the offset of an in_plane, the displacement of a translational, the angle of "
+         "a revolute or cylindrical joint"},
         {"{drive: travel, load: push, to: 1, steps: 1}",
-         "drive: given together with load; allowed: one of the two (a load that is kept goes into "
+         "drive: given together with load; allowed: one of the two (a constant load belongs in "
          "static_loads)"},
         {"{drive: travel, hold: {travel: 1}, to: 1, steps: 1}",
-         " drives and holds the same thing twice; allowed: once"},
+         " drives and holds the same quantity twice; allowed: once"},
         {"{drive: [springs.coil.preload, springs.coil.free_length], to: 1, steps: 1}",
-         " drives the same thing twice; allowed: once"},
+         " drives the same quantity twice; allowed: once"},
         {"{load: push, hold: {springs.coil.preload: 1, springs.coil.free_length: 1}, to: 1, steps: "
          "1}",
-         " holds the same thing twice; allowed: once"},
+         " holds the same quantity twice; allowed: once"},
         {"{drive: [travel, travel], to: 1, steps: 1}", "drive: 'travel' is listed twice"},
         {"{drive: {travel: 0}, to: 1, steps: 1}",
-         "drive.travel: zero, which drives nothing: a value that is kept goes into hold; leave it "
-         "out"},
-        {"{drive: {}, to: 1, steps: 1}", "drive: empty; what is driven is needed"},
+         "drive.travel: zero, which rate zero drives nothing; a constant value belongs in hold; "
+         "remove it"},
+        {"{drive: {}, to: 1, steps: 1}", "drive: empty; a driven quantity is needed"},
         {"{drive: travel, hold: joints.slide, to: 1, steps: 1}",
-         "hold: expected a map of what is held to its value, found 'joints.slide'"},
+         "hold: expected a map from held quantities to values, found 'joints.slide'"},
         {"{drive: travel, hold: {joints.slide: far}, to: 1, steps: 1}",
          "hold.joints.slide: expected a number, found 'far'"},
         {"{drive: travel, static_loads: [psuh], to: 1, steps: 1}",
-         "static_loads: no load is called 'psuh', did you mean 'push'? defined: brake, push, "
+         "static_loads: there is no load called 'psuh', did you mean 'push'? defined: brake, push, "
          "twist"},
         {"{drive: travel, from: -1, to: 0, steps: 1}",
-         "to: zero leads nowhere; allowed: any other value"},
+         "to: zero: the branch would have no length; allowed: any other value"},
         {"{drive: travel, from: -2, to: -3, steps: 4}",
-         "from: '-2' and `to` are on the same side of 0, where the branch begins; allowed: the "
-         "other side, "
-         "or 0"},
+         "from: '-2' and `to` are on the same side of 0, the start of the branch; allowed: the "
+         "other side, or 0"},
         {"{drive: travel, from: -2, to: 3, steps: 1}",
          "steps: expected a whole number from 2 to 1000000, found '1'"},
     };
@@ -301,9 +295,8 @@ TEST(Driven, ATakenNameIsRefused) {
     std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
     text.replace(text.find("  square:"), 9, "  jack:");
     EXPECT_EQ(complaint(text),
-              "rig.yaml:22: branches.up.drive: needs a joint of its own called 'jack', but there "
-              "is one already; "
-              "call that one something else");
+              "rig.yaml:22: branches.up.drive: the joint name 'jack' is reserved for its drive, "
+              "but already in use; rename the other joint");
 }
 
 TEST(Driven, OnlyJointsWithAFreeCoordinateAreHeld) {
@@ -344,11 +337,10 @@ TEST(Limits, TooManyPositionsAreRefused) {
     EXPECT_EQ(complaint(chain(20, 500'000)), "none");
     EXPECT_EQ(complaint(chain(20, 500'001)),
               "rig.yaml:48: branches.up.steps: 500001 steps of 20 bodies are too many positions to "
-              "keep; allowed: "
-              "500000");
+              "store; allowed:  steps500000");
     EXPECT_EQ(complaint(chain(10'000, 1)), "none");
     EXPECT_EQ(complaint(chain(10'001, 1)),
-              "rig.yaml:5: bodies: 10001 bodies; a scene has 10000 at most");
+              "rig.yaml:5: bodies: 10001 bodies; allowed: at most 10000");
 }
 
 // ---- Branches whose driven parts are removed by the reduction.
@@ -376,22 +368,21 @@ branches:
 }
 
 TEST(Branch, ThatMovesNothingOfInterestIsRefused) {
-    const std::string begin = "rig.yaml:18: branches.up: moves nothing that an output depends on: ";
+    const std::string begin =
+        "rig.yaml:18: branches.up: changes nothing that an output depends on: ";
     const std::string unseen = "no output is connected to it";
     EXPECT_EQ(complaint(two_parts("{load: lost, to: 1, steps: 1}")),
               begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
     EXPECT_EQ(complaint(two_parts("{drive: joints.other, to: 1, steps: 1}")),
-              begin + "joint 'other.drive' is left out: a body it connects is left out");
+              begin + "joint 'other.drive' is left out: a body that it connects is left out");
     EXPECT_EQ(complaint(two_parts("{drive: springs.far.free_length, to: 1, steps: 1}")),
-              begin + "element 'far' is left out: a body it connects is left out");
+              begin + "element 'far' is left out: a body that it connects is left out");
     EXPECT_EQ(complaint(two_parts("{load: lost, to: 1, steps: 1, static_loads: {push: 1}}")),
               begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
     EXPECT_EQ(complaint(two_parts("{load: [lost, push], to: 1, steps: 1}")), "none");
     EXPECT_EQ(complaint(two_parts("{drive: springs.zero.preload, to: 1, steps: 1}")),
-              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is of a spring of zero rate, "
-              "which it "
-              "does not "
-              "move");
+              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is a spring of rate zero, on "
+              "which it has no effect");
 }
 
 TEST(Branch, LoadsThatNoneUsesAreNamed) {

@@ -79,25 +79,22 @@ TEST(Gravity, SaysWhatIsWrong) {
     expect_complaints(
         scene_text,
         {{"[1, 0, -9.81]", "[1, 0.1, -9.81]",
-          "gravity: has a part along y, and a scene that mirrors itself is pulled to neither side; "
-          "allowed: "
+          "gravity: has a y component, which is not symmetric; allowed in a scene with a mirror: "
           "[x, 0, z]"},
          {"[1, 0, -9.81]", "-9.81", "gravity: expected a list of 3 numbers, found '-9.81'"},
          {"mass: 20", "mass: -20", "bodies.beam.mass: negative mass '-20'; allowed: zero or more"},
          {"mass: 2, ", "",
-          "bodies.rack.centre_of_gravity: of a body without a mass; give its mass or leave this "
-          "out"},
+          "bodies.rack.centre_of_gravity: centre of gravity of a body without mass; give its mass "
+          "or remove this field"},
          {"loads:",
           "static_loads: {gravity.beam: {on: beam, at: middle, force: [0, 0, 1]}}\nloads:",
-          "bodies.beam: its weight is a load called 'gravity.beam', but there is one already; call "
-          "that one "
-          "something "
-          "else"}});
+          "bodies.beam: the load name 'gravity.beam' is reserved for its weight, but already in "
+          "use; rename the other load"}});
     std::string text = scene_text;
     for (const char* mass :
          {"mass: 4, centre_of_gravity: cg_left", "mass: 20", "mass: 2, centre_of_gravity: off"})
         text = replaced(text, std::string(", ") + mass, "");
-    EXPECT_EQ(complaint_of(text), "gravity: pulls nothing: no body has a mass");
+    EXPECT_EQ(complaint_of(text), "gravity: has no effect: no body has a mass");
 }
 
 }  // namespace

@@ -51,13 +51,12 @@ const std::vector<Mistake> mistakes{
      "offset, "
      "symmetric, interpolation, outside"},
     {"CurveWithoutPoints", curve("scale: 2"),
-     "11: springs.coil.curve: no points; allowed: table or file"},
+     "11: springs.coil.curve: no points; required: table or file"},
     {"TableAndFile", curve(table + ", file: coil.csv"),
      "11: springs.coil.curve.file: given together with table; " + one_of_two},
     {"FileOfAText", curve("file: coil.csv"),
-     "11: springs.coil.curve.file: read from beside the scene's file, which there is none of here; "
-     "give a "
-     "table"},
+     "11: springs.coil.curve.file: relative to the scene's file, but this scene is not a file; "
+     "give a table"},
     {"FileIsAList", curve("file: [coil.csv]"),
      "11: springs.coil.curve.file: expected the name of a file, found a list of 1"},
     {"TableIsANumber", curve("table: 5"),
@@ -77,37 +76,35 @@ const std::vector<Mistake> mistakes{
     {"RowNotFinite", curve("table: [[0, 0], [5, inf]]"),
      "11: springs.coil.curve.table: 'inf' is out of range; allowed: 0, or 1e-30 to 1e+30 in size"},
     {"DeflectionRepeated", curve("table: [[0, 0], [5, 10], [5, 20]]"),
-     "11: springs.coil.curve.table: row 3: deflection '5' is not above that of the row before"},
+     "11: springs.coil.curve.table: row 3: deflection '5' is not larger than that of the row "
+     "before"},
     {"DeflectionFalling", curve("table: [[0, 0], [-5, 10]]"),
-     "11: springs.coil.curve.table: row 2: deflection '-5' is not above that of the row before"},
+     "11: springs.coil.curve.table: row 2: deflection '-5' is not larger than that of the row "
+     "before"},
     {"ForceFalling", curve("table: [[0, 0], [5, 20], [10, 19]]"),
-     "11: springs.coil.curve.table: row 3: force '19' is below that of the row before; it may "
-     "stay, but not "
-     "fall"},
+     "11: springs.coil.curve.table: row 3: force '19' is smaller than that of the row before; it "
+     "must not decrease"},
     {"ScaleOfZero", curve(table + ", scale: 0"),
-     "11: springs.coil.curve.scale: '0' is no scale; allowed: above zero"},
+     "11: springs.coil.curve.scale: '0' is not a scale; allowed: above zero"},
     {"NegativeScale", curve(table + ", scale: -1"),
-     "11: springs.coil.curve.scale: '-1' is no scale; allowed: above zero"},
+     "11: springs.coil.curve.scale: '-1' is not a scale; allowed: above zero"},
     {"OffsetTooLarge", curve(table + ", offset: 1e20"),
-     "11: springs.coil.curve.offset: '1e20' is so large that rows of the table fall together"},
+     "11: springs.coil.curve.offset: '1e20' is so large that rows of the table coincide"},
     {"SymmetricOfBothSides", curve(table + ", symmetric: true"),
-     "11: springs.coil.curve.symmetric: the table of a symmetric curve begins with [0, 0], and the "
-     "other "
-     "half is made "
-     "from it"},
+     "11: springs.coil.curve.symmetric: the table of a symmetric curve must begin with [0, 0]; the "
+     "other half is generated"},
     {"SymmetricWithAForceAtZero", curve("table: [[0, 1], [1, 2]], symmetric: true"),
-     "11: springs.coil.curve.symmetric: the table of a symmetric curve begins with [0, 0], and the "
-     "other "
-     "half is made "
-     "from it"},
+     "11: springs.coil.curve.symmetric: the table of a symmetric curve must begin with [0, 0]; the "
+     "other half is generated"},
     {"SymmetricPerhaps", curve(table + ", symmetric: perhaps"),
      "11: springs.coil.curve.symmetric: 'perhaps' is not yes or no; allowed: true, false"},
     {"OutsideOtherwise", curve(table + ", outside: constant"),
-     "11: springs.coil.curve.outside: 'constant' is not a way to go on; allowed: linear, unknown"},
+     "11: springs.coil.curve.outside: 'constant' is not a kind of extrapolation; allowed: linear, "
+     "unknown"},
     {"RateAndCurve", spring_with("rate: 5, curve: {" + table + "}"),
      "11: springs.coil.curve: given together with rate; " + one_of_two},
     {"NeitherRateNorCurve", spring_with("preload: 5"),
-     "11: springs.coil: no law; allowed: rate or curve"},
+     "11: springs.coil: no law; required: rate or curve"},
     // ---- preload of a spring with a curve
     {"PreloadBeyondAnUnknownEnd",
      spring_with("curve: {" + table + ", outside: unknown}, preload: 901"),
@@ -119,11 +116,12 @@ const std::vector<Mistake> mistakes{
      spring_with("curve: {table: [[-50, -900], [-40, -900], [0, 0]]}, preload: 901"),
      "11: springs.coil.preload: the curve never has -901 N; its table goes from -900 to 0"},
     {"PreloadOnAFlatEnd", spring_with("curve: {table: [[-50, 0], [0, 0], [40, 1000]]}, preload: 0"),
-     "11: springs.coil.preload: the curve has 0 N at more than one deflection; give a free_length"},
+     "11: springs.coil.preload: the curve has 0 N at more than one deflection; give free_length "
+     "instead"},
     {"PreloadOnAFlatPiece",
      spring_with("curve: {table: [[-50, -900], [-40, -500], [-20, -500], [0, 0]]}, preload: 500"),
-     "11: springs.coil.preload: the curve has -500 N at more than one deflection; give a "
-     "free_length"},
+     "11: springs.coil.preload: the curve has -500 N at more than one deflection; give free_length "
+     "instead"},
     {"PreloadThatNeedsNoLength", spring_with("curve: {" + table + "}, preload: -30e3"),
      "11: springs.coil.preload: needs a free length of -516.667 mm; a free length must be above "
      "zero"},
@@ -131,9 +129,9 @@ const std::vector<Mistake> mistakes{
      "11: springs.coil.preload: given together with free_length; " + one_of_two},
     // ---- stops
     {"StopWithoutClearance", bump("rate: 5"),
-     "11: springs.coil.bump_stop.clearance: missing, it must be given"},
+     "11: springs.coil.bump_stop.clearance: missing; this field is required"},
     {"StopWithoutLaw", bump("clearance: 5"),
-     "11: springs.coil.bump_stop: no law; allowed: rate or curve"},
+     "11: springs.coil.bump_stop: no law; required: rate or curve"},
     {"StopOfRateAndCurve", bump("clearance: 5, rate: 5, curve: {table: [[0, 0], [1, 1]]}"),
      "11: springs.coil.bump_stop.curve: given together with rate; " + one_of_two},
     {"StopOfNegativeRate", bump("clearance: 5, rate: -5"),
@@ -143,17 +141,19 @@ const std::vector<Mistake> mistakes{
      "clearance, "
      "rate, curve"},
     {"StopWithForceWhereItTouches", bump("clearance: 5, curve: {table: [[0, 10], [1, 20]]}"),
-     "11: springs.coil.bump_stop.curve: the table of a stop begins with [0, 0], where it touches"},
+     "11: springs.coil.bump_stop.curve: the table of a stop must begin with [0, 0], where it "
+     "closes"},
     {"StopThatTouchesLater", bump("clearance: 5, curve: {table: [[1, 0], [2, 20]]}"),
-     "11: springs.coil.bump_stop.curve: the table of a stop begins with [0, 0], where it touches"},
+     "11: springs.coil.bump_stop.curve: the table of a stop must begin with [0, 0], where it "
+     "closes"},
     {"StopWithOffset", bump("clearance: 5, curve: {table: [[0, 0], [1, 20]], offset: 1}"),
      "11: springs.coil.bump_stop.curve: unknown field 'offset'; allowed: table, file, scale, "
      "interpolation, "
      "outside"},
     {"StopTooFar", bump("clearance: 1e20, curve: {table: [[0, 0], [1, 20]]}"),
-     "11: springs.coil.bump_stop.clearance: '1e20' is so large that rows of the curve fall "
-     "together"},
-    {"StopsWithoutAny", stops("from: p, to: t"), "11: stops.axle: no stop; allowed: bump, rebound"},
+     "11: springs.coil.bump_stop.clearance: '1e20' is so large that rows of the curve coincide"},
+    {"StopsWithoutAny", stops("from: p, to: t"),
+     "11: stops.axle: no stop; required: bump or rebound"},
     {"UnknownStop", stops("from: p, to: t, bump_stop: {clearance: 5, rate: 5}"),
      "11: stops.axle: unknown field 'bump_stop'; allowed: bodies, from, to, bump, rebound"},
     {"StopOfNoLength", stops("from: p, to: p, bump: {clearance: 5, rate: 5}"),
@@ -161,27 +161,23 @@ const std::vector<Mistake> mistakes{
     {"StopOfATakenName",
      "springs:\n  axle.bump: {bodies: [arm, ground], from: p, to: t, rate: 5}\n" +
          stops("from: p, to: t, bump: {clearance: 5, rate: 5}"),
-     "13: stops.axle.bump: needs an element of its own called 'axle.bump', but there is one "
-     "already; call "
-     "that one "
-     "something else"},
+     "13: stops.axle.bump: the element name 'axle.bump' is reserved for its stop, but already in "
+     "use; rename the other element"},
     {"StopInASpringOfATakenName",
      spring_with("rate: 5, bump_stop: {clearance: 5, rate: 5}") +
          "\n  coil.bump_stop: {bodies: [arm, ground], from: p, to: t, rate: 5}",
-     "11: springs.coil.bump_stop: needs an element of its own called 'coil.bump_stop', but there "
-     "is one "
-     "already; call "
-     "that one something else"},
+     "11: springs.coil.bump_stop: the element name 'coil.bump_stop' is reserved for its stop, but "
+     "already in use; rename the other element"},
     // ---- torsion springs
     {"TorsionSpringWithoutLaw", torsion("axis: x"),
-     "11: torsion_springs.bar: no law; allowed: rate or curve"},
+     "11: torsion_springs.bar: no law; required: rate or curve"},
     {"TorsionSpringOfTwoLaws", torsion("axis: x, rate: 5, curve: {" + table + "}"),
      "11: torsion_springs.bar.curve: given together with rate; " + one_of_two},
     {"TorsionSpringWithoutAxis", torsion("rate: 5"),
-     "11: torsion_springs.bar.axis: missing, it must be given"},
+     "11: torsion_springs.bar.axis: missing; this field is required"},
     {"TorsionSpringWithoutPoint",
      "torsion_springs:\n  bar: {bodies: [arm, ground], axis: x, rate: 5}",
-     "11: torsion_springs.bar.at: missing, it must be given"},
+     "11: torsion_springs.bar.at: missing; this field is required"},
     {"TorsionSpringOfNegativeRate", torsion("axis: x, rate: -5"),
      "11: torsion_springs.bar.rate: negative rate '-5'; allowed: zero or more"},
     {"PreloadMomentOfThree", torsion("axis: x, rate: 5, preload_moment: [1, 2, 3]"),
@@ -195,7 +191,7 @@ const std::vector<Mistake> mistakes{
      "rates, or "
      "stiffness"},
     {"NoCurves", bushing("curves: {}"),
-     "11: bushings.mount.curves: empty; a curve for one of the axes is needed"},
+     "11: bushings.mount.curves: empty; a curve for at least one axis is needed"},
     {"CurveOfNoAxis", bushing("curves: {w: {" + table + "}}"),
      "11: bushings.mount.curves: unknown field 'w'; allowed: x, y, z, rx, ry, rz"},
     {"UndeformedOfOne", bushing("rates: [1, 1, 1], undeformed: 1"),
@@ -209,29 +205,25 @@ const std::vector<Mistake> mistakes{
     {"FrameOnK", bushing("rates: [1, 1, 1], formulation: {frame: k}"),
      "11: bushings.mount.formulation.frame: 'k' is not a frame; allowed: i, j, middle"},
     {"UnknownAngles", bushing("rates: [1, 1, 1], formulation: {angles: euler}"),
-     "11: bushings.mount.formulation.angles: 'euler' is not a measure of rotation; allowed: "
-     "rotation_vector, "
-     "cardan, "
-     "projected"},
+     "11: bushings.mount.formulation.angles: 'euler' is not a definition of the angles; allowed: "
+     "rotation_vector, cardan, projected"},
     {"ConjugatePerhaps", bushing("rates: [1, 1, 1], formulation: {conjugate: maybe}"),
      "11: bushings.mount.formulation.conjugate: 'maybe' is not yes or no; allowed: true, false"},
     {"NotConjugateInTheMiddle",
      bushing("rates: [1, 1, 1], formulation: {frame: middle, conjugate: false}"),
-     "11: bushings.mount.formulation.conjugate: false, which is not defined with the frame in the "
-     "middle; "
-     "allowed "
-     "there: true"},
+     "11: bushings.mount.formulation.conjugate: false is not defined with the frame in the middle; "
+     "allowed there: true"},
     {"OneAxisForACurveAcrossIt",
      bushing("frame: {z: z}, curves: {x: {table: [[0, 0], [1, 1]]}, y: {table: [[0, 0], [1, 1]]}}"),
-     one_axis + "a curve across it is not the same all round" + second},
+     one_axis + "a curve across it is not axisymmetric" + second},
     {"OneAxisForARotationalCurveAcrossIt", bushing("frame: {z: z}, curves: {ry: {" + table + "}}"),
-     one_axis + "a curve across it is not the same all round" + second},
+     one_axis + "a curve across it is not axisymmetric" + second},
     {"OneAxisForUnequalRatesBesideACurve",
      bushing("frame: {z: z}, rates: [1, 2, 0], curves: {z: {" + table + "}}"),
-     one_axis + "the rates or the preload across it are not the same all round" + second},
+     one_axis + "the rates or the preload across it are not axisymmetric" + second},
     {"OneAxisForAnOffsetAcrossIt",
      bushing("frame: {z: z}, rates: [1, 1, 2], undeformed: [1, 0, 0]"),
-     one_axis + "the undeformed position is off it" + second},
+     one_axis + "the undeformed position is not on it" + second},
     {"OneAxisForCardanAngles",
      bushing("frame: {z: z}, rates: [1, 1, 2], formulation: {angles: cardan}"),
      one_axis + "cardan and projected angles need all three" + second},
@@ -263,26 +255,21 @@ TEST(WrongSetting, OfATableSaysSo) {
         FAIL();
     } catch (const SceneError& error) {
         EXPECT_STREQ(error.what(),
-                     "laws.yaml:11: springs.coil.curve.table: row 2: force '-950' is below that of "
-                     "the row before; it "
-                     "may stay, but not fall (as set)");
+                     "laws.yaml:11: springs.coil.curve.table: row 2: force '-950' is smaller than "
+                     "that of the row before; it must not decrease (as set)");
     }
 }
 
 TEST(WrongDrive, OfWhatCannotBeDrivenSaysWhy) {
     const std::tuple<std::string, const char*, std::string> cases[] = {
         {curve(table), "springs.coil.preload",
-         "'springs.coil.preload' is of a spring with a curve, where it is not in proportion to any "
-         "length; "
-         "allowed: its "
-         "free_length"},
+         "'springs.coil.preload' is the preload of a spring with a curve is not proportional to a "
+         "length; allowed: its free_length"},
         {bump("clearance: 5, rate: 5"), "springs.coil.bump_stop.free_length",
-         "'springs.coil.bump_stop.free_length' is nothing that can be driven, did you mean "
-         "'springs.coil.free_length'? allowed: "
-         "springs.coil.free_length, "
-         "springs.coil.preload"},
+         "'springs.coil.bump_stop.free_length' cannot be driven, did you mean "
+         "'springs.coil.free_length'? allowed: springs.coil.free_length, springs.coil.preload"},
         {torsion("axis: x, rate: 5"), "torsion_springs.bar.preload_moment.z",
-         "'torsion_springs.bar.preload_moment.z' is nothing that can be driven, did you mean "
+         "'torsion_springs.bar.preload_moment.z' cannot be driven, did you mean "
          "'torsion_springs.bar.preload_moment'? allowed: torsion_springs.bar.preload_moment"},
     };
     for (const auto& [elements, drive, message] : cases) {
@@ -318,9 +305,8 @@ TEST(WrongMirror, MakesNoTwoElementsOfOneName) {
         FAIL();
     } catch (const SceneError& error) {
         EXPECT_STREQ(error.what(),
-                     "axle.yaml:9: stops.a_left.bump: needs an element of its own called "
-                     "'a_right.bump', but there "
-                     "is one already; call that one something else");
+                     "axle.yaml:9: stops.a_left.bump: the element name 'a_right.bump' is reserved "
+                     "for its stop, but already in use; rename the other element");
     }
 }
 

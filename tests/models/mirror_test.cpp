@@ -240,31 +240,23 @@ TEST(Mirror, WhatCannotBeMirroredIsRefused) {
          "4: mirror: 'a1 -> b' is not a mirror; expected two different words of letters, "
          "like left -> right"},
         {"left -> right", "near -> far",
-         "4: mirror: nothing to mirror: no name has the word 'near' in it"},
+         "4: mirror: nothing to mirror: no name contains the word 'near'"},
         {"  rack: [-300, 10, -59]", "  ball_right: [0, 0, 0]\n  rack: [-300, 10, -59]",
-         "15: points.ball_right: the mirror makes it from 'ball_left'; leave one of the two out"},
+         "15: points.ball_right: the mirror generates it from 'ball_left'; remove one of the two"},
         {"  rack: {origin: rack}", "  rack: {origin: rack}\n  arm_right: {origin: rack}",
-         "20: bodies.arm_right: the mirror makes it from 'arm_left'; leave one of the two out"},
+         "20: bodies.arm_right: the mirror generates it from 'arm_left'; remove one of the two"},
         {"  coil_left:", "  coil:",
-         "35: springs.coil: shared by both sides, as 'left' is not in its name, but refers to "
-         "'hub_left' and "
-         "not to "
-         "'hub_right'"},
+         "35: springs.coil: shared by both sides, since its name does not contain 'left', but "
+         "refers to 'hub_left' and not to 'hub_right'"},
         {"  left: {body", "  front: {body",
-         "61: wheels.front: shared by both sides, as 'left' is not in its name, but refers to "
-         "'arm_left' "
-         "and not "
-         "to 'arm_right'"},
+         "61: wheels.front: shared by both sides, since its name does not contain 'left', but "
+         "refers to 'arm_left' and not to 'arm_right'"},
         {"  damper_left:", "  damper:",
-         "65: dampers.damper: shared by both sides, as 'left' is not in its name, but refers to "
-         "'hub_left' "
-         "and not "
-         "to 'hub_right'"},
+         "65: dampers.damper: shared by both sides, since its name does not contain 'left', but "
+         "refers to 'hub_left' and not to 'hub_right'"},
         {"  damper_left:", "  coil_left:",
-         "65: dampers.coil_left: a spring is called 'coil_left' as well, and each has an output of "
-         "its name; "
-         "call "
-         "one of the two something else"},
+         "65: dampers.coil_left: a spring has the same name 'coil_left', and each has an output of "
+         "that name; rename one of the two"},
     };
     for (const auto& [from, to, message] : cases) {
         try {

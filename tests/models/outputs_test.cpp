@@ -131,26 +131,23 @@ TEST(Outputs, KnowWhatTheirElementsWereWrittenAs) {
 
 TEST(Outputs, SayWhatIsWrong) {
     const std::string axis = "steering_axis: [ball, {on: rod, at: top}]",
-                      missing = ": missing, it must be given";
+                      missing = ": missing; this field is required";
     expect_complaints(
         strut,
         {{axis, "steering_axis: ball",
-          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper one, found "
-          "'ball'"},
+          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper, found 'ball'"},
          {axis, "steering_axis: [ball]",
-          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper one, found a "
-          "list of 1"},
+          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper, found a list "
+          "of 1"},
          {axis, "steering_axis: [ball, {on: ground, at: ball}]",
           "wheel.steering_axis: both ends are at the same position; an axis needs two different "
           "ones"},
          {axis, "steering_axis: [ball, tip]",
-          "wheel.steering_axis: no hardpoint is called 'tip', did you mean 'top'? defined: ball, "
-          "hub, lower, "
-          "patch, "
-          "top"},
+          "wheel.steering_axis: there is no hardpoint called 'tip', did you mean 'top'? defined: "
+          "ball, hub, lower, patch, top"},
          {axis, "steering_axis: [ball, {on: rot, at: top}]",
-          "wheel.steering_axis.on: no body is called 'rot', did you mean 'rod'? defined: ground, "
-          "hub, rod"},
+          "wheel.steering_axis.on: there is no body called 'rot', did you mean 'rod'? defined: "
+          "ground, hub, rod"},
          {axis, "steering_axis: [ball, {on: rod}]", "wheel.steering_axis.at" + missing},
          {axis, "steering_axis: [ball, {at: top}]", "wheel.steering_axis.on" + missing},
          {axis, "steering_axis: [ball, {of: rod, at: top}]",
@@ -159,14 +156,12 @@ TEST(Outputs, SayWhatIsWrong) {
           "{bodies: [hub, ground], from: top, to: top}}",
           "dampers.damper.to: the same position as `from`; a damper needs a length"},
          {"{bodies: [hub, ground], from: lower", "{bodies: [hub, hub], from: lower",
-          "dampers.damper.bodies: 'hub' twice; two different bodies are needed"},
+          "both bodies are dampers.damper.bodies: 'hub'; two different bodies are needed"},
          {"[hub, ground], from: lower, to: top}}", "[hub, ground], from: lower, to: top, rate: 3}}",
           "dampers.damper: unknown field 'rate'; allowed: bodies, from, to"},
          {"{damper: {bodies", "{coil: {bodies",
-          "dampers.coil: a spring is called 'coil' as well, and each has an output of its name; "
-          "call one of "
-          "the two "
-          "something else"},
+          "dampers.coil: a spring has the same name 'coil', and each has an output of that name; "
+          "rename one of the two"},
          {"wheelbase: 2700, ", "", "vehicle.wheelbase" + missing},
          {"cg_height: 550, ", "", "vehicle.cg_height" + missing},
          {"axle: rear, ", "", "vehicle.axle" + missing},

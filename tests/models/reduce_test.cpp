@@ -181,11 +181,12 @@ TEST(Weld, BodiesFixedToEachOtherAreOne) {
     EXPECT_EQ(names(scene.bodies), "a b e");
     EXPECT_EQ(names(scene.joints), "hinge ball rod plane square cross drive");
     const std::string weld =
-        "the bodies that it fixes to each other are one; its reaction is no output";
-    EXPECT_EQ(omitted(scene), (Reasons{{"joint 'weld_cb'", weld},
-                                       {"joint 'weld_dc'", weld},
-                                       {"body 'c'", "fixed to body 'b', with which it is one"},
-                                       {"body 'd'", "fixed to body 'b', with which it is one"}}));
+        "the bodies that it fixes to each other become one; its reaction is not an output";
+    EXPECT_EQ(omitted(scene),
+              (Reasons{{"joint 'weld_cb'", weld},
+                       {"joint 'weld_dc'", weld},
+                       {"body 'c'", "fixed to body 'b', with which it becomes one body"},
+                       {"body 'd'", "fixed to body 'b', with which it becomes one body"}}));
     EXPECT_EQ(scene.wheels.at(0).body, 1);
     EXPECT_EQ(ends(scene.elastics.at(1).kind).j, 1);
     const auto after = places(scene);
@@ -266,9 +267,9 @@ TEST(WithinOneBody, WhatCannotMoveOrDeformGoes) {
     EXPECT_TRUE(model.elastics.empty());
     const Reasons reasons = omitted(model);
     EXPECT_EQ(reasons.at("joint 'inner'"),
-              "both its ends are on ground; its reaction is no output");
+              "both its ends are on ground; its reaction is not an output");
     EXPECT_EQ(reasons.at("joint 'grounded'"),
-              "both its ends are on ground; its reaction is no output");
+              "both its ends are on ground; its reaction is not an output");
     EXPECT_EQ(reasons.at("element 'coil'"), "both its ends are on ground");
     EXPECT_EQ(reasons.at("element 'rubber'"), "both its ends are on ground");
 }
@@ -325,13 +326,14 @@ TEST(Link, WithTwoBallsIsADistanceOfItsName) {
     EXPECT_EQ(distance.i.body, 0);
     EXPECT_EQ(distance.j.body, ground);
     EXPECT_LE((distance.j.s_local - Vector3d(0.1, -0.4, 0.3)).norm(), 1e-15);
-    EXPECT_EQ(omitted(model),
-              (Reasons{{"body 'b'",
-                        "a link with a ball at each end and no load: it is the distance joint 'b'"},
-                       {"joint 'outer'",
-                        "an end of body 'b'; its reaction is no output, that of joint 'b' is"},
-                       {"joint 'inner'",
-                        "an end of body 'b'; its reaction is no output, that of joint 'b' is"}}));
+    EXPECT_EQ(
+        omitted(model),
+        (Reasons{{"body 'b'",
+                  "a link with a ball at each end and no load: replaced by the distance joint 'b'"},
+                 {"joint 'outer'",
+                  "an end of body 'b'; its reaction is not an output, that of joint 'b' is"},
+                 {"joint 'inner'",
+                  "an end of body 'b'; its reaction is not an output, that of joint 'b' is"}}));
     // The link's 6 coordinates and 6 rows become 1 row: its spin is removed.
     EXPECT_EQ(model.as_written, (Size{2, 3, 1, 3 + 3 + 5}));
     EXPECT_EQ(model.as_solved, (Size{1, 2, 1, 1 + 5}));
@@ -481,9 +483,10 @@ TEST(Duplicate, HoldsNothingThatAnotherDoesNot) {
 
     Scene named = twice(a_ball, a_ball);
     reduce::drop_duplicates(named);
-    EXPECT_EQ(omitted(named),
-              (Reasons{{"joint 'two'",
-                        "joint 'one' holds the same; its reaction is part of that one's"}}));
+    EXPECT_EQ(
+        omitted(named),
+        (Reasons{{"joint 'two'",
+                  "joint 'one' imposes the same constraint and carries the whole reaction"}}));
 }
 
 TEST(Duplicate, ThatIsDrivenOrNotAlwaysThereIsNone) {

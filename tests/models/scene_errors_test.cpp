@@ -44,17 +44,16 @@ const std::string out_of_range = " is out of range; allowed: 0, or 1e-30 to 1e+3
 const std::string directions = "x, y, z, -x, -y, -z, [x, y, z] or two hardpoints [from, to]";
 const std::string hardpoints = "again, front, middle, side, top";
 const std::string one_axis =
-    "one axis is not enough, as the rates or the preload across it are not the same all "
-    "round; give a second one";
+    "one axis is not enough, because the rates or the preload across it are not axisymmetric; give "
+    "a second one";
 const std::string steps = "expected a whole number from 1 to 1000000, found ";
 const std::string plain_text = "; a scene is plain text";
-const std::string no_aliases =
-    "aliases (*name) are not part of the scene format; write the value out";
-const std::string one_document = "; a scene is one YAML document";
+const std::string no_aliases = "aliases (*name) are not part of the scene format; repeat the value";
+const std::string one_document = "; a scene is a single YAML document";
 const std::string semidefinite =
     " when scaled to a unit diagonal; a stiffness must be positive semidefinite";
-const std::string on_ground = " cannot be on ground, which never moves; allowed: a body";
-const std::string missing = ": missing, it must be given";
+const std::string on_ground = " cannot be on ground, which is fixed; allowed: a body";
+const std::string missing = ": missing; this field is required";
 const std::string empty = "empty; a scene begins with `elastocheck: 1`";
 const std::string together =
     "given together with rates; allowed: stiffness, or rates and/or rotational_rates";
@@ -69,20 +68,20 @@ const std::vector<Mistake> mistakes{
     {"TextInsteadOfMap", whole_text, "elastocheck 1\n",
      "1: expected a map with the fields " + sections + ", found 'elastocheck 1'"},
     {"FlowListNotClosed", "  middle: [0, 0, 0]", "  middle: [0, 0, 0",
-     "7: not YAML: end of sequence flow not found"},
+     "7: invalid YAML: end of sequence flow not found"},
     {"QuoteNotClosed", "name: Bench", "name: \"Bench",
      "2: name: 'Bench units: {length: mm, angle: deg, force: N}?points: middle: ...' is not "
      "one line of plain text"},
     {"WrongIndentation", "  arm: {origin: middle}", " arm: {origin: middle}",
-     "14: not YAML: end of map not found"},
+     "14: invalid YAML: end of map not found"},
     {"TabAsIndentation", "  arm: {origin: middle}", "\tarm: {origin: middle}",
-     "13: not YAML: illegal map value"},
+     "13: invalid YAML: illegal map value"},
     {"SecondDocument",
      "probes:", "---\nprobes:", "49: text after the end of the scene" + one_document},
     {"TextAfterTheEnd",
      "probes:", "...\nprobes:", "50: text after the end of the scene" + one_document},
     {"UnknownAlias", "bodies: [arm, hub], at: front, axis_i", "bodies: *pair, at: front, axis_i",
-     "18: not YAML: the referenced anchor is not defined"},
+     "18: invalid YAML: the referenced anchor is not defined"},
     {"Alias",
      "  ball: {type: spherical, bodies: [arm, hub], at: front}\n  cross: {type: universal, "
      "bodies: [arm, hub]",
@@ -95,14 +94,14 @@ const std::vector<Mistake> mistakes{
     {"TagOfAList", "load: [push, twist]", "load: !set [push, twist]",
      "46: branches.up.load: tags ('!set') are not part of the scene format"},
     {"DeepNesting", "to: 1000", "to: [[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]",
-     "46: branches.up.to: nested more than 16 deep"},
-    {"VeryDeepNesting", whole_text, repeated("- ", 100000), "1: nested more than 16 deep"},
+     "46: branches.up.to: nested more than 16 levels deep"},
+    {"VeryDeepNesting", whole_text, repeated("- ", 100000), "1: nested more than 16 levels deep"},
     {"ControlCharacter", "name: Bench", "name: Ben\004ch",
      "2: control character 0x04" + plain_text},
     {"NotUtf8", "name: Bench", "name: Ben\377ch", "2: byte 0xff is not UTF-8" + plain_text},
     {"NotUtf8Overlong", "name: Bench", "name: Ben\300\257ch",
      "2: byte 0xc0 is not UTF-8" + plain_text},
-    {"TooLarge", whole_text, repeated("#", 1048577), " larger than 1 MiB, which no scene is"},
+    {"TooLarge", whole_text, repeated("#", 1048577), " larger than 1 MiB, the limit for a scene"},
     {"ListAsKey", "  arm: {origin: middle}", "  [arm, hub]: {origin: middle}",
      "13: bodies: a list or map where the name of a field is expected"},
     {"NothingAsKey", "  arm: {origin: middle}", "  : {origin: middle}",
@@ -115,7 +114,7 @@ const std::vector<Mistake> mistakes{
     // ---- the top level
     {"NoVersion", "elastocheck: 1\n", "", "1: elastocheck" + missing},
     {"WrongVersion", "elastocheck: 1\n", "elastocheck: 2\n",
-     "1: elastocheck: '2' is not a version of the format that this program reads; allowed: 1"},
+     "1: elastocheck: '2' is not a supported version of the format; allowed: 1"},
     {"VersionIsAList", "elastocheck: 1\n", "elastocheck: [1]\n",
      "1: elastocheck: expected the version of the format, found a list of 1"},
     {"UnknownSection", "bushings:", "bushing:",
@@ -203,7 +202,7 @@ const std::vector<Mistake> mistakes{
     {"BodiesAreEmpty", "\n  arm: {origin: middle}\n  hub: {origin: front}\n", "\n",
      "12: bodies: empty; at least one body is needed"},
     {"BodyNamedGround", "  arm: {origin", "  ground: {origin",
-     "13: bodies.ground: ground is always there and cannot be defined; choose another name"},
+     "13: bodies.ground: ground is predefined and cannot be defined again; choose another name"},
     {"BodyIsNotAMap", "arm: {origin: middle}", "arm: middle",
      "13: bodies.arm: expected a map with the fields origin, mass, centre_of_gravity, found "
      "'middle'"},
@@ -212,13 +211,15 @@ const std::vector<Mistake> mistakes{
      "13: bodies.arm: unknown field 'orgin', did you mean 'origin'? allowed: origin, mass, "
      "centre_of_gravity"},
     {"UnknownHardpoint", "arm: {origin: middle}", "arm: {origin: midle}",
-     "13: bodies.arm.origin: no hardpoint is called 'midle', did you mean 'middle'? defined: " +
+     "13: bodies.arm.origin: there is no hardpoint called 'midle', did you mean 'middle'? "
+     "defined: " +
          hardpoints},
     {"HardpointIsAList", "arm: {origin: middle}", "arm: {origin: [0, 0, 0]}",
      "13: bodies.arm.origin: expected the name of a hardpoint, found a list of 3"},
     {"BodyThatNothingHolds", "  hub: {origin: front}",
      "  hub: {origin: front}\n  spare: {origin: top}",
-     "15: bodies.spare: nothing holds it; a joint, spring or bushing is needed"},
+     "15: bodies.spare: no joint or element is attached to it; a joint, spring or bushing is "
+     "needed"},
     // ---- joints
     {"JointsAreAList",
      "joints:\n  ball: {type: spherical, bodies: [arm, hub], at: front}\n  cross: {type: "
@@ -245,14 +246,14 @@ const std::vector<Mistake> mistakes{
     {"JointOfOneBody", "type: spherical, bodies: [arm, hub]", "type: spherical, bodies: arm",
      "17: joints.ball.bodies: expected a list of 2 bodies, found 'arm'"},
     {"UnknownBody", "type: spherical, bodies: [arm, hub]", "type: spherical, bodies: [arn, hub]",
-     "17: joints.ball.bodies: no body is called 'arn', did you mean 'arm'? defined: arm, "
+     "17: joints.ball.bodies: there is no body called 'arn', did you mean 'arm'? defined: arm, "
      "ground, hub"},
     {"JointBetweenABodyAndItself", "type: spherical, bodies: [arm, hub]",
      "type: spherical, bodies: [arm, arm]",
-     "17: joints.ball.bodies: 'arm' twice; two different bodies are needed"},
+     "both bodies are 17: joints.ball.bodies: 'arm'; two different bodies are needed"},
     {"JointBetweenGroundAndItself", "type: spherical, bodies: [arm, hub]",
      "type: spherical, bodies: [ground, ground]",
-     "17: joints.ball.bodies: 'ground' twice; two different bodies are needed"},
+     "both bodies are 17: joints.ball.bodies: 'ground'; two different bodies are needed"},
     {"JointWithoutPoint", "type: spherical, bodies: [arm, hub], at: front",
      "type: spherical, bodies: [arm, hub]", "17: joints.ball.at" + missing},
     {"AxesNotPerpendicular", "axis_j: y}", "axis_j: [1, 1, 0]}",
@@ -270,19 +271,20 @@ const std::vector<Mistake> mistakes{
     {"AxisOfFourNumbers", "axis_j: y}", "axis_j: [0, 1, 0, 0]}",
      "18: joints.cross.axis_j: expected a direction (" + directions + "), found a list of 4"},
     {"AxisOfNoLength", "axis_j: y}", "axis_j: [0, 0, 0]}",
-     "18: joints.cross.axis_j: the vector has no length; a direction needs one"},
+     "18: joints.cross.axis_j: the vector has length zero; a direction needs a length"},
     {"AxisBetweenCoincidentPoints", "axis_j: y}", "axis_j: [middle, again]}",
      "18: joints.cross.axis_j: the two hardpoints coincide; a direction needs two different "
      "ones"},
     {"AxisToUnknownPoint", "axis_j: y}", "axis_j: [middle, sied]}",
-     "18: joints.cross.axis_j: no hardpoint is called 'sied', did you mean 'side'? defined: " +
+     "18: joints.cross.axis_j: there is no hardpoint called 'sied', did you mean 'side'? "
+     "defined: " +
          hardpoints},
     // ---- springs
     {"UnknownFieldOfSpring", "rate: 30, preload", "rates: 30, preload",
      "22: springs.coil: unknown field 'rates', did you mean 'rate'? allowed: bodies, from, "
      "to, rate, curve, free_length, preload, bump_stop, rebound_stop"},
     {"SpringWithoutRate", "rate: 30, preload", "preload",
-     "22: springs.coil: no law; allowed: rate or curve"},
+     "22: springs.coil: no law; required: rate or curve"},
     {"NegativeRate", "rate: 30,", "rate: -30,",
      "22: springs.coil.rate: negative rate '-30'; allowed: zero or more"},
     {"SpringOfNoLength", "from: front, to: top, rate", "from: front, to: front, rate",
@@ -294,7 +296,7 @@ const std::vector<Mistake> mistakes{
     {"FreeLengthBelowZero", "preload: 300", "free_length: -150",
      "22: springs.coil.free_length: '-150' is not a length; allowed: above zero"},
     {"PreloadOfASpringWithoutRate", "rate: 30, preload: 300", "rate: 0, preload: 300",
-     "22: springs.coil.preload: a spring of zero rate has no preload; leave it out or give a "
+     "22: springs.coil.preload: a spring of rate zero cannot have a preload; remove it or give a "
      "rate"},
     {"TensionBeyondTheSpring", "preload: 300", "preload: -4500",
      "22: springs.coil.preload: needs a free length of -8.57864 mm; a free length must be "
@@ -355,7 +357,7 @@ const std::vector<Mistake> mistakes{
     {"FrameWithUnknownAxis", "frame: {x: [middle, front]}", "frame: {w: x}",
      "25: bushings.mount.frame: unknown field 'w'; allowed: x, y, z"},
     {"FrameAxesParallel", "frame: {x: [middle, front]}", "frame: {x: [middle, front], y: -x}",
-     "25: bushings.mount.frame: axes x and y are parallel; two different ones are needed"},
+     "25: bushings.mount.frame: axes x and y are parallel; two different directions are needed"},
     {"FrameOfOneAxisForUnequalRates", "rates: [1, 2, 2], rot", "rates: [1, 2, 3], rot",
      "25: bushings.mount.frame: " + one_axis},
     {"FrameOfOneAxisForUnequalRotationalRates", "rotational_rates: [3, 4, 4]",
@@ -374,11 +376,11 @@ const std::vector<Mistake> mistakes{
     {"NoLoads",
      "loads:\n  push: {on: hub, at: front, force: [0, 0, 1]}\n  twist: {on: hub, moment: [0, 0, "
      "1]}\n  nil: {on: hub, at: front, force: [0, 0, 0]}\n",
-     "", "42: branches.up.load: no load is called 'push'; the scene has no loads"},
+     "", "42: branches.up.load: there is no load called 'push'; the scene has no loads"},
     {"LoadOnGround", "weight: {on: hub", "weight: {on: ground",
      "38: static_loads.weight.on: a load" + on_ground},
     {"LoadOnUnknownBody", "weight: {on: hub", "weight: {on: hup",
-     "38: static_loads.weight.on: no body is called 'hup', did you mean 'hub'? defined: arm, "
+     "38: static_loads.weight.on: there is no body called 'hup', did you mean 'hub'? defined: arm, "
      "ground, hub"},
     {"LoadWithoutBody", "weight: {on: hub, ", "weight: {", "38: static_loads.weight.on" + missing},
     {"ForceWithoutPoint", "weight: {on: hub, at: front, ", "weight: {on: hub, ",
@@ -386,9 +388,9 @@ const std::vector<Mistake> mistakes{
     {"ForceAndMoment", "twist: {on: hub, ", "twist: {on: hub, at: front, force: [0, 0, 1], ",
      "42: loads.twist.moment: given together with force; allowed: one of the two"},
     {"NeitherForceNorMoment", "twist: {on: hub, moment: [0, 0, 1]}", "twist: {on: hub}",
-     "42: loads.twist: no load; allowed: force with at, or moment"},
+     "42: loads.twist: no load; required: force with at, or moment"},
     {"MomentWithPoint", "twist: {on: hub, ", "twist: {on: hub, at: front, ",
-     "42: loads.twist.at: a moment has no point of application; leave it out"},
+     "42: loads.twist.at: a moment has no point of application; remove this field"},
     {"UnknownFieldOfLoad", "twist: {on: hub, moment", "twist: {on: hub, momnet",
      "42: loads.twist: unknown field 'momnet', did you mean 'moment'? allowed: on, at, force, "
      "moment, follows"},
@@ -398,27 +400,26 @@ const std::vector<Mistake> mistakes{
     {"BranchesAreEmpty", "branches:\n  up: {load: [push, twist], to: 1000, steps: 10}\n",
      "branches:\n", "45: branches: empty; at least one branch is needed"},
     {"BranchWithoutLoad", "load: [push, twist], ", "",
-     "46: branches.up: nothing that moves; allowed: load or drive"},
+     "46: branches.up: the branch drives nothing; required: load or drive"},
     {"BranchOfNoLoads", "load: [push, twist]", "load: []",
      "46: branches.up.load: empty; a load is needed"},
     {"UnknownLoad", "load: [push, twist]", "load: [psuh, twist]",
-     "46: branches.up.load: no load is called 'psuh', did you mean 'push'? defined: nil, "
+     "46: branches.up.load: there is no load called 'psuh', did you mean 'push'? defined: nil, "
      "push, twist"},
     {"LoadWithoutWeight", "load: [push, twist]", "load: {push: , twist: 1}",
      "46: branches.up.load.push: expected a number, found nothing"},
     {"LoadOfZeroWeight", "load: [push, twist]", "load: {push: 0.0, twist: 1}",
-     "46: branches.up.load.push: zero, which loads nothing; leave it out"},
+     "46: branches.up.load.push: zero, which loads nothing; remove it"},
     {"UnknownLoadWithWeight", "load: [push, twist]", "load: {push: 1, twits: 1}",
-     "46: branches.up.load.twits: no load is called 'twits', did you mean 'twist'? defined: nil, "
-     "push, "
-     "twist"},
+     "46: branches.up.load.twits: there is no load called 'twits', did you mean 'twist'? defined: "
+     "nil, push, twist"},
     {"LoadListedTwice", "load: [push, twist]", "load: [push, push]",
      "46: branches.up.load: 'push' is listed twice"},
     {"BranchOfZeroLoad", "load: [push, twist]", "load: nil",
-     "46: branches.up.load: zero in every component; a branch needs a load"},
+     "46: branches.up.load: zero in every component; a branch needs a nonzero load"},
     {"BranchWithoutEnd", "to: 1000, ", "", "46: branches.up.to" + missing},
     {"BranchToZero", "to: 1000", "to: 0.0",
-     "46: branches.up.to: zero leads nowhere; allowed: any other value"},
+     "46: branches.up.to: zero: the branch would have no length; allowed: any other value"},
     {"BranchToNowhere", "to: 1000", "to: far",
      "46: branches.up.to: expected a number, found 'far'"},
     {"BranchWithoutSteps", ", steps: 10", "", "46: branches.up.steps" + missing},
@@ -437,11 +438,11 @@ const std::vector<Mistake> mistakes{
     {"NoOutput",
      "wheel: {body: hub, centre: front, contact_patch: side, spin_axis: y, side: left}\n"
      "probes:\n  tip: {on: hub, at: front}\n",
-     "", "1: no output; a wheel or a probe is needed"},
+     "", "1: no outputs; a wheel or a probe is needed"},
     {"EmptyProbes",
      "wheel: {body: hub, centre: front, contact_patch: side, spin_axis: y, side: left}\n"
      "probes:\n  tip: {on: hub, at: front}\n",
-     "probes:\n", "1: no output; a wheel or a probe is needed"},
+     "probes:\n", "1: no outputs; a wheel or a probe is needed"},
     {"ProbeOnGround", "tip: {on: hub", "tip: {on: ground",
      "50: probes.tip.on: a probe" + on_ground},
     {"ProbeWithoutPoint", "tip: {on: hub, at: front}", "tip: {on: hub}",

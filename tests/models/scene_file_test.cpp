@@ -758,12 +758,12 @@ TEST(File, OfOneMebibyteIsReadAndALargerOneIsNot) {
     EXPECT_EQ(complaint_about(TemporaryFile(text).path), "none");
     const TemporaryFile larger(text + "\n");
     EXPECT_EQ(complaint_about(larger.path),
-              larger.path.string() + ": larger than 1 MiB, which no scene is");
+              larger.path.string() + ": larger than 1 MiB, the limit for a scene");
 }
 
 TEST(File, WithoutEndIsLargerThanAScene) {
     if (!fs::exists("/dev/zero")) GTEST_SKIP() << "no /dev/zero here";
-    EXPECT_EQ(complaint_about("/dev/zero"), "/dev/zero: larger than 1 MiB, which no scene is");
+    EXPECT_EQ(complaint_about("/dev/zero"), "/dev/zero: larger than 1 MiB, the limit for a scene");
 }
 
 }  // namespace

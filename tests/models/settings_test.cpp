@@ -134,11 +134,12 @@ TEST(Settings, ThatLeadNowhereAreRefused) {
     EXPECT_EQ(complaint({{"points.front.w", "1"}}),
               "bench.yaml: points.front.w: points.front has no 'w'; there: x, y, z");
     EXPECT_EQ(complaint({{"points.front", "1"}}),
-              "bench.yaml:7: points.front: not one value; there: x, y, z");
+              "bench.yaml:7: points.front: not a single value; it contains: x, y, z");
     EXPECT_EQ(complaint({{"springs.coil", "1"}}),
-              "bench.yaml:22: springs.coil: not one value; there: bodies, from, to, rate, preload");
+              "bench.yaml:22: springs.coil: not a single value; it contains: bodies, from, to, "
+              "rate, preload");
     EXPECT_EQ(complaint({{"springs.coil.rate.x", "1"}}),
-              "bench.yaml:22: springs.coil.rate.x: springs.coil.rate is one value");
+              "bench.yaml:22: springs.coil.rate.x: springs.coil.rate is a single value");
     EXPECT_EQ(
         complaint({{"springs.coil.rate.", "1"}}),
         "bench.yaml: springs.coil.rate.: springs.coil has no 'rate.', did you mean 'rate'? there: "

@@ -112,7 +112,8 @@ TEST(Trim, SaysWhatIsWrong) {
                       until = "until: {travel: 5, tip.y: -7}";
     const std::string outputs = "; allowed: camber, tip.x, tip.y, tip.z, toe, travel";
     const std::string driven =
-        " is there only on the branches that drive it; allowed: what stands on all of them";
+        " is active only on the branches that drive it; allowed: elements and joints that are "
+        "active on all branches";
     expect_complaints(
         scene_text,
         {{until, "until: travel", "trim: 2 adjusted, 1 condition: one more condition is needed"},
@@ -124,41 +125,37 @@ TEST(Trim, SaysWhatIsWrong) {
           "adjust: [springs.coil.preload, joints.rod, bushings.mount.preload.x, "
           "bushings.mount.preload.y]",
           "trim: 4 adjusted, 2 conditions: 2 more conditions are needed"},
-         {adjust + "\n", "\n", "trim.adjust: missing, it must be given"},
-         {until + "\n", "\n", "trim.until: missing, it must be given"},
-         {adjust, "adjust: []", "trim.adjust: empty; what is adjusted is needed"},
+         {adjust + "\n", "\n", "trim.adjust: missing; this field is required"},
+         {until + "\n", "\n", "trim.until: missing; this field is required"},
+         {adjust, "adjust: []", "trim.adjust: empty; an adjusted quantity is needed"},
          {adjust, "adjust: {joints.rod: 1}",
-          "trim.adjust: expected a name or a list of names, found a map; what is adjusted has no "
-          "value yet"},
+          "trim.adjust: expected a name or a list of names, found a map; adjusted quantities have "
+          "no values before the trim"},
          {adjust, "adjust: [joints.rod, joints.rod]", "trim.adjust: 'joints.rod' is listed twice"},
          {adjust, "adjust: [springs.coil.preload, springs.coil.free_length]",
-          "trim.adjust: 'springs.coil.free_length' adjusts the same thing as "
-          "'springs.coil.preload'; "
-          "allowed: once"},
+          "trim.adjust: 'springs.coil.free_length' adjusts the same quantity as "
+          "'springs.coil.preload'; allowed: once"},
          {adjust, "adjust: [push, joints.rod]",
-          "trim.adjust: 'push' is a load, and loads are not adjusted; allowed: preloads, free "
-          "lengths and "
-          "offsets, "
-          "named as in drive"},
+          "trim.adjust: 'push' is a load, which cannot be adjusted; allowed: preloads, free "
+          "lengths and offsets, named as in drive"},
          {adjust, "adjust: [travel, joints.rod]", "trim.adjust: 'travel'" + driven},
          {adjust, "adjust: [joints.hinge, joints.rod]", "trim.adjust: 'joints.hinge'" + driven},
          {adjust, "adjust: [tyres.tyre.road, joints.rod]",
           "trim.adjust: 'tyres.tyre.road'" + driven},
          {until, "until: {tow: 5, tip.y: -7}",
-          "trim.until.tow: 'tow' is no output that a trim can ask for, did you mean 'toe'?" +
+          "trim.until.tow: 'tow' cannot be a condition of a trim, did you mean 'toe'?" +
               outputs.substr(1)},
          {until, "until: {travel: much, tip.y: -7}",
           "trim.until.travel: expected a number, found 'much'"},
          {until, "until: [travel, travel]", "trim.until: 'travel' is listed twice"},
          {"{push: 3.5, twist: 2}", "{pusch: 3.5}",
-          "trim.under.pusch: no load is called 'pusch', did you mean 'push'? defined: brake, push, "
-          "twist"},
+          "trim.under.pusch: there is no load called 'pusch', did you mean 'push'? defined: brake, "
+          "push, twist"},
          {"  under:", "  over:", "trim: unknown field 'over'; allowed: adjust, until, under"}});
     EXPECT_TRUE(
         complaint_of(replaced(scene_text, adjust, "adjust: [springs.coil.prelaod, joints.rod]"))
-            .starts_with(
-                "trim.adjust: 'springs.coil.prelaod' is nothing that can be driven, did you mean "
-                "'springs.coil.preload'? allowed: "));
+            .starts_with("trim.adjust: 'springs.coil.prelaod' cannot be driven, did you mean "
+                         "'springs.coil.preload'? allowed: "));
 }
 
 }  // namespace

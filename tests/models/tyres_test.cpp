@@ -121,16 +121,16 @@ TEST(Tyre, HasNoPreloadThatIsDrivenLikeABushings) {
     EXPECT_EQ(
         complaint_of(replaced(single, "drive: tyres.tyre.road", "drive: bushings.tyre.preload.z"))
             .substr(0, 78),
-        "branches.bump.drive: 'bushings.tyre.preload.z' is nothing that can be driven, ");
+        "branches.bump.drive: 'bushings.tyre.preload.z' cannot be driven, ");
 }
 
 TEST(Tyre, SaysWhatIsWrong) {
     expect_complaints(
         axle,
-        {{"wheel: left, ", "", "tyres.tyre_left.wheel: missing, it must be given"},
+        {{"wheel: left, ", "", "tyres.tyre_left.wheel: missing; this field is required"},
          {"wheel: left, ", "wheel: lift, ",
-          "tyres.tyre_left.wheel: no wheel is called 'lift', did you mean 'left'? defined: left, "
-          "right"},
+          "tyres.tyre_left.wheel: there is no wheel called 'lift', did you mean 'left'? defined: "
+          "left, right"},
          {"rate: 0.2", "rate: 0", "tyres.tyre_left.rate: zero; a tyre needs a rate"},
          {"rate: 0.2", "rate: -1",
           "tyres.tyre_left.rate: negative rate '-1'; allowed: zero or more"},
@@ -140,16 +140,14 @@ TEST(Tyre, SaysWhatIsWrong) {
          {"preload: 3.5}", "preload: 3.5}\n  spare_left: {wheel: left, rate: 1}",
           "tyres.spare_left: wheel 'left' has a tyre already; allowed: one"},
          {"  tyre_left:", "  tyre:",
-          "tyres.tyre: the mirror makes another of its wheel but not of the tyre; both, or "
-          "neither, have "
-          "'left' in their "
-          "name"}});
+          "tyres.tyre: the mirror generates a twin of its wheel but not of the tyre; both or "
+          "neither must have 'left' in their name"}});
     expect_complaints(
         single, {{"{rate: 200e3}", "{wheel: hub, rate: 200e3}",
-                  "tyres.tyre.wheel: the only wheel of the scene has no name; leave this out"},
+                  "tyres.tyre.wheel: the only wheel of the scene has no name; remove this field"},
                  {"wheel: {body: hub, centre: hub, spin_axis: y, side: left}",
                   "probes: {p: {on: hub, at: hub}}",
-                  "tyres.tyre: there is no wheel for it; give wheel or wheels"}});
+                  "tyres.tyre: the scene has no wheel; give wheel or wheels"}});
 }
 
 }  // namespace

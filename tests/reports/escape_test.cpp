@@ -22,7 +22,7 @@ TEST(Escape, WhatIsUnfitToBeANameIsSaid) {
         EXPECT_EQ(flaw(fine), "") << fine;
     EXPECT_EQ(flaw("a\x85"), "byte 0x85 is not UTF-8");
     EXPECT_EQ(flaw("a\x1b"), "it has the control character U+001B");
-    EXPECT_EQ(flaw("a\u202e"), "it has U+202E, which turns the direction of writing");
+    EXPECT_EQ(flaw("a\u202e"), "it has U+202E, which changes the direction of writing");
 }
 
 TEST(Escape, NoLanguageLetsAControlThrough) {

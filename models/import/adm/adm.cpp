@@ -27,14 +27,14 @@ bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Ma
                     const Arguments& at) {
     for (const Marker* m : {&I, &J})
         if (m->floats)
-            at.fail(fmt::format("MARKER/{} floats, and so is nowhere", m->statement->id));
+            at.fail(fmt::format("MARKER/{} is floating and has no position", m->statement->id));
     for (const Marker* m : {&I, &J})
         if (c.is_flexible(*m)) {
-            c.draft.notes.miss(s.place(), "it is on a flexible body, which is missing");
+            c.draft.notes.miss(s.place(), "it is on a flexible body, which a scene does not have");
             return false;
         }
     if (I.part != J.part) return true;
-    c.draft.notes.leave_out("as both ends are on one part", s.place());
+    c.draft.notes.leave_out("since both ends are on one part", s.place());
     return false;
 }
 
@@ -77,7 +77,7 @@ Value Conversion::function(const std::string& text, double time, std::vector<dou
             if (given && !at.has("ROUTINE")) function->second = *given;
         }
         if (!function->second) {
-            unknown.unknown = fmt::format("VARVAL({}): a function of the user's", id);
+            unknown.unknown = fmt::format("VARVAL({}): a user-written function", id);
             return unknown;
         }
         open.push_back(id);
@@ -98,7 +98,7 @@ Programme Conversion::programme(const std::string& text) {
     if (!result.first.is_known() || !result.first.of_time) return result;
     characters_left -= static_cast<double>(text.size()) * static_cast<double>(times.size());
     if (characters_left < 0) {
-        result.first.unknown = "more functions of TIME than are followed";
+        result.first.unknown = "too many functions of TIME";
         return result;
     }
     const auto at = [&](double time) {
@@ -158,17 +158,17 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> no_place
     {"PTCV", "a point on a curve"},
     {"CVCV", "a curve on a curve"},
     {"PTSF", "a point on a surface"},
-    {"UCON", "a constraint of the user's"},
+    {"UCON", "a user-written constraint"},
     {"GEAR", "a gear"},
     {"FLEX_BODY", "a flexible body"},
-    {"FE_PART", "a part of finite elements"},
-    {"FE_LOAD", "a load on a part of finite elements"},
+    {"FE_PART", "a finite-element part"},
+    {"FE_LOAD", "a load on a finite-element part"},
     {"NFORCE", "a force between many markers"},
     {"MFORCE", "a modal force"},
-    {"TIRE", "a tyre of the user's"},
-    {"WHEEL", "a wheel of the user's"},
+    {"TIRE", "a user-written tyre"},
+    {"WHEEL", "a user-written wheel"},
     {"INCLUDE", "another file"},
-    {"DEACTIVATE", "a statement that is switched off: leave out both"},
+    {"DEACTIVATE", "a deactivated statement: remove both the statement and its deactivation"},
     {"MODE", "a switch"},
 }};
 
@@ -184,8 +184,8 @@ void sort_out(Conversion& c) {
         const std::string& word = s.keyword;
         if (is_in(converted, word)) continue;
         if (is_in(told_nothing, word)) {
-            notes.omitted.try_emplace("saying nothing of the mechanism");
-            auto& list = notes.omitted["saying nothing of the mechanism"];
+            notes.omitted.try_emplace("without effect on the mechanism");
+            auto& list = notes.omitted["without effect on the mechanism"];
             const auto same = std::ranges::find_if(
                 list, [&](const SourceLocation& p) { return p.what.starts_with(word + " "); });
             if (same == list.end())
@@ -197,24 +197,24 @@ void sort_out(Conversion& c) {
             continue;
         }
         if (is_in(used_or_not, word)) {
-            notes.leave_out("having a meaning only where a force or a motion uses it", s.place());
+            notes.leave_out("used by no force or motion", s.place());
             continue;
         }
         if (word == "FRICTION") {
             if (c.options.drop_dynamics)
                 notes.leave_out("by --drop dynamics", s.place());
             else
-                notes.miss(
-                    s.place(),
-                    "friction holds, too, and a scene has none (--drop dynamics leaves it out)");
+                notes.miss(s.place(),
+                           "friction also acts at rest, and a scene has no friction (--drop "
+                           "dynamics leaves it out)");
             continue;
         }
         const auto found = std::ranges::find(no_place, word,
                                              &std::pair<std::string_view, std::string_view>::first);
         notes.miss(s.place(),
                    found == no_place.end()
-                       ? "it has no place in a scene"
-                       : fmt::format("{}, which has no place in a scene", found->second));
+                       ? "a scene has no equivalent"
+                       : fmt::format("{}, for which a scene has no equivalent", found->second));
     }
 }
 
@@ -256,14 +256,14 @@ void read_times(Conversion& c) {
 struct WithoutInfluence {
     std::string_view argument, called, why;
 };
-constexpr std::string_view of_motion = "being of motion alone";
+constexpr std::string_view of_motion = "without effect at rest";
 constexpr WithoutInfluence without_influence[] = {
     {"C", "damping", of_motion},
     {"CT", "damping", of_motion},
     {"CMATRIX", "damping", of_motion},
     {"CRATIO", "damping", of_motion},
-    {"IM", "inertia", "being inertia alone"},
-    {"IP", "inertia", "being inertia alone"},
+    {"IM", "inertia", "inertia, without effect at rest"},
+    {"IP", "inertia", "inertia, without effect at rest"},
     {"VX", "initial velocity", of_motion},
     {"VY", "initial velocity", of_motion},
     {"VZ", "initial velocity", of_motion},
@@ -273,15 +273,15 @@ constexpr WithoutInfluence without_influence[] = {
     {"VM", "initial velocity", of_motion},
     {"WM", "initial velocity", of_motion},
     {"VELOCITY", "initial velocity", of_motion},
-    {"EXACT", "EXACT", "being a hint of the assembly"},
+    {"EXACT", "EXACT", "used only for the assembly"},
     {"IC", "IC", of_motion},
     {"ICTRAN", "ICTRAN", of_motion},
     {"ICROT", "ICROT", of_motion},
     {"ICDISP", "ICDISP", of_motion},
     {"ICVEL", "ICVEL", of_motion},
-    {"TYPE", "TYPE", "as the joints themselves say it"},
-    {"NODE_ID", "NODE_ID", "being of flexible bodies"},
-    {"NODE_LABEL", "NODE_LABEL", "being of flexible bodies"}};
+    {"TYPE", "TYPE", "determined by the joints"},
+    {"NODE_ID", "NODE_ID", "only for flexible bodies"},
+    {"NODE_LABEL", "NODE_LABEL", "only for flexible bodies"}};
 
 // Reports the arguments of converted statements that were not read: as left out if they have no
 // influence at rest, else as missing.
@@ -298,15 +298,16 @@ void report_unread(Conversion& c) {
         for (const auto& [argument, is_read] : s.arguments) {
             if (is_read) continue;
             if (s.keyword == "PART" && c.is_ground(s.id)) {
-                notes.leave_out("as ground stands still",
+                notes.leave_out("since ground is fixed",
                                 {s.line, std::string(argument) + " of " + s.place().what});
                 continue;
             }
             const auto known =
                 std::ranges::find(without_influence, argument, &WithoutInfluence::argument);
             if (known == std::end(without_influence))
-                notes.miss(s.place(), fmt::format("{}: given, but not used with what else is given",
-                                                  argument));
+                notes.miss(
+                    s.place(),
+                    fmt::format("{}: not used in combination with the other arguments", argument));
             else if (listed.insert(known->called).second)
                 notes.leave_out(std::string(known->why),
                                 {s.line, fmt::format("{} of {}", known->called, s.place().what)});
@@ -324,8 +325,7 @@ void require_ids(const Dataset& data) {
         if (s.id == 0) fail(data.file, s, "has no id");
         const auto [first, is_new] = lines.try_emplace({s.keyword, s.id}, s.line);
         if (!is_new)
-            fail(data.file, s,
-                 fmt::format("there is one with this id already, in line {}", first->second));
+            fail(data.file, s, fmt::format("duplicate id, first in line {}", first->second));
     }
 }
 
@@ -351,9 +351,9 @@ void write_bodies(Conversion& c) {
         if (!c.held.contains(s.id)) {
             if (part.mass > 0 && c.draft.gravity)
                 c.draft.notes.miss(s.place(),
-                                   "nothing in the scene holds it, and its weight pulls it away");
+                                   "no joint or element is attached to it, and it has a weight");
             else
-                c.draft.notes.leave_out("as nothing is attached to them", s.place());
+                c.draft.notes.leave_out("since nothing is attached to them", s.place());
             continue;
         }
         c.draft.notes.count("PART");
@@ -374,7 +374,7 @@ void write_bodies(Conversion& c) {
             damper.fields.substr(begin, comma - begin),
             damper.fields.substr(comma + 2, damper.fields.find(']') - comma - 2)};
         if (there.contains(names[0]) && there.contains(names[1])) return false;
-        c.draft.notes.leave_out("as nothing is attached to them", damper.from);
+        c.draft.notes.leave_out("since nothing is attached to them", damper.from);
         return true;
     });
 }
@@ -412,7 +412,7 @@ void write_wheel(Conversion& c) {
         if (c.body(id) == wanted || is_called(*candidate.statement, wanted)) {
             if (part)
                 reader::fail(c.data.file, 0, "--wheel",
-                             fmt::format("{} are several parts", reader::quote(wanted)));
+                             fmt::format("{} names several parts", reader::quote(wanted)));
             part = &candidate;
         }
     }
@@ -421,22 +421,21 @@ void write_wheel(Conversion& c) {
             if (!candidate.floats && is_called(*candidate.statement, wanted)) {
                 if (marker)
                     reader::fail(c.data.file, 0, "--wheel",
-                                 fmt::format("{} are several markers; name one by its id",
+                                 fmt::format("{} names several markers; give the id of one",
                                              reader::quote(wanted)));
                 marker = &candidate;
             }
     if (!part && !marker)
-        reader::fail(
-            c.data.file, 0, "--wheel",
-            fmt::format("there is neither a part nor a marker called {}{}", reader::quote(wanted),
-                        reader::did_you_mean(wanted, known, "parts")));
+        reader::fail(c.data.file, 0, "--wheel",
+                     fmt::format("there is no part or marker called {}{}", reader::quote(wanted),
+                                 reader::did_you_mean(wanted, known, "parts")));
     int body = 0;
     for (const auto& [id, candidate] : c.geometry.parts)
         if (&candidate == part) body = id;
     if (marker) body = marker->part;
     if (!c.geometry.parts.contains(body) || c.is_ground(body) || !c.held.contains(body))
         reader::fail(c.data.file, 0, "--wheel",
-                     fmt::format("{} is not on a part that moves", reader::quote(wanted)));
+                     fmt::format("{} is not on a moving part", reader::quote(wanted)));
     const Statement& s = marker ? *marker->statement : *part->statement;
     const std::string centre = marker ? c.point(*marker) : origin(c, body, *part);
     const Vector3d position = marker     ? marker->pose.r
@@ -548,27 +547,26 @@ void write_drives(Conversion& c) {
              {}});
     }
     if (!groups.empty())
-        c.draft.remarks.push_back(fmt::format(
-            "Functions of TIME are followed from 0 to {:g}, {}: a branch goes over all that they "
-            "cover.",
-            c.times.back(),
-            c.has_events ? "where the last STEP or IF is over"
-                         : "one second, as the dataset does not say how long it is simulated"));
+        c.draft.remarks.push_back(
+            fmt::format("Functions of TIME are evaluated from 0 to {:g}, {}: a branch covers their "
+                        "whole range.",
+                        c.times.back(),
+                        c.has_events ? "the end of the last STEP or IF"
+                                     : "one second, since the dataset has no simulation time"));
     if (groups.size() > 1)
         c.draft.notes.warn(
             {0, "MOTION, loads"},
-            fmt::format(
-                "{} of them do not go in proportion: each has a branch of its own, while the "
-                "others stand as at time 0",
-                groups.size()));
+            fmt::format("{} of them are not proportional to each other: each has its own branch, "
+                        "on which the others keep their value at time 0",
+                        groups.size()));
     for (const Drive& drive : c.drives)
         if (stands(drive))
             c.draft.notes.warn(
                 drive.from,
                 fmt::format("{}: the file's motion starts {:.4g} from where the parts are drawn{}",
                             drive.quantity, drive.path[0],
-                            drive.moves() ? "; its branch begins as drawn"
-                                          : "; the branches hold it there"));
+                            drive.moves() ? "; its branch begins at the position in the file"
+                                          : "; the branches hold it at that position"));
     if (c.draft.branches.empty()) {
         if (c.draft.gravity) {
             double mass = 0;
@@ -592,9 +590,8 @@ void write_drives(Conversion& c) {
                  fmt::format("{{load: [{}], to: {}, steps: 10", names, computed(0.1 * weight)),
                  {}});
             c.draft.remarks.emplace_back(
-                "The file drives nothing: the branch begins at rest under gravity and goes on to a "
-                "tenth "
-                "more weight.");
+                "The file has no drives: the branch begins at equilibrium under gravity and "
+                "increases the weight by a tenth.");
         } else if (!c.draft.bodies.empty()) {
             const auto& [name, fields, from] =
                 c.draft.probes.empty() ? c.draft.bodies.front() : c.draft.probes.front();
@@ -605,8 +602,8 @@ void write_drives(Conversion& c) {
                                      {}});
             c.draft.branches.push_back({"push", "{load: push, to: 1, steps: 10", {}});
             c.draft.remarks.emplace_back(
-                "The file drives nothing: the branch pushes its first part. Put your own in its "
-                "place.");
+                "The file has no drives: the branch applies a load to the first part. Replace it "
+                "by your own load.");
         }
     }
     if (groups.empty() && c.options.wheel.empty())
@@ -656,9 +653,8 @@ Draft import_adm(std::string_view text, const std::string& file, const Options& 
     write_drives(c);
     report_unread(c);
     if (!data.has_end)
-        draft.notes.miss(
-            {data.last_line, "END"},
-            "the dataset does not end with END: it may have been cut off, and more is missing");
+        draft.notes.miss({data.last_line, "END"},
+                         "the dataset does not end with END: it may be truncated");
     return draft;
 }
 

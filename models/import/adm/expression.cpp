@@ -57,8 +57,7 @@ Value sum(Value a, const Value& b) {
         if ((a.linear[measure] += k) == 0) a.linear.erase(measure);
     a.curves.insert(a.curves.end(), b.curves.begin(), b.curves.end());
     inherit(a, b);
-    if (a.linear.size() + a.curves.size() > most_terms)
-        return unknown("more terms than any force has");
+    if (a.linear.size() + a.curves.size() > most_terms) return unknown("too many terms");
     return a;
 }
 
@@ -159,7 +158,7 @@ class Parser {
     }
 
     Value expression() {
-        if (++depth_ > deepest) return give_up("brackets nested deeper than any function has them");
+        if (++depth_ > deepest) return give_up("brackets nested too deep");
         Value value = term();
         for (;;) {
             if (take('+'))
@@ -208,8 +207,7 @@ class Parser {
         skip();
         if (text_.starts_with("**")) {
             text_.remove_prefix(2);
-            if (++depth_ > deepest)
-                return give_up("powers of powers deeper than any function has them");
+            if (++depth_ > deepest) return give_up("powers nested too deep");
             const Value exponent = power();
             --depth_;
             if (!base.is_known()) return base;
@@ -231,7 +229,7 @@ class Parser {
         skip();
         if (take('(')) {
             Value value = expression();
-            if (!take(')')) return give_up("a bracket is left open");
+            if (!take(')')) return give_up("a bracket is not closed");
             return value;
         }
         double x = 0;
@@ -260,7 +258,7 @@ class Parser {
             value.per_time = 1;
             return value;
         }
-        return unknown(fmt::format("{} is no constant that is known here", reader::quote(name)));
+        return unknown(fmt::format("{} is not a known constant", reader::quote(name)));
     }
 
     Value call(const std::string& name) {
@@ -270,9 +268,9 @@ class Parser {
                 arguments.push_back(expression());
                 if (take(')')) break;
                 if (!take(',') && !take(':'))
-                    return give_up(fmt::format("{}(: a bracket is left open", name));
+                    return give_up(fmt::format("{}(: a bracket is not closed", name));
                 if (arguments.size() > 64)
-                    return give_up(fmt::format("{}(: more arguments than it has", name));
+                    return give_up(fmt::format("{}(: too many arguments", name));
             }
         return apply(name, arguments);
     }
@@ -293,11 +291,10 @@ class Parser {
         if (const auto found = std::ranges::find(measures, name); found != std::end(measures)) {
             Measure measure{.kind = static_cast<Measure::Kind>(found - std::begin(measures))};
             int* const to[] = {&measure.i, &measure.j, &measure.rm};
-            if (p.empty() || p.size() > 3)
-                return unknown(name + " of other than one to three markers");
+            if (p.empty() || p.size() > 3) return unknown(name + " without one to three markers");
             for (std::size_t k = 0; k < p.size(); ++k) {
                 const auto marker = id(p[k]);
-                if (!marker) return unknown(name + " of what is no marker");
+                if (!marker) return unknown(name + " of something other than a marker");
                 *to[k] = *marker;
             }
             Value value;
@@ -312,12 +309,13 @@ class Parser {
         if (name == "BISTOP") return bistop(p);
         if (name == "VARVAL") {
             const auto variable = p.size() == 1 ? id(p[0]) : std::nullopt;
-            if (!variable || !context_.variable) return unknown("VARVAL of what is no variable");
+            if (!variable || !context_.variable)
+                return unknown("VARVAL of something other than a variable");
             return context_.variable(*variable);
         }
         const auto found = std::ranges::find(functions, name, &Function::name);
         if (found == std::end(functions))
-            return unknown(fmt::format("{}(...), which is not known here", name));
+            return unknown(fmt::format("{}(...), an unsupported function", name));
         Numbers numbers;
         Value result;
         for (const Value& value : p) {
@@ -329,8 +327,8 @@ class Parser {
         if (name == "SIGN" && p.size() == 2 && p[1].of_velocity) {
             if (context_.drop_friction) return scaled(result, 0);
             return unknown(
-                "SIGN of a velocity: friction, which holds at rest, and a scene has none (--drop "
-                "dynamics leaves it out)");
+                "SIGN of a velocity: friction, which also acts at rest, and a scene has no "
+                "friction (--drop dynamics leaves it out)");
         }
         if (name == "STEP" && p.size() == 5) {
             note_event(p[0], p[1].constant);
@@ -338,10 +336,10 @@ class Parser {
         }
         if (result.of_time) result.per_time = NAN;
         if (numbers.size() < found->least || numbers.size() > found->most)
-            return unknown(fmt::format("{} of {} arguments", name, numbers.size()));
+            return unknown(fmt::format("{} with {} arguments", name, numbers.size()));
         result.constant = found->f(numbers);
         if (!std::isfinite(result.constant))
-            return unknown(name + " of numbers that it is not defined for");
+            return unknown(name + " of numbers for which it is not defined");
         return result;
     }
 
@@ -354,7 +352,7 @@ class Parser {
 
     // IF(e: a, b, c): a where e < 0, b where it is 0, c above.
     Value choose(const std::vector<Value>& p) const {
-        if (p.size() != 4) return unknown("IF of other than four arguments");
+        if (p.size() != 4) return unknown("IF without four arguments");
         if (!p[0].is_known()) return p[0];
         note_event(p[0], 0);
         const auto is_zero = [](const Value& value) {
@@ -373,7 +371,7 @@ class Parser {
     static std::string only_measure(const Value& x, CurveTerm& term) {
         if (!x.is_known()) return x.unknown;
         if (!x.curves.empty() || x.linear.size() != 1)
-            return "a curve of other than one displacement";
+            return "a curve that is not over one displacement";
         term.of = x.linear.begin()->first;
         term.scale = x.linear.begin()->second;
         term.offset = x.constant;
@@ -381,14 +379,13 @@ class Parser {
     }
 
     Value spline(const std::string& name, const std::vector<Value>& p) const {
-        if (p.size() < 3 || p.size() > 4)
-            return unknown(name + " of other than three or four arguments");
+        if (p.size() < 3 || p.size() > 4) return unknown(name + " without three or four arguments");
         if (!p[1].is_constant() || p[1].constant != 0)
             return unknown(name + " of a second variable");
         if (p.size() == 4 && !(p[3].is_constant() && p[3].constant == 0))
             return unknown("a derivative of " + name);
         const auto number = id(p[2]);
-        if (!number) return unknown(name + " of what is no spline");
+        if (!number) return unknown(name + " of something other than a spline");
         CurveTerm term;
         if (is_penetration(p[0])) {
             term = p[0].curves.front();
@@ -402,7 +399,7 @@ class Parser {
         term.kind = name == "AKISPL" ? CurveTerm::Kind::akima : CurveTerm::Kind::cubic;
         term.spline = *number;
         if (const std::string why = only_measure(p[0], term); !why.empty())
-            return unknown(p[0].is_constant() ? name + " of no displacement" : why);
+            return unknown(p[0].is_constant() ? name + " without a displacement" : why);
         Value value;
         inherit(value, p[0]);
         value.curves.push_back(term);
@@ -428,12 +425,12 @@ class Parser {
 
     // IMPACT(x, v, x1, k, e, c, d): k (x1 - x)^e below x1; its damping is zero at rest.
     static Value impact(const std::vector<Value>& p) {
-        if (p.size() != 7) return unknown("IMPACT of other than seven arguments");
+        if (p.size() != 7) return unknown("IMPACT without seven arguments");
         return contact(p[0], p[2], p[3], p[4], 1);
     }
     // BISTOP(x, v, lo, hi, k, e, c, d): the same below lo, and its mirror image above hi.
     static Value bistop(const std::vector<Value>& p) {
-        if (p.size() != 8) return unknown("BISTOP of other than eight arguments");
+        if (p.size() != 8) return unknown("BISTOP without eight arguments");
         return sum(contact(p[0], p[2], p[4], p[5], 1),
                    scaled(contact(scaled(p[0], -1), scaled(p[3], -1), p[4], p[5], 1), -1));
     }
@@ -444,14 +441,14 @@ class Parser {
         term.factor = factor;
         for (const Value* value : {&at, &rate, &exponent})
             if (!value->is_constant())
-                return unknown(value->is_known() ? "IMPACT or BISTOP with parameters that move"
+                return unknown(value->is_known() ? "IMPACT or BISTOP with variable parameters"
                                                  : value->unknown);
         if (const std::string why = only_measure(x, term); !why.empty()) return unknown(why);
         term.contact = at.constant;
         term.rate = rate.constant;
         term.exponent = exponent.constant;
         if (!(term.rate >= 0) || !(term.exponent > 0))
-            return unknown("IMPACT or BISTOP that pulls");
+            return unknown("IMPACT or BISTOP with a tensile force");
         Value value;
         inherit(value, x);
         value.of_velocity = true;
@@ -467,13 +464,13 @@ class Parser {
 }  // namespace
 
 Value evaluate(std::string_view text, const Context& context) {
-    if (text.size() > longest_function) return unknown("longer than any function is");
+    if (text.size() > longest_function) return unknown("too long for a function");
     Parser parser(text, context);
     Value value = parser.whole();
     if (value.is_known() && !std::isfinite(value.constant))
-        return unknown("a number beyond all bounds");
+        return unknown("a number that is not finite");
     for (const auto& [measure, k] : value.linear)
-        if (!std::isfinite(k)) return unknown("a number beyond all bounds");
+        if (!std::isfinite(k)) return unknown("a number that is not finite");
     return value;
 }
 

@@ -7,8 +7,8 @@
 //
 // and the opposite wrench at the same point on the part of J. In a scene this is a bushing from J's
 // body to I's body at I's origin, with `angles: projected` and `conjugate: false`. Its d is
-// δ - δ_drawn, so its undeformed position is x_0 - δ_drawn. If I is rotated relative to J as drawn,
-// frame_j is that of I.
+// δ - δ_drawn, so its undeformed position is x_0 - δ_drawn. If I is rotated relative to J at the
+// design position, frame_j is that of I.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -140,7 +140,8 @@ std::string fault(Matrix6& K) {
             const double rows = std::sqrt(std::abs(K(i, i) * K(k, k)));
             if (std::abs(K(i, k) - K(k, i)) > 1e-4 * std::max(larger, 1e-6 * rows))
                 return fmt::format(
-                    "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} across",
+                    "its stiffness is not symmetric: {:g} in row {} and column {}, {:g} in the "
+                    "transposed entry",
                     K(i, k), i + 1, k + 1, K(k, i));
         }
     K = (0.5 * (K + K.transpose())).eval();
@@ -148,8 +149,8 @@ std::string fault(Matrix6& K) {
     for (int i = 0; i < 6; ++i) {
         if (d[i] < 0) return fmt::format("its stiffness is negative: {:g} in row {}", d[i], i + 1);
         if (d[i] == 0 && !K.row(i).isZero(0))
-            return fmt::format("its stiffness is indefinite: row {} has no diagonal, and more",
-                               i + 1);
+            return fmt::format(
+                "its stiffness is indefinite: row {} has a zero diagonal and other entries", i + 1);
         d[i] = d[i] > 0 ? 1 / std::sqrt(d[i]) : 1;
     }
     const Matrix6 S = d.asDiagonal() * K * d.asDiagonal();
@@ -164,9 +165,10 @@ void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written
     const double off = (written - K).cwiseAbs().maxCoeff();
     if (off > 0)
         c.draft.notes.warn(
-            s.place(), fmt::format("its stiffness is not quite symmetric; here it is the mean with "
-                                   "its transpose, {:.3g} of its largest entry away",
-                                   off / K.cwiseAbs().maxCoeff()));
+            s.place(),
+            fmt::format("its stiffness is not exactly symmetric; the scene has the mean with its "
+                        "transpose, which differs by {:.3g} of the largest entry",
+                        off / K.cwiseAbs().maxCoeff()));
 }
 
 void convert_bushing(Conversion& c, const Statement& s) {
@@ -180,13 +182,14 @@ void convert_bushing(Conversion& c, const Statement& s) {
     Vector6 F;
     F << vector(at.numbers("FORCE", 3, 3)), vector(at.numbers("TORQUE", 3, 3));
     if (K.diagonal().minCoeff() < 0)
-        return c.draft.notes.miss(s.place(), "a negative rate, which no element of a scene has");
+        return c.draft.notes.miss(s.place(), "a negative rate, which a scene does not allow");
     const double apart = (I.pose.r - J.pose.r).norm();
     if (apart > far * c.geometry.size)
         c.draft.notes.warn(
             s.place(),
-            fmt::format("its markers are {:.4g} {} apart as drawn: it is loaded by as much", apart,
-                        units.length_name));
+            fmt::format(
+                "its markers are {:.4g} {} apart in the file: it is preloaded by that deformation",
+                apart, units.length_name));
     c.draft.notes.count("BUSHING");
     Element{c, s, at, I, J.part, J.pose}.put(
         {.K = in_scene_units(K, units), .preload = wrench_in_scene_units(F, units)});
@@ -196,11 +199,11 @@ void convert_field(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, field_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     if (at.has("FUNCTION"))
-        return c.draft.notes.miss(s.place(), "its force is a function of the user's");
+        return c.draft.notes.miss(s.place(), "its force is a user-written function");
     const std::string formulated = at.word("FORMULATION");
     if (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated))
-        return c.draft.notes.miss(
-            s.place(), fmt::format("FORMULATION={}, whose law is not known here", formulated));
+        return c.draft.notes.miss(s.place(),
+                                  fmt::format("FORMULATION={}, an unsupported law", formulated));
     if (!is_between_two(c, s, I, J, at)) return;
     const Units& units = c.geometry.units;
     const auto k = at.numbers("KMATRIX", 36, 36);
@@ -233,7 +236,7 @@ void convert_beam(Conversion& c, const Statement& s) {
     if (at.has("STRING") || at.has("NONLINEAR") ||
         (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated)))
         return c.draft.notes.miss(
-            s.place(), "a beam with another formulation than LINEAR, whose law is not known here");
+            s.place(), "a beam with another formulation than LINEAR, an unsupported law");
     if (!is_between_two(c, s, I, J, at)) return;
     const auto positive = [&](const char* name) {
         const double x = at.number(name, 0);
@@ -263,7 +266,7 @@ void convert_beam(Conversion& c, const Statement& s) {
     const double apart = (J.pose.A.transpose() * (I.pose.r - J.pose.r) - laws.x_0.head<3>()).norm();
     if (apart > 1e-3 * laws.x_0[0])
         c.draft.notes.warn(
-            s.place(), fmt::format("as drawn its end is {:.3g} {} from where it would be unloaded",
+            s.place(), fmt::format("in the file its end is {:.3g} {} from the unloaded position",
                                    apart, units.length_name));
     c.draft.notes.count("BEAM");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
@@ -300,8 +303,8 @@ void warn_of_spline(Conversion& c, const Statement& s, const CurveTerm& term, co
     if (apart.force <= 1e-6 * apart.of) return;
     c.draft.notes.warn(
         s.place(),
-        fmt::format("up to {:.3g} {} apart (of {:.4g}), at {:.4g} {}: between the points of "
-                    "SPLINE/{} the file has {}, a scene the monotone interpolant",
+        fmt::format("differs by up to {:.3g} {} (of {:.4g}), at {:.4g} {}: between the points of "
+                    "SPLINE/{} the file has {}, the scene the monotone interpolant",
                     apart.force,
                     is_angle ? units.force_name + " " + units.length_name : units.force_name,
                     apart.of, apart.at, is_angle ? "rad" : units.length_name, term.spline,
@@ -322,14 +325,14 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
     for (const CurveTerm& term : value.curves) {
         if (term.kind == CurveTerm::Kind::impact) {
             if (!(term.factor > 0) == (term.scale > 0))
-                return "a contact that pulls, which no stop of a scene does";
+                return "a contact with a tensile force, which no stop of a scene has";
             OneLaw::Stop stop;
             stop.bump = term.scale > 0;
             stop.touches = (term.contact - term.offset) / term.scale * unit;
             if (term.spline != 0) {
                 const auto found = c.splines.find(term.spline);
                 if (found == c.splines.end())
-                    return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
+                    return fmt::format("SPLINE/{} does not exist or has no points", term.spline);
                 const Table& points = found->second;
                 if (points.x.front() != 0 || points.y.front() != 0)
                     return fmt::format("SPLINE/{} of a penetration does not begin at 0, 0",
@@ -356,12 +359,12 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
                     stop.curve.emplace_back(p, factor * std::pow(p, term.exponent));
                 }
                 const Apart apart = off_power(stop.curve, factor, term.exponent);
-                c.draft.notes.warn(s.place(),
-                                   fmt::format("up to {:.2g} {} apart (of {:.4g}): a contact with "
-                                               "exponent {:g} is a table "
-                                               "of {} rows up to {:.4g} {}",
-                                               apart.force, unit_of_force, apart.of, term.exponent,
-                                               rows_of_power + 1, depth, unit_of_x));
+                c.draft.notes.warn(
+                    s.place(),
+                    fmt::format("differs by up to {:.2g} {} (of {:.4g}): a contact with exponent "
+                                "{:g} becomes a table of {} rows up to {:.4g} {}",
+                                apart.force, unit_of_force, apart.of, term.exponent,
+                                rows_of_power + 1, depth, unit_of_x));
             }
             law.stops.push_back(stop);
             continue;
@@ -370,7 +373,7 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
         has_table = true;
         const auto found = c.splines.find(term.spline);
         if (found == c.splines.end())
-            return fmt::format("SPLINE/{} is not there, or not one of points", term.spline);
+            return fmt::format("SPLINE/{} does not exist or has no points", term.spline);
         const Table& points = found->second;
         law.goes_on = points.goes_on;
         for (std::size_t n = 0; n < points.x.size(); ++n)
@@ -384,9 +387,10 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
     for (std::size_t n = 1; n < law.curve.size(); ++n)
         if (!(law.curve[n].second >= law.curve[n - 1].second))
             return fmt::format(
-                "a force that falls as it is deformed (at {:.6g}), which no element of a scene has",
+                "a force that decreases with the deformation (at {:.6g}), which a scene does not "
+                "allow",
                 law.curve[n].first);
-    if (!has_table && law.rate < 0) return "a negative rate, which no element of a scene has";
+    if (!has_table && law.rate < 0) return "a negative rate, which a scene does not allow";
     return {};
 }
 
@@ -415,18 +419,18 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
             .add("to", c.point(J));
     };
     if (!(drawn > 1e-9 * c.geometry.size))
-        return c.draft.notes.miss(s.place(), "its ends are at one place as drawn");
+        return c.draft.notes.miss(s.place(), "its ends coincide in the file");
     OneLaw law;
     const std::string why =
         one_law(c, s, value, 0, 2 * drawn, units.length, units.force, false, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
     if (law.stops.size() > 2 || (law.stops.size() == 2 && law.stops[0].bump == law.stops[1].bump))
-        return c.draft.notes.miss(s.place(), "more than one stop a way");
+        return c.draft.notes.miss(s.place(), "more than one stop per direction");
     const bool is_nothing =
         law.curve.empty() && law.rate == 0 && law.at_zero == 0 && law.stops.empty();
     if (is_nothing) {
         if (!is_damper || c.options.drop_dynamics)
-            return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+            return c.draft.notes.leave_out("without force at rest", s.place());
         // A damper does not hold a part: it is written if something else holds both its parts.
         c.draft.dampers.push_back(
             {name,
@@ -453,7 +457,8 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
         } else {
             fields.add("rate", law.rate).add("free_length", computed(free));
             if (free < drawn * (1 - 1e-9))
-                c.draft.notes.warn(s.place(), "this spring is in tension as drawn");
+                c.draft.notes.warn(s.place(),
+                                   "this spring is in tension at the position in the file");
         }
     } else if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
@@ -490,9 +495,9 @@ void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const M
         one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, true, law);
     if (!why.empty()) return c.draft.notes.miss(s.place(), why);
     if (!law.stops.empty())
-        return c.draft.notes.miss(s.place(), "a stop of an angle, which a scene does not have");
+        return c.draft.notes.miss(s.place(), "a stop of a rotation, which a scene does not have");
     if (law.curve.empty() && law.rate == 0 && law.at_zero == 0)
-        return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        return c.draft.notes.leave_out("without force at rest", s.place());
     Fields fields;
     fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
     if (!law.curve.empty()) {
@@ -526,7 +531,7 @@ void convert_springdamper(Conversion& c, const Statement& s) {
     const double k = at.number(rotates ? "KT" : "K", 0);
     const bool damps = at.number(rotates ? "CT" : "C", 0) != 0;
     if (damps && k != 0)
-        c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+        c.draft.notes.leave_out("without effect at rest", {s.line, "damping of " + s.place().what});
     if (rotates)
         put_torsion(c, s, at, I, J,
                     linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
@@ -589,13 +594,13 @@ std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& 
                               std::max(first, last) >= programme.most - round_off;
     if (!goes_one_way || !value.is_constant())
         return fmt::format(
-            "a force between two parts that changes with time, {:g} to {:g}, which no branch "
-            "of a scene does",
+            "a force between two parts that changes with time, {:g} to {:g}, which a scene cannot "
+            "represent",
             programme.least, programme.most);
-    c.draft.notes.warn(
-        s.place(), fmt::format("a force between two parts that goes from {:g} to {:g} over {:g} "
-                               "of time; held here at its end",
-                               first, last, c.times.back()));
+    c.draft.notes.warn(s.place(),
+                       fmt::format("a force between two parts that changes from {:g} to {:g} over "
+                                   "{:g} of time; the scene has its final value",
+                                   first, last, c.times.back()));
     value.constant = last;
     return {};
 }
@@ -606,28 +611,28 @@ void convert_sforce(Conversion& c, const Statement& s) {
     const bool rotates = at.has("ROTATIONAL");
     if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
     if (at.has("ROUTINE"))
-        return c.draft.notes.miss(s.place(), "its force is a function of the user's");
+        return c.draft.notes.miss(s.place(), "its force is a user-written function");
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
     const Programme programme = c.programme(*text);
     Value value = programme.first;
     if (!value.is_known()) return c.draft.notes.miss(s.place(), value.unknown);
     if (value.is_constant() && value.constant == 0 && !programme.varies() && !value.of_velocity) {
-        c.draft.notes.leave_out("exerting nothing at rest", s.place());
+        c.draft.notes.leave_out("without force at rest", s.place());
         return;
     }
     if (at.has("ACTIONONLY")) {
         if (I.floats || c.is_flexible(I) || c.is_ground(I.part))
-            return c.draft.notes.leave_out("acting on ground alone", s.place());
+            return c.draft.notes.leave_out("acting on ground only", s.place());
         if (!value.is_constant())
             return c.draft.notes.miss(s.place(),
-                                      "a force on one part alone that depends on displacements");
+                                      "a force on a single part that depends on displacements");
         if (value.constant == 0 && !programme.varies())
-            return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+            return c.draft.notes.leave_out("without force at rest", s.place());
         const bool follows = J.part == I.part;
         if (!follows && !c.is_ground(J.part))
             return c.draft.notes.miss(
-                s.place(), "a force on one part alone along an axis of another that moves");
+                s.place(), "a force on a single part along an axis of another moving part");
         c.draft.notes.count("SFORCE");
         return put_load(c, s, I, {{J.pose.A.col(2), rotates, programme}}, follows);
     }
@@ -645,7 +650,7 @@ void convert_sforce(Conversion& c, const Statement& s) {
         if (m.i == j && m.j == i) return rotates ? -1 : 1;
         return 0;
     };
-    const char* const other = "a force by a displacement other than between its own markers";
+    const char* const other = "a force that depends on a displacement between other markers";
     for (const auto& [measure, k] : value.linear) {
         if (!sign(measure)) return c.draft.notes.miss(s.place(), other);
         own.linear[{.kind = kind}] += sign(measure) * k;
@@ -656,7 +661,7 @@ void convert_sforce(Conversion& c, const Statement& s) {
         own.curves.push_back(term);
     }
     if (value.of_velocity && (!own.linear.empty() || !own.curves.empty()))
-        c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+        c.draft.notes.leave_out("without effect at rest", {s.line, "damping of " + s.place().what});
     c.draft.notes.count("SFORCE");
     if (rotates)
         put_torsion(c, s, at, I, J, own);
@@ -669,13 +674,13 @@ void convert_vector(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, vector_shape());
     const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
     if (at.has("FUNCTION") || at.has("ROUTINE"))
-        return miss("its force is a function of the user's");
+        return miss("its force is a user-written function");
     const Marker &I = c.marker(at, "I"), &floating = c.marker(at, "JFLOAT");
-    if (!at.has("RM")) return miss("without RM it is not known in what axes it acts");
+    if (!at.has("RM")) return miss("the axes of the force are unknown without RM");
     const Marker& RM = c.marker(at, "RM");
-    if (RM.floats || I.floats) at.fail("I and RM must not float");
+    if (RM.floats || I.floats) at.fail("I and RM must not be floating markers");
     if (c.is_flexible(I) || c.is_flexible(RM) || c.is_flexible(floating))
-        return miss("it is on a flexible body, which is missing");
+        return miss("it is on a flexible body, which a scene does not have");
     const Units& units = c.geometry.units;
     std::array<Value, 6> component;
     std::array<Programme, 6> programmes;
@@ -693,9 +698,9 @@ void convert_vector(Conversion& c, const Statement& s) {
             component[k].is_constant() && component[k].constant == 0 && !programmes[k].varies();
         damps |= component[k].of_velocity;
     }
-    if (is_zero) return c.draft.notes.leave_out("exerting nothing at rest", s.place());
+    if (is_zero) return c.draft.notes.leave_out("without force at rest", s.place());
     if (I.part == floating.part)
-        return c.draft.notes.leave_out("as both ends are on one part", s.place());
+        return c.draft.notes.leave_out("since both ends are on one part", s.place());
     SixLaws laws;
     Vector6 F;
     const bool on_ground = c.is_ground(floating.part);
@@ -703,7 +708,7 @@ void convert_vector(Conversion& c, const Statement& s) {
         (c.is_ground(RM.part) || RM.part == I.part || RM.part == floating.part)) {
         // On one moving part: a dead or a follower load.
         const bool turns = !c.is_ground(RM.part);
-        if (!on_ground) return miss("a constant force on a part at a marker of ground's");
+        if (!on_ground) return miss("a constant force on a part at a marker of ground");
         c.draft.notes.count(s.keyword);
         std::vector<LoadComponent> components;
         for (std::size_t k = 0; k < 6; ++k)
@@ -720,7 +725,8 @@ void convert_vector(Conversion& c, const Statement& s) {
     }
     F = wrench_in_scene_units(F, units);
     if (RM.part != floating.part)
-        return miss("a force between two parts in the axes of neither the one it reacts on");
+        return miss(
+            "a force between two parts in axes other than those of the part with the reaction");
     // Displacements of I from one marker on the other part, in the axes of RM, and angles about
     // axes of RM.
     const Marker* from = nullptr;
@@ -743,7 +749,8 @@ void convert_vector(Conversion& c, const Statement& s) {
         return k;
     };
     const char* const other =
-        "a force by a displacement other than of its own marker, in the axes it acts in";
+        "a force that depends on a displacement other than that of its own marker in the axes of "
+        "the force";
     Matrix6 K = Matrix6::Zero();
     std::array<Value, 6> own;
     for (std::size_t r = 0; r < 6; ++r) {
@@ -781,16 +788,17 @@ void convert_vector(Conversion& c, const Statement& s) {
         for (auto& [x, f] : law.curve) f += rate * x;
         laws.K(row, row) = 0;
         if (!laws.K.row(row).isZero(0))
-            return miss(fmt::format("{}: a spline beside a coupled stiffness", names[r]));
+            return miss(
+                fmt::format("{}: a spline in combination with a coupled stiffness", names[r]));
         laws.curves[r] = law.curve;
         laws.goes_on[r] = law.goes_on;
     }
     const bool has_curves =
         std::ranges::any_of(laws.curves, [](const auto& curve) { return !curve.empty(); });
     if (has_curves && !(laws.K - Matrix6(laws.K.diagonal().asDiagonal())).isZero(0))
-        return miss("a spline beside a coupled stiffness");
+        return miss("a spline in combination with a coupled stiffness");
     if (damps)
-        c.draft.notes.leave_out("being of motion alone", {s.line, "damping of " + s.place().what});
+        c.draft.notes.leave_out("without effect at rest", {s.line, "damping of " + s.place().what});
     c.draft.notes.count(s.keyword);
     Element{c, s, at, I, floating.part, {from ? from->pose.r : I.pose.r, RM.pose.A}}.put(laws);
 }
@@ -815,7 +823,7 @@ void read_splines(Conversion& c) {
         if (s.keyword != "SPLINE") continue;
         const Arguments at(c.data.file, s, shape);
         if (at.has("FILE") || at.has("Z")) {  // reported as missing by the statements that use it
-            c.draft.notes.leave_out("being of points elsewhere, or of two variables", s.place());
+            c.draft.notes.leave_out("with points in another file, or of two variables", s.place());
             continue;
         }
         Table table{.x = at.numbers("X", 2, 10'000),
@@ -823,12 +831,12 @@ void read_splines(Conversion& c) {
                     .goes_on = at.has("LINEAR_EXTRAPOLATE"),
                     .statement = &s};
         if (table.x.empty() || table.x.size() != table.y.size())
-            at.fail(fmt::format("{} X and {} Y; as many of both are needed", table.x.size(),
+            at.fail(fmt::format("{} X and {} Y; their numbers must be equal", table.x.size(),
                                 table.y.size()));
         for (std::size_t n = 1; n < table.x.size(); ++n)
             if (!(table.x[n] > table.x[n - 1]))
-                at.fail(fmt::format("X: {:g} is not above the one before", table.x[n]));
-        if (!c.splines.emplace(s.id, table).second) at.fail("there is one with this id already");
+                at.fail(fmt::format("X: {:g} is not larger than the value before", table.x[n]));
+        if (!c.splines.emplace(s.id, table).second) at.fail("duplicate id");
         c.draft.notes.count("SPLINE");
     }
 }

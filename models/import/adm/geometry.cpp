@@ -78,7 +78,7 @@ double unit(const Arguments& at, std::string_view argument, const Named (&table)
         }
     }
     if (found.size() == 1) return si;
-    at.fail(fmt::format("{}: {} is no unit that is known here{}", argument, reader::quote(word),
+    at.fail(fmt::format("{}: {} is not a known unit{}", argument, reader::quote(word),
                         reader::did_you_mean(word, names, "known")));
 }
 
@@ -91,7 +91,7 @@ Units read_units(const Dataset& data) {
         }
     if (!found)
         reader::fail(data.file, data.last_line, "UNITS",
-                     "missing: without it no number has a unit");
+                     "missing: the units of the file are unknown");
     const Arguments at(data.file, *found,
                        {{}, {"FORCE", "MASS", "LENGTH", "TIME", "SYSTEM", "UCF"}, {}});
     double force = 1, mass = 1, length = 1, time = 1;
@@ -105,9 +105,9 @@ Units read_units(const Dataset& data) {
         } else if (system == "IPS") {
             force = pound * g_n, mass = pound, length = inch;
         } else
-            at.fail(fmt::format(
-                "SYSTEM: {} is no system of units that is known here; known: MKS, CGS, FPS, IPS",
-                reader::quote(system)));
+            at.fail(
+                fmt::format("SYSTEM: {} is not a known system of units; known: MKS, CGS, FPS, IPS",
+                            reader::quote(system)));
     }
     if (at.has("FORCE")) force = unit(at, "FORCE", forces);
     if (at.has("MASS")) mass = unit(at, "MASS", masses);
@@ -131,10 +131,11 @@ Units read_units(const Dataset& data) {
                        ? fmt::format("Units of the file: SYSTEM={}", at.word("SYSTEM"))
                        : fmt::format("Units of the file: {}, {}, {}, {}", as_written("FORCE"),
                                      as_written("MASS"), as_written("LENGTH"), as_written("TIME"));
-    units.remark += fmt::format("; here {}, {}, kg, rad{}.", units.length_name, units.force_name,
-                                units.length != 1 || units.force != 1
-                                    ? ", as a scene does not have the file's: numbers are converted"
-                                    : "");
+    units.remark +=
+        fmt::format("; in the scene {}, {}, kg, rad{}.", units.length_name, units.force_name,
+                    units.length != 1 || units.force != 1
+                        ? ", since a scene does not have the file's units: numbers are converted"
+                        : "");
     return units;
 }
 
@@ -165,7 +166,7 @@ Frame read_frame(const Arguments& at, const char* origin, const char* z_name, co
         if (!at.has(name)) return false;
         u = vector(at.numbers(name, 3, 3)) - q;
         if (!(u.norm() > 0))
-            at.fail(fmt::format("{} is where {} is; it must be another point", name, origin));
+            at.fail(fmt::format("{} coincides with {}; it must be another point", name, origin));
         u.normalize();
         return true;
     };
@@ -276,8 +277,9 @@ Geometry read_geometry(const Dataset& data) {
                 fail(data.file, from, fmt::format("RM: there is no MARKER/{}", next));
             if (chain.size() == longest_chain || std::ranges::find(chain, next) != chain.end())
                 fail(data.file, from,
-                     fmt::format("RM: MARKER/{} stands in itself, or in a chain of more than {}",
-                                 next, longest_chain));
+                     fmt::format(
+                         "RM: MARKER/{} refers to itself, or by a chain of more than {} markers",
+                         next, longest_chain));
             if (geometry.markers.at(next).part != geometry.markers.at(at).part)
                 fail(data.file, from, fmt::format("RM: MARKER/{} is on another part", next));
             at = next;

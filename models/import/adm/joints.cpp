@@ -1,8 +1,8 @@
 // Converts ADAMS joints and their motions.
 //
-// I and J of a joint coincide, or are in line, in the assembled model. A dataset has its parts as
-// drawn, with the printed digits. A misalignment within round-off is removed by using I's position,
-// a larger one is reported, and an unassembled model is rejected.
+// I and J of a joint coincide, or are in line, in the assembled model. A dataset has its parts at
+// the design position, with the printed digits. A misalignment within round-off is removed by using
+// I's position, a larger one is reported, and an unassembled model is rejected.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,9 +75,9 @@ struct JointConversion {
         const std::string misalignment = fmt::format("{} {:.3g} {}", what, off, unit);
         if (!(off <= assembled * scale))
             at.fail(misalignment +
-                    ": the parts do not meet as they stand in the file; assemble the model before "
-                    "it is written");
-        c.draft.notes.warn(place(), misalignment + " in the file; here they meet");
+                    ": the parts do not meet in the file; write the file after the assembly of the "
+                    "model");
+        c.draft.notes.warn(place(), misalignment + " in the file; in the scene they coincide");
     }
     void require_small_angle(double angle, const std::string& what) const {
         const double degree = std::numbers::pi / 180;
@@ -102,15 +102,14 @@ struct JointConversion {
             std::atan2(axis(I, k).cross(axis(J, k)).norm(), either_way ? std::abs(cosine) : cosine);
         require_small_angle(angle, fmt::format("axes {} of I and J are apart by", "xyz"[k]));
         if (cosine < 0)
-            c.draft.notes.warn(
-                place(),
-                fmt::format("axes {} of I and J point opposite ways; here they are one line",
-                            "xyz"[k]));
+            c.draft.notes.warn(place(), fmt::format("axes {} of I and J point in opposite "
+                                                    "directions; in the scene they are one line",
+                                                    "xyz"[k]));
     }
     // Two perpendicular directions; the second is made exactly perpendicular.
     std::pair<Vector3d, Vector3d> perpendicular(const Vector3d& u, const Vector3d& v) const {
         require_small_angle(std::abs(std::asin(std::clamp(u.dot(v), -1.0, 1.0))),
-                            "the axes are off the right angle by");
+                            "the axes deviate from the right angle by");
         return {u, (v - u.dot(v) * u).normalized()};
     }
 
@@ -144,10 +143,11 @@ void convert_joint(Conversion& c, const Statement& s) {
     const JointConversion joint{c, s, at, I, J};
     std::string kind;
     for (const std::string& flag : at.flags()) {
-        if (!kind.empty()) at.fail(fmt::format("is {} and {}; one of them is meant", kind, flag));
+        if (!kind.empty())
+            at.fail(fmt::format("is both {} and {}; exactly one type is needed", kind, flag));
         kind = flag;
     }
-    if (kind.empty()) at.fail("does not say of what kind it is");
+    if (kind.empty()) at.fail("has no type");
     if (kind == "CONVEL" || kind == "RACKPIN" || kind == "SCREW") {
         c.draft.notes.miss(
             s.place(),
@@ -155,8 +155,7 @@ void convert_joint(Conversion& c, const Statement& s) {
                 ? "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
                   "joint transmits another angle)"
                 : kind +
-                      ": it couples a rotation with a displacement, which no joint of a scene "
-                      "does");
+                      ": it couples a rotation with a displacement, which no joint of a scene can");
         return;
     }
     const std::string name = c.name(c.joint_names, s);
@@ -172,10 +171,9 @@ void convert_joint(Conversion& c, const Statement& s) {
             c.draft.notes.leave_out("by --drop dynamics",
                                     {s.line, friction + " of " + s.place().what});
         else
-            c.draft.notes.miss(s.place(),
-                               friction +
-                                   ": its friction holds, too, and a scene has none (--drop "
-                                   "dynamics leaves it out)");
+            c.draft.notes.miss(s.place(), friction +
+                                              ": its friction also acts at rest, and a scene has "
+                                              "no friction (--drop dynamics leaves it out)");
     }
     std::size_t entry = 0;
     if (kind == "REVOLUTE") {
@@ -213,10 +211,11 @@ void convert_jprim(Conversion& c, const Statement& s) {
     const JointConversion joint{c, s, at, I, J};
     std::string kind;
     for (const std::string& flag : at.flags()) {
-        if (!kind.empty()) at.fail(fmt::format("is {} and {}; one of them is meant", kind, flag));
+        if (!kind.empty())
+            at.fail(fmt::format("is both {} and {}; exactly one type is needed", kind, flag));
         kind = flag;
     }
-    if (kind.empty()) at.fail("does not say of what kind it is");
+    if (kind.empty()) at.fail("has no type");
     c.draft.notes.count("JPRIM " + kind);
     const std::string name = c.name(c.joint_names, s);
     if (kind == "ATPOINT") {
@@ -253,22 +252,23 @@ void convert_gcon(Conversion& c, const Statement& s) {
         return miss("a constraint other than of one distance or one displacement");
     const auto& [measure, k] = *value.linear.begin();
     const double offset = -value.constant / k * c.geometry.units.length;
-    if (measure.j == 0) return miss("measured in the global frame without a marker there");
+    if (measure.j == 0) return miss("measured in the global frame, without a marker on ground");
     const Marker &I = c.marker(at, measure.i), &J = c.marker(at, measure.j);
     if (!is_between_two(c, s, I, J, at)) return;
     const JointConversion joint{c, s, at, I, J};
     const std::string name = c.name(c.joint_names, s);
     if (measure.kind == Measure::Kind::DM) {
         const double drawn = (I.pose.r - J.pose.r).norm();
-        if (!(offset > 0) || !(drawn > 0)) return miss("a distance that is not above zero");
+        if (!(offset > 0) || !(drawn > 0)) return miss("a distance that is zero or negative");
         c.draft.notes.count("GCON of a distance");
         Fields fields = joint.fields("distance").add("from", c.point(I)).add("to", c.point(J));
         if (std::abs(offset - drawn) > 1e-9 * c.geometry.size) {
             fields.add("length", computed(offset, c.geometry.size));
             c.draft.notes.warn(
                 s.place(),
-                fmt::format("the markers are {:.6g} {} apart in the file, and held {:.6g} apart",
-                            drawn, c.geometry.units.length_name, offset));
+                fmt::format(
+                    "the markers are {:.6g} {} apart in the file, and constrained to {:.6g}", drawn,
+                    c.geometry.units.length_name, offset));
         }
         joint.put(name, fields);
         return;
@@ -316,12 +316,11 @@ std::optional<Displacement> displacement(Conversion& c, const Statement& s, cons
         return result;
     }
     if (c.options.drop_dynamics)
-        c.draft.notes.leave_out("by --drop dynamics: the coordinate stays free", s.place());
+        c.draft.notes.leave_out("by --drop dynamics: the coordinate remains free", s.place());
     else
-        c.draft.notes.miss(
-            s.place(),
-            "a motion by a velocity or an acceleration that changes (--drop dynamics leaves the "
-            "coordinate free)");
+        c.draft.notes.miss(s.place(),
+                           "a motion with a variable velocity or an acceleration (--drop dynamics "
+                           "leaves the coordinate free)");
     return std::nullopt;
 }
 
@@ -385,7 +384,7 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
             plane.along(name, "in_plane", "normal");
             drive(c, s, "joints." + name, *by, length, axis.dot(I.pose.r - J.pose.r), false);
         } else {
-            at.fail(fmt::format("{} of a {} joint, which has no such coordinate",
+            at.fail(fmt::format("{} of a {} joint, which does not have this coordinate",
                                 rotates ? "ROTATIONAL" : "TRANSLATIONAL", joint.kind));
         }
         c.draft.notes.count("MOTION");
@@ -397,7 +396,8 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
         if (at.has(std::string(1, "XYZ"[k]))) axis = k;
     if (axis < 0) {
         c.draft.notes.miss(
-            s.place(), "a motion of an angle between two markers; of a joint it could be driven");
+            s.place(),
+            "a motion of an angle between two markers; only the angle of a joint can be driven");
         return;
     }
     if (!by || !is_between_two(c, s, I, J, at)) return;
@@ -419,7 +419,7 @@ void convert_coupler(Conversion& c, const Statement& s) {
     const auto scales = at.numbers("SCALES", 1, 3);
     if (joints.size() < 2 || joints.size() > 3) at.fail("JOINTS: two or three are needed");
     const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
-    if (at.has("FUNCTION")) return miss("it couples by a function of the user's");
+    if (at.has("FUNCTION")) return miss("it couples by a user-written function");
     // For two joints one scale may be missing: that of the first is then 1.
     std::vector<double> scale = scales;
     if (scale.size() == joints.size() - 1) scale.insert(scale.begin(), 1);
@@ -450,14 +450,14 @@ void convert_coupler(Conversion& c, const Statement& s) {
             free = k;
         else
             return miss(
-                "it couples joints that no MOTION prescribes; a scene has no joint that does");
+                "it couples joints that no MOTION prescribes, which no joint of a scene can");
     }
-    if (free == joints.size()) return miss("it couples joints that MOTIONs prescribe already");
+    if (free == joints.size()) return miss("it couples joints that MOTIONs already prescribe");
     const WrittenJoint& joint = *written[free];
     if (joint.kind != "REVOLUTE" && joint.kind != "TRANSLATIONAL")
-        return miss(
-            fmt::format("it couples a {} joint, which has no coordinate or two", joint.kind));
-    if (scale[free] == 0) at.fail("SCALES: zero for a joint that nothing else moves");
+        return miss(fmt::format("it couples a {} joint, which does not have exactly one coordinate",
+                                joint.kind));
+    if (scale[free] == 0) at.fail("SCALES: zero for a joint without a MOTION");
     hold(c, joint.entry);
     Drive drive{.quantity = quantity(joint), .path = sum, .from = s.place()};
     for (double& x : drive.path) x *= -unit(joint) / scale[free];
@@ -465,11 +465,10 @@ void convert_coupler(Conversion& c, const Statement& s) {
         std::pair(std::ranges::min(drive.path), std::ranges::max(drive.path));
     c.drives.push_back(std::move(drive));
     c.draft.notes.count("COUPLER");
-    c.draft.notes.warn(
-        s.place(),
-        fmt::format("{} is driven in proportion: the motion is the coupler's, its reaction is a "
-                    "drive's of its own",
-                    quantity(joint)));
+    c.draft.notes.warn(s.place(),
+                       fmt::format("{} is driven in proportion: it has the coupler's motion, but "
+                                   "its reaction is that of a separate drive",
+                                   quantity(joint)));
 }
 
 }  // namespace

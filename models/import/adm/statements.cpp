@@ -84,11 +84,10 @@ struct Reading {
         const std::string word = capitals(line.substr(0, n));
         const auto found = meant(word, keywords);
         if (found.size() > 1)
-            fail(fmt::format("{} may be {}; too short to tell", reader::quote(word),
-                             fmt::join(found, " or ")));
+            fail(fmt::format("{} is ambiguous: {}", reader::quote(word), fmt::join(found, " or ")));
         if (found.empty())
             fail(fmt::format(
-                "{} is no statement of a dataset{}", reader::quote(word),
+                "{} is not a statement of a dataset{}", reader::quote(word),
                 reader::did_you_mean(word, strings({std::begin(keywords), std::end(keywords)}),
                                      "there are")));
         if (data.statements.size() == most_statements)
@@ -112,7 +111,7 @@ struct Reading {
         if (!line.empty() && line.front() == ',')
             line.remove_prefix(1);
         else if (digits > 0 && !line.empty())
-            fail(fmt::format("expected a comma behind the id {}, found {}", statement.id,
+            fail(fmt::format("expected a comma after the id {}, found {}", statement.id,
                              reader::quote(line)));
         statement.rest = line;
         data.statements.push_back(std::move(statement));
@@ -129,7 +128,7 @@ struct Reading {
         const bool continued = std::exchange(goes_on, line.ends_with('&'));
         if (goes_on) line = trimmed(line.substr(0, line.size() - 1));
         if (line.starts_with(',') || continued) {
-            if (!in_statement) fail("continues a statement, but there is none before it");
+            if (!in_statement) fail("continuation line without a statement before it");
             if (line.starts_with(',')) line.remove_prefix(1);
             Statement& statement = data.statements.back();
             statement.rest += '\n';
@@ -158,8 +157,9 @@ Dataset read_statements(std::string_view text, const std::string& file) {
     Dataset data;
     data.file = file;
     if (text.size() > largest_dataset)
-        reader::fail(file, 0, "",
-                     fmt::format("larger than {} MiB, which no dataset is", largest_dataset >> 20));
+        reader::fail(
+            file, 0, "",
+            fmt::format("larger than {} MiB, the limit for a dataset", largest_dataset >> 20));
     Reading reading{data};
     const char line_end = text.find('\n') == text.npos ? '\r' : '\n';  // CR alone, LF, or CR LF
     while (!text.empty()) {
@@ -167,7 +167,7 @@ Dataset read_statements(std::string_view text, const std::string& file) {
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         if (++data.last_line == 1) {
-            if (line.find('\0') != line.npos) reading.fail("a NUL byte: this is no dataset");
+            if (line.find('\0') != line.npos) reading.fail("a NUL byte: this is not a dataset");
             data.title = trimmed(line);
             continue;
         }
@@ -179,7 +179,7 @@ Dataset read_statements(std::string_view text, const std::string& file) {
         reading.read(line);
     }
     if (data.statements.empty())
-        reader::fail(file, data.last_line, "", "no statement: this is no dataset");
+        reader::fail(file, data.last_line, "", "no statement: this is not a dataset");
     return data;
 }
 
@@ -284,10 +284,11 @@ struct Scanner {
             }
             depth += c == '(' ? 1 : c == ')' ? -1 : 0;
             if (depth < 0)
-                fail(fmt::format("{}: a bracket closes that none opened", reader::quote(result)));
+                fail(fmt::format("{}: a closing bracket without an opening one",
+                                 reader::quote(result)));
             result += c;
         }
-        if (depth > 0) fail(fmt::format("{}: a bracket is left open", reader::quote(result)));
+        if (depth > 0) fail(fmt::format("{}: a bracket is not closed", reader::quote(result)));
         return std::string(trimmed(result));
     }
 
@@ -340,10 +341,9 @@ Arguments::Arguments(const std::string& file, const Statement& statement, const 
         const auto& allowed = assigns ? names : shape.flags;
         const auto found = meant(name, allowed);
         if (found.size() > 1)
-            fail(fmt::format("{} may be {}; too short to tell", reader::quote(name),
-                             fmt::join(found, " or ")));
+            fail(fmt::format("{} is ambiguous: {}", reader::quote(name), fmt::join(found, " or ")));
         if (found.empty())
-            fail(fmt::format("{} is no {} of this statement{}", reader::quote(name),
+            fail(fmt::format("{} is not a known {} of this statement{}", reader::quote(name),
                              assigns ? "argument" : "flag",
                              reader::did_you_mean(name, strings(allowed), "known")));
         if (find(found[0])) fail(fmt::format("{} is given twice", found[0]));
@@ -400,12 +400,12 @@ double Arguments::read(const Argument& argument, const std::string& text, bool i
     double value = 0;
     bool degrees = false;
     if (number_at(text, value, degrees) != text.size() || text.empty())
-        fail(fmt::format("{}: {} is no number", argument.name, reader::quote(text)));
+        fail(fmt::format("{}: {} is not a number", argument.name, reader::quote(text)));
     if (!std::isfinite(value) || std::abs(value) > 1e30)
         fail(fmt::format("{}: {} is out of range; allowed: up to 1e30 in size", argument.name,
                          reader::quote(text)));
     if (degrees && !is_angle)
-        fail(fmt::format("{}: {} is in degrees, but this is no angle", argument.name,
+        fail(fmt::format("{}: {} is in degrees, but the argument is not an angle", argument.name,
                          reader::quote(text)));
     return degrees ? value * std::numbers::pi / 180 : value;
 }
@@ -422,7 +422,7 @@ std::vector<int> Arguments::ids(std::string_view name) const {
             int id = 0;
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
             if (error != std::errc{} || end != text.data() + text.size() || id <= 0)
-                fail(fmt::format("{}: {} is no id; allowed: whole numbers above zero", name,
+                fail(fmt::format("{}: {} is not an id; allowed: whole numbers above zero", name,
                                  reader::quote(text)));
             result.push_back(id);
         }
@@ -431,7 +431,7 @@ std::vector<int> Arguments::ids(std::string_view name) const {
 
 int Arguments::id(std::string_view name) const {
     const auto all = ids(name);
-    if (all.size() > 1) fail(fmt::format("{}: {} ids, where one is asked for", name, all.size()));
+    if (all.size() > 1) fail(fmt::format("{}: {} ids, expected one", name, all.size()));
     return all.empty() ? 0 : all[0];
 }
 
@@ -442,7 +442,7 @@ std::vector<double> Arguments::list(std::string_view name, std::size_t least, st
     if (!argument) return result;
     if (argument->values.size() < least || argument->values.size() > most)
         fail(fmt::format(
-            "{}: {} numbers, where {} are asked for", name, argument->values.size(),
+            "{}: {} numbers, expected {}", name, argument->values.size(),
             least == most ? std::to_string(least) : fmt::format("{} to {}", least, most)));
     for (const std::string& text : argument->values)
         result.push_back(read(*argument, text, angles));

@@ -244,8 +244,8 @@ void solid_axle(Suspension& s) {
         s.one_freedom = true;
         s.draft().notes.warn(
             s.place("Trackbar"),
-            "links and track bar together leave the axle one freedom, and that hardly: the "
-            "branch moves the left wheel, the right one follows");
+            "links and track bar leave the axle a single, poorly determined degree of freedom: the "
+            "branch drives the left wheel, the right one follows");
         const Vector3d a = s.left("Trackbar/Location Axle"),
                        c = s.left("Trackbar/Location Chassis");
         s.link("trackbar", "Trackbar", 0.5 * (a + c), "ground", c, "axle", a, false,
@@ -367,7 +367,7 @@ void push_pipe(Suspension& s) {
     axle_tube(s);
     if (s.has("Axle Tube/Portal Offset") && s.real("Axle Tube/Portal Offset") != 0)
         s.draft().notes.miss(s.place("Axle Tube/Portal Offset"),
-                             "a portal axle, whose gears are not known here");
+                             "a portal axle, whose gears are not supported");
     s.spherical("axle.ball_joint", "axle", "ground", s.left("Axle Tube/Location Connector Chassis"),
                 "Axle Tube/Location Connector Chassis");
     panhard_rod(s, "Panhard Rod/Location Connector Chassis", "Panhard Rod/Location Connector Axle");
@@ -479,10 +479,9 @@ void leaf(Suspension& s) {
                   half.share * vertical * square, -0.5 * preload * half.arm.x(), half.path);
     }
     if (preload != 0 && s.side > 0)
-        s.draft().notes.warn(
-            s.place("Leafspring/Vertical Preload Force"),
-            "taken as what holds the chassis up at the design position: the sign of "
-            "Chrono's rest angle is not known here");
+        s.draft().notes.warn(s.place("Leafspring/Vertical Preload Force"),
+                             "interpreted as the force that supports the chassis at the design "
+                             "position: the sign of Chrono's rest angle is not documented");
 }
 
 void sae_leafspring(Suspension& s, bool steered) {
@@ -501,10 +500,9 @@ void sae_leafspring(Suspension& s, bool steered) {
 // The lower shock end is on the housing, as in Chrono.
 void hendrickson(Suspension& s) {
     s.one_freedom = true;
-    s.draft().notes.warn(
-        s.place("Lower Beam"),
-        "beams and rods that turn about y alone keep the axle from rolling: the branch moves "
-        "the left wheel, the right one follows");
+    s.draft().notes.warn(s.place("Lower Beam"),
+                         "beams and rods that rotate only about y prevent roll of the axle: the "
+                         "branch drives the left wheel, the right one follows");
     s.body("axle", s.left("Axle Housing/COM"), "Axle Housing");
     s.body("transverse_beam", s.left("Transverse Beam/COM"), "Transverse Beam");
     both(s, [&] {
@@ -544,7 +542,7 @@ Vector3d vector(const Cursor& at) {
 Matrix3d rotation(const Suspension& s, const Cursor& at) {
     const auto q = at.list(4, "numbers, a quaternion");
     const Eigen::Quaterniond p(q[0].number(), q[1].number(), q[2].number(), q[3].number());
-    if (!(p.norm() > 1e-6)) at.fail("no quaternion: all zero");
+    if (!(p.norm() > 1e-6)) at.fail("not a quaternion: all components are zero");
     const Matrix3d A = p.normalized().toRotationMatrix();
     if (s.side > 0) return A;
     Matrix3d B;
@@ -580,7 +578,7 @@ struct Generic {
         std::vector<std::string> known{"Chassis", "Subchassis", "Steering"};
         known.insert(known.end(), sided.begin(), sided.end());
         known.insert(known.end(), shared.begin(), shared.end());
-        at.fail(fmt::format("{} is no body here{}", at.found(),
+        at.fail(fmt::format("{} is not a body of this suspension{}", at.found(),
                             reader::did_you_mean(name, known, "there are")));
     }
 
@@ -626,7 +624,7 @@ void generic(Suspension& s) {
         fields.add("origin", draft.points.at(g.at(entry, "Position"), name + ".cm", from));
         if (const auto mass = entry.optional("Mass")) fields.add("mass", mass->number());
         if (const auto turned = entry.optional("Rotation"))
-            s.leave_out(*turned, "being the axes of the inertia");
+            s.leave_out(*turned, "axes of the inertia, without effect at rest");
         draft.bodies.push_back({name, "{" + fields.text() + "}", from});
         draft.notes.count("bodies");
     });
@@ -650,28 +648,28 @@ void generic(Suspension& s) {
             s.joint_or_bushing(Kind::universal, name, i, j, p, A, "Joints", data);
         else if (is({"Lock", "LOCK"})) {
             if (data) {
-                s.ignore(*data, "a bushing in place of a lock");
-                draft.notes.miss(from, "a bushing in place of a lock");
+                s.ignore(*data, "a bushing instead of a lock");
+                draft.notes.miss(from, "a bushing instead of a lock");
             }
             s.joint(name, "fixed", i, j, Fields{}.add("at", at), from);
         } else if (is({"Point Line", "POINTLINE"})) {
             if (data)
                 s.ignore(*data,
-                         "Chrono makes nothing of a bushing in place of this joint; here a joint");
+                         "Chrono ignores the bushing of this joint; the scene has the joint");
             s.joint(name, "in_line", i, j, Fields{}.add("at", at).add("axis", direction(A.col(0))),
                     from);
         } else if (is({"Point Plane", "POINTPLANE"})) {
             if (data)
                 s.ignore(*data,
-                         "Chrono makes nothing of a bushing in place of this joint; here a joint");
+                         "Chrono ignores the bushing of this joint; the scene has the joint");
             s.joint(name, "in_plane", i, j,
                     Fields{}.add("at", at).add("normal", direction(A.col(2))), from);
         } else if (is({"Prismatic", "PRISMATIC", "Cylindrical", "CYLINDRICAL"})) {
             entry.require("Type").fail(
-                "Chrono reads this as a lock, which is hardly meant; write Lock, or change the "
+                "Chrono reads this as a lock, probably not intended; write Lock, or change the "
                 "joint");
         } else
-            entry.require("Type").fail(fmt::format("{} is no joint of Chrono's that is known here",
+            entry.require("Type").fail(fmt::format("{} is not a supported joint of Chrono",
                                                    entry.require("Type").found()));
     });
     g.each("Distance Constraints", [&](const Cursor& entry, const std::string& name) {
@@ -740,28 +738,28 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
     reader::Accesses accesses;
     const reader::Cursor root{&tree, "", &file, &numbers, {}, &accesses};
     if (tree.kind != reader::Value::Kind::map)
-        root.fail("expected an object: this is no suspension of Chrono::Vehicle");
+        root.fail("expected an object: this is not a suspension of Chrono::Vehicle");
     const std::string type = root.require("Type").text("a type");
     if (type != "Suspension")
-        root.require("Type").fail(fmt::format(
-            "{} is no suspension; allowed: Suspension (of a wheeled vehicle; its file is named "
-            "in the file of the vehicle)",
-            reader::quote(type)));
+        root.require("Type").fail(
+            fmt::format("{} is not a suspension; allowed: Suspension (of a wheeled vehicle; its "
+                        "file is named in the file of the vehicle)",
+                        reader::quote(type)));
     const auto named = root.require("Template");
     const std::string name = named.text("a template");
     if (name == "RigidPinnedAxle" || name == "RigidSuspension")
         named.fail(
-            fmt::format("{}: no spring at all, and so nothing that carries the wheel", name));
+            fmt::format("{}: the template has no spring, so the wheel is not supported", name));
     const auto found = std::ranges::find(chrono::templates, name, &Template::name);
     if (found == std::end(chrono::templates)) {
         std::vector<std::string> known;
         for (const Template& t : chrono::templates) known.emplace_back(t.name);
-        named.fail(fmt::format("{} is no template that is known here{}", reader::quote(name),
+        named.fail(fmt::format("{} is not a supported template{}", reader::quote(name),
                                reader::did_you_mean(name, known, "known")));
     }
     if (!options.wheel.empty())
         reader::fail(file, 0, "--wheel",
-                     "a suspension of Chrono::Vehicle says itself which its wheels are");
+                     "the wheels of a suspension of Chrono::Vehicle are given by its file");
 
     Draft draft;
     draft.title = root.optional("Name") ? root.require("Name").text("a name") : name;

@@ -20,14 +20,14 @@ class Parser {
     Value whole() {
         Value root = value(0);
         skip();
-        if (!text_.empty()) fail("more behind the end of the document");
+        if (!text_.empty()) fail("text after the end of the document");
         return root;
     }
 
   private:
     [[noreturn]] void fail(const std::string& what) const { reader::fail(file_, line_, "", what); }
     [[noreturn]] void expected(const char* what) const {
-        if (text_.empty()) fail(fmt::format("the file ends where {} is expected", what));
+        if (text_.empty()) fail(fmt::format("the file ends, expected {}", what));
         fail(fmt::format(
             "expected {}, found {}", what,
             reader::quote(text_.substr(0, std::min<std::size_t>(text_.find('\n'), 20)))));
@@ -47,7 +47,7 @@ class Parser {
                 advance(std::min(text_.find(line_end_), text_.size()));
             } else if (text_.starts_with("/*")) {
                 const std::size_t end = text_.find("*/", 2);
-                if (end == text_.npos) fail("a comment /* is left open");
+                if (end == text_.npos) fail("a comment /* is not closed");
                 advance(end + 2);
             } else {
                 return;
@@ -67,7 +67,7 @@ class Parser {
         if (!take('"')) expected("a string in double quotes");
         std::string result;
         for (;;) {
-            if (text_.empty() || text_.front() == '\n') fail("a string is left open");
+            if (text_.empty() || text_.front() == '\n') fail("a string is not closed");
             const char c = text_.front();
             if (static_cast<unsigned char>(c) < 0x20) fail("a control character in a string");
             text_.remove_prefix(1);
@@ -76,10 +76,10 @@ class Parser {
                 result += c;
                 continue;
             }
-            if (text_.empty()) fail("a string is left open");
+            if (text_.empty()) fail("a string is not closed");
             const char escaped = text_.front();
             if (std::string_view("\"\\/bfnrtu").find(escaped) == std::string_view::npos)
-                fail("an unknown escape in a string");
+                fail("an unknown escape sequence in a string");
             result += escaped == '"' || escaped == '\\' || escaped == '/' ? escaped : '?';
             text_.remove_prefix(1);
         }
@@ -87,7 +87,7 @@ class Parser {
 
     Value value(int depth) {
         if (depth > deepest_json)
-            fail(fmt::format("nested deeper than {}, which no suspension is", deepest_json));
+            fail(fmt::format("nested more than {} levels deep", deepest_json));
         skip();
         Value result{.kind = Value::Kind::scalar, .line = line_};
         if (text_.empty()) expected("a value");
@@ -150,10 +150,10 @@ class Parser {
 
 Value parse_json(std::string_view text, const std::string& file) {
     if (text.size() > largest_json)
-        reader::fail(file, 0, "", "larger than 1 MiB, which no suspension is");
+        reader::fail(file, 0, "", "larger than 1 MiB, the limit for a suspension");
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.find('\0') != text.npos || !reader::is_utf8(text))
-        reader::fail(file, 0, "", "not plain text (UTF-8): this is no JSON");
+        reader::fail(file, 0, "", "not plain text (UTF-8): this is not JSON");
     return Parser(text, file).whole();
 }
 

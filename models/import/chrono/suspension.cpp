@@ -26,9 +26,9 @@ Vector3d vector(const Cursor& at) {
 struct WithoutInfluence {
     std::string_view key, why;
 };
-constexpr std::string_view of_motion = "being of motion alone",
-                           of_pictures = "being of pictures alone",
-                           of_nothing = "saying nothing of the mechanism";
+constexpr std::string_view of_motion = "without effect at rest",
+                           of_pictures = "only for visualisation",
+                           of_nothing = "without effect on the mechanism";
 constexpr WithoutInfluence without_influence[] = {
     {"Inertia", of_motion},
     {"Moments of Inertia", of_motion},
@@ -51,8 +51,8 @@ constexpr WithoutInfluence without_influence[] = {
     {"Output", of_nothing},
     {"Independent", of_nothing},
     {"Steerable", of_nothing},
-    {"Antiroll Body", "being of an anti-roll bar, which is another file"},
-    {"Location Stabilizer", "being of an anti-roll bar, which is another file"}};
+    {"Antiroll Body", "of an anti-roll bar, which is another file"},
+    {"Location Stabilizer", "of an anti-roll bar, which is another file"}};
 
 // Linear interpolation between the rows; constant beyond the ends.
 double value_at(const Rows& rows, double x) {
@@ -184,8 +184,8 @@ void Suspension::report_unread() {
         });
         for (const auto& field : without_influence) allowed.emplace_back(field.key);
         notes.miss({value->line, path}, is_known
-                                            ? "given, but not used with what else is given"
-                                            : "not known of this template" +
+                                            ? "not used in combination with the other fields"
+                                            : "not a field of this template" +
                                                   reader::did_you_mean(key, allowed, "not given"));
     }
     for (const auto& [reason, parts] : omitted)
@@ -240,12 +240,10 @@ void Suspension::universal(const std::string& name, const std::string& i, const 
                            const char* path) {
     const Vector3d u = x.normalized(), v = (y - u.dot(y) * u).normalized();
     if (const double off = std::abs(u.dot(y.normalized())); off > 1e-9)
-        draft_.notes.warn(
-            place(path),
-            fmt::format(
-                "the axes of the universal joint are {:.2g} deg off the right angle; here the "
-                "second is put right",
-                std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
+        draft_.notes.warn(place(path),
+                          fmt::format("the axes of the universal joint deviate from the right "
+                                      "angle by {:.2g} deg; the scene has a corrected second axis",
+                                      std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
     joint(name, "universal", i, j,
           Fields{}
               .add("at", hardpoint(name, p, path))
@@ -304,7 +302,7 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
     if (const auto dof = data->optional("DOF")) {
         if (const auto k = dof->optional("Stiffness Rotational")) free = k->number();
         if (const auto unused = dof->optional("Stiffness Linear"))
-            leave_out(*unused, "as Chrono reads it and does not use it");
+            leave_out(*unused, "since Chrono reads it but does not use it");
     }
     const auto rate = [&](int axis) {
         const bool is_free =
@@ -340,14 +338,14 @@ Suspension::Law Suspension::law_of(const Cursor& data) {
     const auto leave_out_unused = [&](const char* field, const char* why) {
         if (const auto found = data.optional(field)) ignore(*found, why);
     };
-    if (law == Law::map) leave_out_unused("Spring Curve Data", "Chrono takes the Map Data instead");
+    if (law == Law::map) leave_out_unused("Spring Curve Data", "Chrono uses the Map Data instead");
     if (law != Law::map) leave_out_unused("Deformation", "Chrono uses it with Map Data only");
     if (law != Law::linear)
         leave_out_unused("Spring Coefficient",
-                         law == Law::map     ? "Chrono takes the Map Data instead"
-                         : law == Law::curve ? "Chrono takes the Spring Curve Data instead"
-                                             : "Chrono takes the Damping Curve Data instead: there "
-                                               "is no spring");
+                         law == Law::map ? "Chrono uses the Map Data instead"
+                         : law == Law::curve
+                             ? "Chrono uses the Spring Curve Data instead"
+                             : "Chrono uses the Damping Curve Data instead: there is no spring");
     if (law == Law::damper)
         for (const char* field :
              {"Free Length", "Free Angle", "Preload", "Minimum Length", "Maximum Length"})
@@ -369,10 +367,10 @@ void Suspension::require_rising(const Cursor& at, const Rows& rows) {
     if (rows.size() < 2) at.fail("a curve needs at least two rows");
     for (std::size_t n = 1; n < rows.size(); ++n)
         if (!(rows[n].first > rows[n - 1].first) || rows[n].second < rows[n - 1].second)
-            at.fail(fmt::format(
-                "row {}: a deflection that does not rise, or a force that falls, which no "
-                "spring of a scene has",
-                n + 1));
+            at.fail(
+                fmt::format("row {}: the deflection does not increase, or the force decreases, "
+                            "which a scene does not allow",
+                            n + 1));
 }
 
 // Rows of the map over speed (rows) and deformation (columns) at speed zero, by linear
@@ -387,7 +385,7 @@ Rows Suspension::map_at_rest(const Cursor& data, double offset, double preload) 
             line.list(columns.size() + 1, "numbers, a speed and a force for each deformation");
         speeds.push_back(cells[0].number());
         if (speeds.size() > 1 && !(speeds.back() > speeds[speeds.size() - 2]))
-            line.fail("its speed does not rise from row to row");
+            line.fail("its speed does not increase from row to row");
         forces.emplace_back();
         for (std::size_t n = 1; n < cells.size(); ++n) forces.back().push_back(cells[n].number());
     }
@@ -435,7 +433,7 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     auto least = data.optional("Minimum Length"), most = data.optional("Maximum Length");
     if (least.has_value() != most.has_value()) {
         ignore(least ? *least : *most,
-               "Chrono makes stops where both lengths are given, and here none");
+               "Chrono has stops only if both lengths are given, so here it has none");
         least = most = std::nullopt;
     }
     // The force at the design position, pushing apart, and the rows from l - L0 on.
@@ -444,7 +442,7 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
     if (law == Law::linear) {
         const Cursor k = data.require("Spring Coefficient");
         const double rate = k.number(), free = data.require("Free Length").number();
-        if (rate < 0) k.fail("negative; no spring of a scene is");
+        if (rate < 0) k.fail("negative, which a scene does not allow");
         force = preload - rate * (drawn - free);
         if (rate == 0) {
             is_nothing = preload == 0;
@@ -502,7 +500,7 @@ void Suspension::tsda(const std::string& name, const std::string& i, const Vecto
 }
 
 // Rotational spring of body 2 relative to body 1 about the axis: at rest the torque on body 2 is
-// P - k (angle - free), and the angle is 0 as drawn.
+// P - k (angle - free), and the angle is 0 at the design position.
 void Suspension::rsda(const std::string& name, const std::string& i, const std::string& j,
                       const Vector3d& p, const Vector3d& axis, const Cursor& data) {
     const SourceLocation here{data.value->line, data.path};
@@ -511,16 +509,16 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
         return draft_.notes.miss(
             here, "neither a spring nor a damper: Chrono has no element of these fields");
     if (law == Law::damper) {
-        draft_.notes.leave_out("being of motion alone", here);
+        draft_.notes.leave_out("without effect at rest", here);
         return;
     }
     const double preload = data.optional("Preload") ? data.require("Preload").number() : 0;
     const double free = data.optional("Free Angle") ? data.require("Free Angle").number() : 0;
     if (side < 0 && (preload != 0 || free != 0))
-        draft_.notes.warn(here,
-                          "its axis has y turned round on the right, so that its torque at rest is "
-                          "not the mirror "
-                          "image of the left one's; here as in Chrono");
+        draft_.notes.warn(
+            here,
+            "on the right the y component of its axis is reversed, so that its torque at rest is "
+            "not the mirror image of the left one's; the scene is the same as Chrono");
     Fields law_fields;
     if (law == Law::linear) {
         const double rate = data.require("Spring Coefficient").number();
@@ -608,8 +606,8 @@ void Suspension::tierod(const char* part, const char* chassis_end, const char* o
         for (const char* field : {"/Mass", "/Bushing Data"})
             if (has((path + field).c_str()))
                 ignore(at((path + field).c_str()),
-                       "Chrono makes a tie rod without Mass, Inertia and Radius a distance, rigid "
-                       "and massless");
+                       "a tie rod without Mass, Inertia and Radius is a rigid massless distance in "
+                       "Chrono");
         return distance(name, "ground", inner, inner_path.c_str(), on_outer, outer,
                         outer_path.c_str());
     }

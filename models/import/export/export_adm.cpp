@@ -80,11 +80,11 @@ class AdmWriter {
             called(wheel.name.empty() ? "wheel_centre" : "wheel_centre_" + wheel.name);
             marker(wheel.body, wheel.centre_local, along(wheel.spin_axis_local));
             result_.notes.leave_out(
-                "having no statement",
+                "without a statement",
                 {0, "wheel " + wheel.name + " (its centre is a marker: import --wheel)"});
         }
         for (const Branch& branch : scene_.branches)
-            result_.notes.leave_out("having no statement", {0, "branch '" + branch.name + "'"});
+            result_.notes.leave_out("without a statement", {0, "branch '" + branch.name + "'"});
         for (const Damper& damper : scene_.dampers)
             result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
         for (const auto& line : described(result_.notes)) t += fmt::format("! {}\n", line);
@@ -147,7 +147,7 @@ class AdmWriter {
     // such as jacks, are left out.
     void drive(const Joint& joint, const char* kind, double offset) {
         if (joint.active_only_where_driven)
-            return result_.notes.leave_out("standing only where a branch drives it",
+            return result_.notes.leave_out("active only where a branch drives it",
                                            {0, "drive '" + joint.name + "'"});
         const auto found = joints_.find(joint.name.substr(0, joint.name.rfind('.')));
         if (found == joints_.end())
@@ -247,12 +247,12 @@ class AdmWriter {
         const bool straight = rows.size() > 2 && is_straight(law);
         const Apart apart = off_akima(rows, straight ? Between::straight : Between::monotone);
         if (apart.force > 1e-9 * apart.of)
-            result_.notes.warn({0, "element '" + name + "'"},
-                               fmt::format("ADAMS runs Akima's curve through its points, a scene "
-                                           "{}: up to {:.3g} of {:.3g} N or Nm "
-                                           "apart",
-                                           straight ? "straight lines" : "the monotone interpolant",
-                                           apart.force, apart.of));
+            result_.notes.warn(
+                {0, "element '" + name + "'"},
+                fmt::format("ADAMS interpolates its points by Akima's curve, a scene by {}: the "
+                            "difference is up to {:.3g} of {:.3g} N or Nm",
+                            straight ? "straight lines" : "the monotone interpolant", apart.force,
+                            apart.of));
         called(name + ".spline");
         result_.text += fmt::format("SPLINE/{}\n{}, X = {}\n, Y = {}\n", next_spline_,
                                     law.known_outside ? ", LINEAR_EXTRAPOLATE\n" : "", x, y);
@@ -261,7 +261,7 @@ class AdmWriter {
 
     void write(const Elastic& elastic) {
         if (elastic.active_only_where_driven)
-            return result_.notes.leave_out("standing only where a branch drives it",
+            return result_.notes.leave_out("active only where a branch drives it",
                                            {0, "tyre '" + elastic.name + "'"});
         std::visit([&](const auto& kind) { write(elastic, kind); }, elastic.kind);
     }
@@ -275,7 +275,7 @@ class AdmWriter {
         const bool is_stop = elastic.written_as == WrittenAs::stop;
         if (curve && !is_stop && curve->knots.size() < 2)
             return miss("element '" + elastic.name + "'",
-                        "its law is no table, and no SPLINE has it");
+                        "its law is not a table and cannot be a SPLINE");
         const int I = marker(spring.i.body, spring.i.s_local),
                   J = marker(spring.j.body, spring.j.s_local);
         if (!curve) {
@@ -349,10 +349,8 @@ class AdmWriter {
         if (!(b.formulation == adams_bushing)) {
             miss("element '" + elastic.name + "'",
                  "its formulation is not ADAMS' ({angles: projected, conjugate: false}), so the "
-                 "same rates "
-                 "are another law there; --formulation adams converts it, and says by how much the "
-                 "outputs "
-                 "move");
+                 "same rates give another law there; --formulation adams converts it and reports "
+                 "the change of the outputs");
             if (!b.formulation.offset_moment) return;
         }
         // δ is measured from J's origin, so that J is placed at the undeformed position. LENGTH
@@ -363,7 +361,7 @@ class AdmWriter {
         if (const PerAxis* axes = axes_of(b.law)) {
             if (!b.undeformed.tail<3>().isZero(0))
                 return miss("element '" + elastic.name + "'",
-                            "curves of angles that are undeformed elsewhere");
+                            "curves over angles with a nonzero undeformed position");
             const int float_j = floating(b.i.body);
             constexpr const char* components[] = {"FX", "FY", "FZ", "TX", "TY", "TZ"};
             constexpr const char* measures[] = {"DX", "DY", "DZ", "AX", "AY", "AZ"};
@@ -463,7 +461,8 @@ void require_whole(const Exported& exported, const Scene& scene, bool allow_miss
     std::string message;
     for (const auto& [place, what] : exported.notes.missing)
         message += fmt::format("{}: {}: {}\n", scene.source, place.what, what);
-    throw SceneError(message + "--allow-missing exports the rest, and says so in it");
+    throw SceneError(message +
+                     "--allow-missing exports the rest and lists the missing entries in the file");
 }
 
 Exported export_adm(const Scene& scene, bool allow_missing, Notes notes) {

@@ -78,12 +78,12 @@ class ChronoWriter {
             for (const Elastic& elastic : scene_.elastics)
                 if ((elastic.written_as == WrittenAs::stop) == stops) write(root, elastic);
         for (const Load& load : scene_.static_loads)
-            miss("load '" + load.name + "'", "a suspension carries none of its own");
+            miss("load '" + load.name + "'", "a suspension file has no loads");
         for (const Branch& branch : scene_.branches)
-            result_.notes.leave_out("having no entry", {0, "branch '" + branch.name + "'"});
+            result_.notes.leave_out("without an entry", {0, "branch '" + branch.name + "'"});
         for (const Damper& damper : scene_.dampers)
             result_.notes.leave_out("exerting nothing", {0, "damper '" + damper.name + "'"});
-        result_.notes.leave_out("being of motion alone", {0, "masses (all written as 1)"});
+        result_.notes.leave_out("without effect at rest", {0, "masses (all written as 1)"});
         result_.text = "// Exported by elastocheck\n";
         for (const auto& line : described(result_.notes))
             result_.text += fmt::format("// {}\n", line);
@@ -100,7 +100,7 @@ class ChronoWriter {
         result_.notes.miss({0, what}, why);
     }
 
-    // Pairs "arm_left" and "arm_right" if they are mirror images as drawn.
+    // Pairs "arm_left" and "arm_right" if they are mirror images at the design position.
     void pair_bodies() {
         const auto& bodies = scene_.bodies;
         for (const Body& body : bodies) names_.push_back({body.name});
@@ -197,7 +197,7 @@ class ChronoWriter {
 
     void write(json& root, const Joint& one) {
         if (one.active_only_where_driven)
-            return result_.notes.leave_out("standing only where a branch drives it",
+            return result_.notes.leave_out("active only where a branch drives it",
                                            {0, "drive '" + one.name + "'"});
         const auto plain = [&](const char* type, const auto& k,
                                const Matrix3d& A = Matrix3d::Identity()) {
@@ -222,25 +222,29 @@ class ChronoWriter {
                 [&](const InLine& k) { plain("Point Line", k, with_x(k.axis_j.u_local)); },
                 [&](const InPlane& k) {
                     if (k.offset != 0 || one.name.ends_with(".drive"))
-                        return no_joint("it is driven, which is the vehicle's business");
+                        return no_joint(
+                            "it is driven, which is defined by the vehicle, not by the suspension");
                     plain("Point Plane", k, with_z(k.normal_j.u_local));
                 },
                 [&](const Distance& k) {
                     const Vector3d from = drawn(k.i), to = drawn(k.j);
                     if (std::abs((to - from).norm() - k.length) > 1e-12 * k.length)
-                        return no_joint("its length is not the one that is drawn");
+                        return no_joint("its length differs from the design position");
                     json& rod = entry(root, "Distance Constraints", one.name, k.i.body, k.j.body);
                     rod["Point1"] = coordinates(from);
                     rod["Point2"] = coordinates(to);
                 },
-                [&](const Angle&) { no_joint("it is driven, which is the vehicle's business"); },
-                [&](const auto&) { no_joint("Chrono's reader takes this kind for a lock"); }},
+                [&](const Angle&) {
+                    no_joint(
+                        "it is driven, which is defined by the vehicle, not by the suspension");
+                },
+                [&](const auto&) { no_joint("Chrono's reader treats this kind as a lock"); }},
             one.kind);
     }
 
     void write(json& root, const Elastic& elastic) {
         if (elastic.active_only_where_driven)
-            return result_.notes.leave_out("standing only where a branch drives it",
+            return result_.notes.leave_out("active only where a branch drives it",
                                            {0, "tyre '" + elastic.name + "'"});
         std::visit([&](const auto& kind) { write(root, elastic, kind); }, elastic.kind);
     }
@@ -254,7 +258,7 @@ class ChronoWriter {
         if (elastic.written_as == WrittenAs::stop) return require_written(elastic, spring);
         if (curve && curve->knots.size() < 2)
             return miss("element '" + elastic.name + "'",
-                        "its law is no table, and no entry has it");
+                        "its law is not a table and has no entry");
         json& one = entry(root, "TSDAs", elastic.name, spring.i.body, spring.j.body);
         one["Point1"] = coordinates(drawn(spring.i));
         one["Point2"] = coordinates(drawn(spring.j));
@@ -268,11 +272,12 @@ class ChronoWriter {
         for (std::size_t k = 0; k < curve->knots.size(); ++k)
             rows.push_back({curve->knots[k], curve->pieces[k + 1][0]});
         one["Spring Curve Data"] = rows;
-        result_.notes.warn(
-            {0, "element '" + elastic.name + "'"},
-            is_straight(*curve)
-                ? "Chrono holds the ends of a table, a scene goes on or ends there"
-                : "Chrono runs straight between the rows and holds the ends, a scene smoothly");
+        result_.notes.warn({0, "element '" + elastic.name + "'"},
+                           is_straight(*curve)
+                               ? "Chrono keeps the force constant beyond the ends of a table, a "
+                                 "scene extrapolates or ends there"
+                               : "Chrono interpolates linearly and keeps the force constant beyond "
+                                 "the ends, a scene interpolates smoothly");
     }
 
     // ---- Stops. Chrono creates them between the ends of a spring, with one fixed curve, if both
@@ -313,11 +318,10 @@ class ChronoWriter {
             written_.insert(elastic.name);
             if (is_straight(std::get<Curve>(stop->law))) continue;
             const Apart apart = off_straight(chrono::stop_table);
-            result_.notes.warn(
-                {0, "element '" + elastic.name + "'"},
-                fmt::format("Chrono runs straight between the rows of its stop, a scene smoothly: "
-                            "up to {:.3g} of {:.3g} N apart",
-                            apart.force, apart.of));
+            result_.notes.warn({0, "element '" + elastic.name + "'"},
+                               fmt::format("Chrono interpolates its stop linearly, a scene "
+                                           "smoothly: the difference is up to {:.3g} of {:.3g} N",
+                                           apart.force, apart.of));
         }
         if (!least && !most) return;
         one["Minimum Length"] = least.value_or(0);
@@ -328,8 +332,8 @@ class ChronoWriter {
         if (written_.contains(elastic.name)) return;
         miss("element '" + elastic.name + "'",
              touching(stop)
-                 ? "Chrono's stops belong to a spring between the same points, one each way"
-                 : "stops in Chrono are of one hard-coded curve, which this is not");
+                 ? "Chrono's stops belong to a spring between the same points, one per direction"
+                 : "stops in Chrono have one hard-coded curve, and this one differs");
     }
 
     // Bushings that Chrono can represent: one frame, isotropic in displacement, with one rotational
@@ -358,9 +362,8 @@ class ChronoWriter {
         if (k[0] != k[1] || k[1] != k[2] || k[3] != k[4] ||
             !(b.formulation == chrono_bushing || (round && b.formulation == Formulation{})))
             return miss(what,
-                        "Chrono's bushing is alike in all directions, and about z and across it; "
-                        "others are "
-                        "another law there");
+                        "Chrono's bushing has one rate for all translations and two for rotations, "
+                        "about z and across it; this one differs");
         json& one = joint(root, "Revolute", elastic.name, b.j.body, b.i.body,
                           drawn(b.j.body, b.j.s_local), A);
         one["Bushing Data"] = {{"Stiffness Linear", k[0]},

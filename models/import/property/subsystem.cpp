@@ -21,7 +21,7 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
         std::abs(value) > 1e30)
         reader::fail(file.file, line, "HARDPOINT",
-                     fmt::format("{} is no number", reader::quote(text)));
+                     fmt::format("{} is not a number", reader::quote(text)));
     return value;
 }
 
@@ -33,7 +33,7 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     const std::string axes = options.axes.empty() ? "x-rearward,y-right" : options.axes;
     if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
         reader::fail(name, 0, "--axes",
-                     fmt::format("{} are no axes; allowed: {}", reader::quote(axes),
+                     fmt::format("{} is not a set of axes; allowed: {}", reader::quote(axes),
                                  fmt::join(axes_of_tables, " ")));
     const double along_x = axes.starts_with("x-forward") ? 1 : -1,
                  along_y = axes.ends_with("y-left") ? 1 : -1;
@@ -45,10 +45,10 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     draft.format = "hardpoints of an Adams/Car subsystem";
     draft.units = "{length: mm, angle: deg, force: N}";
     draft.remarks = {
-        fmt::format("Axes turned from {}, z {} to x forward, y left, z up (ISO 8855).", axes,
+        fmt::format("Axes rotated from {}, z {} to x forward, y left, z up (ISO 8855).", axes,
                     along_z > 0 ? "up" : "down"),
-        "Hardpoints alone: joints and bodies are in the subsystem's template, which is another "
-        "file. Put yours below."};
+        "Hardpoints only: joints and bodies are in the subsystem's template, which is another "
+        "file. Add yours below."};
     draft.points = Hardpoints(1);
     bool any_pair = false;
     for (const auto& block : file.blocks) {
@@ -57,11 +57,12 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
                 std::string what = block.name;
                 for (const auto& [key, value] : block.values)
                     if (key == "USAGE" || key == "PROPERTY_FILE") what += " " + value;
-                draft.notes.warn({block.line, what},
-                                 "not a part of this scene: what it connects is not in this file");
+                draft.notes.warn(
+                    {block.line, what},
+                    "not part of this scene: the bodies that it connects are not in this file");
             } else if (block.name != "UNITS") {
                 draft.notes.leave_out(
-                    "being no hardpoints",
+                    "without hardpoints",
                     {block.line,
                      block.name + (block.subblock.empty() ? "" : " " + block.subblock)});
             }

@@ -64,8 +64,10 @@ Course read_course(const Cursor& at, const Definitions& defs) {
         if (places.size() == 1) continue;
         lengths.push_back((places.back() - places[places.size() - 2]).norm());
         if (!(lengths.back() > coincident))
-            point.fail(fmt::format(
-                "{} is where the hardpoint before it is; each leg needs a length", point.found()));
+            point.fail(
+                fmt::format("{} coincides with the hardpoint before it; each straight part of a "
+                            "beam needs a length",
+                            point.found()));
     }
 
     const int legs = static_cast<int>(lengths.size());
@@ -73,10 +75,11 @@ Course read_course(const Cursor& at, const Definitions& defs) {
     const int n = segments.whole_number(1, most_segments);
     if (n < legs)
         segments.fail(
-            fmt::format("{} for {} legs; allowed: at least one a leg", segments.found(), legs));
+            fmt::format("{} segments for {} straight parts; allowed: at least one per part",
+                        segments.found(), legs));
     if (n == 1 && course.first == course.last)
         ends[1].fail(
-            fmt::format("{} twice, with nothing between; one segment needs two different bodies",
+            fmt::format("both ends are on {}; a beam of one segment needs two different bodies",
                         ends[1].found()));
     const auto share = shared_out(n, lengths);
     course.nodes.push_back(places[0]);
@@ -110,7 +113,7 @@ bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions&
     if (!is_own_image(course.nodes)) {
         const Cursor segments = at.require("segments");
         segments.fail(fmt::format(
-            "{} cannot be shared out evenly over the two sides; one more or one less can",
+            "{} segments cannot be divided equally between the two sides; one more or one less can",
             segments.found()));
     }
     return true;
@@ -130,10 +133,10 @@ void add_bodies(const Cursor& at, const std::string& name, const Course& course,
     };
     for (std::size_t k = 1; k < course.segments(); ++k)
         if (!defs.body_ids.emplace(numbered(name, k), id(k)).second)
-            at.fail(fmt::format(
-                "needs a body of its own called {}, but there is one already; call that one "
-                "something else",
-                quote(numbered(name, k))));
+            at.fail(
+                fmt::format("the body name {} is reserved for a node of this beam, but already in "
+                            "use; rename the other body",
+                            quote(numbered(name, k))));
     for (std::size_t corner = 1; corner + 1 < course.corners.size(); ++corner)
         defs.body_ids.emplace(name + "." + course.hardpoints[corner], id(course.corners[corner]));
     for (std::size_t k = 1; k < course.segments(); ++k) {
@@ -142,8 +145,8 @@ void add_bodies(const Cursor& at, const std::string& name, const Course& course,
             {numbered(name, k), {.r = course.nodes[k], .p = Eigen::Quaterniond::Identity()}});
     }
     if (defs.bodies.size() > most_bodies)
-        at.fail(fmt::format("{} bodies with its nodes; a scene has {} at most", defs.bodies.size(),
-                            most_bodies));
+        at.fail(fmt::format("{} bodies including its nodes; allowed: at most {}",
+                            defs.bodies.size(), most_bodies));
 }
 
 Course image(Course course, const Mirror& mirror) {
@@ -203,7 +206,7 @@ CrossSection read_cross_section(const Cursor& at, const Units& units) {
     if (const auto diameter = at.optional("diameter"))
         return read_round(at, *diameter, E, G, units);
     if (const auto wall = at.optional("wall"))
-        wall->fail("of a tube without a diameter; give its diameter");
+        wall->fail("wall of a tube without a diameter; give the diameter");
     if (!at.optional("A") && !at.optional("I_y") && !at.optional("I_z") && !at.optional("J"))
         at.fail("no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J");
     const Unit area = power_of_length(units, 2), fourth = power_of_length(units, 4);
@@ -235,8 +238,7 @@ std::optional<Vector3d> read_up(const Cursor& at, const CrossSection& section,
     if (const auto up = at.optional("up")) return direction(*up, defs);
     if (!section.is_round())
         at.fail(
-            "up is missing: y and z of its cross-section are not the same, and it says where z "
-            "points");
+            "up is missing: the cross-section differs in y and z, so the direction of z is needed");
     return std::nullopt;
 }
 
@@ -245,7 +247,8 @@ Eigen::Quaterniond axes(const Cursor& at, const Vector3d& leg, const std::option
     const Vector3d x = leg.normalized();
     const Vector3d across = up ? Vector3d(*up - up->dot(x) * x) : x.unitOrthogonal();
     if (!(across.norm() > parallel))
-        at.require("up").fail("along one of the legs, across which z must be");
+        at.require("up").fail(
+            "parallel to a straight part of the beam; z must be perpendicular to it");
     Matrix3d A;
     A.col(0) = x;
     A.col(2) = across.normalized();

@@ -66,7 +66,7 @@ void read_bodies(const Cursor& section, Definitions& defs) {
     defs.body_ids["ground"] = ground;
     for (const auto& [name, at] : section.entries()) {
         if (name == "ground")
-            at.fail("ground is always there and cannot be defined; choose another name");
+            at.fail("ground is predefined and cannot be defined again; choose another name");
         at.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
         const Vector3d origin = hardpoint(at.require("origin"), defs);
         defs.body_ids[name] = static_cast<BodyId>(defs.bodies.size());
@@ -87,7 +87,7 @@ void read_bodies(const Cursor& section, Definitions& defs) {
     }
     if (defs.bodies.size() > most_bodies)
         section.fail(
-            fmt::format("{} bodies; a scene has {} at most", defs.bodies.size(), most_bodies));
+            fmt::format("{} bodies; allowed: at most {}", defs.bodies.size(), most_bodies));
 }
 
 // x, y, z or -x, -y, -z
@@ -98,9 +98,10 @@ Vector3d named_axis(const Cursor& at) {
     if (letter == "x") return sign * Vector3d::UnitX();
     if (letter == "y") return sign * Vector3d::UnitY();
     if (letter == "z") return sign * Vector3d::UnitZ();
-    at.fail(fmt::format(
-        "{} is no direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two hardpoints [from, to]",
-        at.found()));
+    at.fail(
+        fmt::format("{} is not a direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two "
+                    "hardpoints [from, to]",
+                    at.found()));
 }
 
 }  // namespace
@@ -141,7 +142,7 @@ Vector3d direction(const Cursor& at, const Definitions& defs) {
     }
     if (at.is_list() && items.size() == 3) {
         const Vector3d u = vector(at);
-        if (u.isZero(0)) at.fail("the vector has no length; a direction needs one");
+        if (u.isZero(0)) at.fail("the vector has length zero; a direction needs a length");
         return u.normalized();
     }
     if (at.value->kind == Value::Kind::scalar) return named_axis(at);
@@ -158,7 +159,7 @@ BodyId body(const Cursor& at, const Definitions& defs) {
 BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what) {
     const BodyId id = body(at, defs);
     if (id == ground)
-        at.fail(fmt::format("{} cannot be on ground, which never moves; allowed: a body", what));
+        at.fail(fmt::format("{} cannot be on ground, which is fixed; allowed: a body", what));
     return id;
 }
 
@@ -166,7 +167,8 @@ BodyPair body_pair(const Cursor& at, const Definitions& defs) {
     const auto items = at.list(2, "bodies");
     const BodyPair pair{body(items[0], defs), body(items[1], defs)};
     if (pair.i == pair.j)
-        at.fail(fmt::format("{} twice; two different bodies are needed", items[0].found()));
+        at.fail(
+            fmt::format("both bodies are {}; two different bodies are needed", items[0].found()));
     return pair;
 }
 

@@ -21,7 +21,7 @@ const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::
     std::vector<std::string> names;
     names.reserve(table.size());
     for (const auto& entry : table) names.push_back(entry.first);
-    at.fail(fmt::format("no {} is called {}{}", kind, quote(name),
+    at.fail(fmt::format("there is no {} called {}{}", kind, quote(name),
                         did_you_mean(name, names, "defined")));
 }
 

@@ -72,8 +72,7 @@ Mirror read_mirror(const Cursor& at, const Cursor& scene) {
             "{} is not a mirror; expected two different words of letters, like left -> right",
             at.found()));
     if (!any_name_turns(mirror, scene))
-        at.fail(
-            fmt::format("nothing to mirror: no name has the word {} in it", quote(mirror.from)));
+        at.fail(fmt::format("nothing to mirror: no name contains the word {}", quote(mirror.from)));
     return mirror;
 }
 
@@ -97,7 +96,7 @@ std::optional<std::string> twin_name(const Mirror& mirror, const std::string& na
     if (twin)
         if (const auto there = section.optional(*twin))
             there->fail(
-                fmt::format("the mirror makes it from {}; leave one of the two out", quote(name)));
+                fmt::format("the mirror generates it from {}; remove one of the two", quote(name)));
     return twin;
 }
 
@@ -111,9 +110,10 @@ void require_both_sides(const Cursor& section, const Definitions& defs) {
             const auto twin = turned(*defs.mirror, word);
             const bool is_reference = defs.points.contains(word) || defs.body_ids.contains(word);
             if (!twin || !is_reference || words.contains(*twin)) continue;
-            at.fail(fmt::format(
-                "shared by both sides, as {} is not in its name, but refers to {} and not to {}",
-                quote(defs.mirror->from), quote(word), quote(*twin)));
+            at.fail(
+                fmt::format("shared by both sides, since its name does not contain {}, but refers "
+                            "to {} and not to {}",
+                            quote(defs.mirror->from), quote(word), quote(*twin)));
         }
     }
 }

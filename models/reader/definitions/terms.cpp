@@ -33,8 +33,9 @@ const Load& look_up_load(const Term& term, const Loads& loads) {
     std::vector<std::string> names;
     for (const auto& entry : loads) names.push_back(entry.first);
     if (names.empty())
-        term.at.fail(fmt::format("no load is called {}; the scene has no loads", quote(term.name)));
-    term.at.fail(fmt::format("no load is called {}{}", quote(term.name),
+        term.at.fail(
+            fmt::format("there is no load called {}; the scene has no loads", quote(term.name)));
+    term.at.fail(fmt::format("there is no load called {}{}", quote(term.name),
                              did_you_mean(term.name, names, "defined")));
 }
 

@@ -75,7 +75,7 @@ std::optional<Cursor> Cursor::optional(const std::string& key) const {
 
 Cursor Cursor::require(const std::string& key) const {
     if (auto field = optional(key)) return *field;
-    reader::fail(*file, value->line, child_path(path, key), "missing, it must be given");
+    reader::fail(*file, value->line, child_path(path, key), "missing; this field is required");
 }
 
 std::vector<Cursor::Named> Cursor::entries() const {

@@ -31,12 +31,12 @@ class TreeBuilder final : public YAML::EventHandler {
 
     void OnDocumentStart(const YAML::Mark& mark) override {
         if (std::exchange(seen_document, true))
-            fail_at(mark, "text after the end of the scene; a scene is one YAML document");
+            fail_at(mark, "text after the end of the scene; a scene is a single YAML document");
     }
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add({.line = line_of(mark)}); }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        fail_at(mark, "aliases (*name) are not part of the scene format; write the value out");
+        fail_at(mark, "aliases (*name) are not part of the scene format; repeat the value");
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                   const std::string& text) override {
@@ -68,7 +68,7 @@ class TreeBuilder final : public YAML::EventHandler {
         refuse_tag(mark, tag);
         if (expects_key()) fail_at(mark, "a list or map where the name of a field is expected");
         if (open.size() == deepest_nesting)
-            fail_at(mark, fmt::format("nested more than {} deep", deepest_nesting));
+            fail_at(mark, fmt::format("nested more than {} levels deep", deepest_nesting));
         open.push_back({.value = {.kind = kind, .line = line_of(mark)}});
     }
 
@@ -124,9 +124,11 @@ class TreeBuilder final : public YAML::EventHandler {
         std::string_view text = whole;
         while (!text.empty()) {
             const Character c = first_character(text);
-            if (!c.valid) fail_at(mark, "an escape that is no UTF-8; write the character itself");
+            if (!c.valid)
+                fail_at(mark, "an escape sequence that is not UTF-8; write the character itself");
             if (c.control()) fail_at(mark, quote(whole) + " is not one line of plain text");
-            if (c.turns_writing()) fail_at(mark, "a character that turns the direction of writing");
+            if (c.turns_writing())
+                fail_at(mark, "a character that changes the direction of writing");
             text.remove_prefix(c.bytes.size());
         }
     }
@@ -173,7 +175,7 @@ std::string place_in(const Value& list, std::size_t k) {
 }
 
 Value parse_yaml(std::string_view text, const std::string& file) {
-    if (text.size() > largest_text) fail(file, 0, "", "larger than 1 MiB, which no scene is");
+    if (text.size() > largest_text) fail(file, 0, "", "larger than 1 MiB, the limit for a scene");
     refuse_binary(text, file);
     TreeBuilder builder(file);
     try {
@@ -181,7 +183,7 @@ Value parse_yaml(std::string_view text, const std::string& file) {
         YAML::Parser parser(stream);
         while (parser.HandleNextDocument(builder)) continue;
     } catch (const YAML::Exception& error) {
-        fail(file, line_of(error.mark), "", "not YAML: " + error.msg);
+        fail(file, line_of(error.mark), "", "invalid YAML: " + error.msg);
     }
     return std::move(builder.root);
 }

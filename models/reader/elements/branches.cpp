@@ -33,7 +33,7 @@ struct Parameter {
 
 double weight_of(const Term& term, const char* what) {
     const double weight = term.number();
-    if (weight == 0) term.at.fail(fmt::format("zero, which {}; leave it out", what));
+    if (weight == 0) term.at.fail(fmt::format("zero, which {}; remove it", what));
     return weight;
 }
 
@@ -55,7 +55,7 @@ Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& lo
     const auto zero = [](const Load& load) { return load_vector(load.kind).isZero(0); };
     const auto moment = [](const Load& load) { return is_moment(load.kind); };
     if (std::ranges::all_of(chosen, zero))
-        at.fail("zero in every component; a branch needs a load");
+        at.fail("zero in every component; a branch needs a nonzero load");
     const bool only_moments = std::ranges::all_of(chosen, moment);
     for (std::size_t k = 0; k < chosen.size(); ++k) {
         if (!only_moments) in_arms(chosen[k], units.arm);
@@ -67,10 +67,11 @@ Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& lo
 
 Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
     std::optional<Parameter> parameter;
-    for (const Term& term : terms(at, "what is driven")) {
+    for (const Term& term : terms(at, "a driven quantity")) {
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
-        const double rate = weight_of(term, "drives nothing: a value that is kept goes into hold");
+        const double rate =
+            weight_of(term, "rate zero drives nothing; a constant value belongs in hold");
         // Rate in quantity units per unit of a; exactly 1 for equal units.
         const double si = quantity.unit.name == parameter->unit.name
                               ? rate
@@ -89,8 +90,8 @@ void read_static_loads(const Cursor& at, const Units& units, const Loads& loads,
 
 void read_hold(const Cursor& at, Drivables& drivables, Scene& scene, Branch& branch) {
     if (at.value->kind != Value::Kind::map)
-        at.fail(fmt::format("expected a map of what is held to its value, found {}", at.found()));
-    for (const Term& term : terms(at, "what is held")) {
+        at.fail(fmt::format("expected a map from held quantities to values, found {}", at.found()));
+    for (const Term& term : terms(at, "a held quantity")) {
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         const double value = quantity.unit.si(term.number(quantity.unit.name));
         branch.drivers.push_back(
@@ -104,7 +105,7 @@ void require_different(const Cursor& branch, const std::vector<Driver>& drivers)
             if (!is_same(drivers[k].what, drivers[l].what)) continue;
             const bool both = drivers[k].rate != 0 && drivers[l].rate != 0;
             const bool neither = drivers[k].rate == 0 && drivers[l].rate == 0;
-            branch.fail(fmt::format("{} the same thing twice; allowed: once",
+            branch.fail(fmt::format("{} the same quantity twice; allowed: once",
                                     both      ? "drives"
                                     : neither ? "holds"
                                               : "drives and holds"));
@@ -119,19 +120,19 @@ void read_range(const Cursor& at, const Parameter& parameter, std::size_t bodies
     branch.unit = parameter.kind;
     branch.from = from ? parameter.unit.si(from->number(unit)) : 0;
     branch.to = parameter.unit.si(to.number(unit));
-    if (branch.to == 0) to.fail("zero leads nowhere; allowed: any other value");
+    if (branch.to == 0) to.fail("zero: the branch would have no length; allowed: any other value");
     if (branch.from * branch.to > 0)
-        from->fail(fmt::format(
-            "{} and `to` are on the same side of 0, where the branch begins; allowed: the "
-            "other side, or 0",
-            from->found()));
+        from->fail(
+            fmt::format("{} and `to` are on the same side of 0, the start of the branch; allowed: "
+                        "the other side, or 0",
+                        from->found()));
     const Cursor steps = at.require("steps");
     // at least one per side
     branch.steps = steps.whole_number(branch.from == 0 ? 1 : 2, most_steps);
     if (branch.steps * static_cast<double>(bodies) > most_poses)
         steps.fail(fmt::format(
-            "{} steps of {} bodies are too many positions to keep; allowed: {:.0f}", branch.steps,
-            bodies, std::floor(most_poses / static_cast<double>(bodies))));
+            "{} steps of {} bodies are too many positions to store; allowed: {:.0f} steps",
+            branch.steps, bodies, std::floor(most_poses / static_cast<double>(bodies))));
 }
 
 Branch read_branch(const std::string& name, const Cursor& at, const Units& units,
@@ -140,9 +141,9 @@ Branch read_branch(const std::string& name, const Cursor& at, const Units& units
     const auto load = at.optional("load"), drive = at.optional("drive");
     if (load && drive)
         drive->fail(
-            "given together with load; allowed: one of the two (a load that is kept goes into "
+            "given together with load; allowed: one of the two (a constant load belongs in "
             "static_loads)");
-    if (!load && !drive) at.fail("nothing that moves; allowed: load or drive");
+    if (!load && !drive) at.fail("the branch drives nothing; required: load or drive");
     Branch branch;
     branch.name = name;
     const Parameter parameter = load ? read_loads_moved(*load, units, loads, branch)
@@ -189,7 +190,7 @@ void require_moving(const Cursor& section, const Scene& scene) {
         for (const Driver& driver : scene.branches[b].drivers)
             if (moves(driver)) why += (why.empty() ? "" : "; ") + lost(driver, scene, model);
         section.require(scene.branches[b].name)
-            .fail("moves nothing that an output depends on: " + why);
+            .fail("changes nothing that an output depends on: " + why);
     }
 }
 

@@ -59,19 +59,18 @@ FrameField read_frame(const Cursor& at, const Definitions& defs) {
     const Vector3d d_b = direction(at.require(keys[1]), defs);
     const Vector3d across = d_b - d_b.dot(e_a) * e_a;
     if (!(across.norm() > least_sine))
-        at.fail(fmt::format("axes {} and {} are parallel; two different ones are needed", keys[0],
-                            keys[1]));
+        at.fail(fmt::format("axes {} and {} are parallel; two different directions are needed",
+                            keys[0], keys[1]));
     return {completed(a, e_a, b, across.normalized()), std::nullopt};
 }
 
-// Axes on the second body, if the bodies are rotated relative to each other as drawn.
+// Axes on the second body, if the bodies are rotated relative to each other at the design position.
 Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& defs) {
     const FrameField other = read_frame(at, defs);
     if (frame.only_axis || other.only_axis)
         at.fail(
-            "needs two axes, and so does frame: bodies that are turned against each other have no "
-            "axis to "
-            "spare");
+            "needs two axes, as does frame: both frames must be fully defined if they are not "
+            "parallel");
     return other.axes;
 }
 
@@ -151,7 +150,7 @@ Matrix6 read_rates(const Cursor& bushing, const Units& units) {
 // A curve replaces the rate of its axis.
 PerAxis read_curves(const Cursor& at, const Matrix6& K, const Definitions& defs) {
     at.only_keys({std::begin(axis_names), std::end(axis_names)});
-    if (at.value->keys.empty()) at.fail("empty; a curve for one of the axes is needed");
+    if (at.value->keys.empty()) at.fail("empty; a curve for at least one axis is needed");
     PerAxis law;
     for (std::size_t k = 0; k < 6; ++k) {
         const auto i = static_cast<Eigen::Index>(k);
@@ -215,13 +214,13 @@ Formulation read_formulation(const Cursor& at) {
     if (const auto angles = at.optional("angles"))
         result.angles =
             std::array{Angles::rotation_vector, Angles::cardan, Angles::projected}[angles->one_of(
-                "a measure of rotation", {"rotation_vector", "cardan", "projected"})];
+                "a definition of the angles", {"rotation_vector", "cardan", "projected"})];
     if (const auto conjugate = at.optional("conjugate")) result.conjugate = conjugate->yes_or_no();
     if (const auto moment = at.optional("offset_moment"))
         result.offset_moment = moment->yes_or_no();
     if (!result.conjugate && result.frame == Frame::middle)
         at.require("conjugate")
-            .fail("false, which is not defined with the frame in the middle; allowed there: true");
+            .fail("false is not defined with the frame in the middle; allowed there: true");
     return result;
 }
 
@@ -260,7 +259,7 @@ std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
 // Rejects a frame with only this axis unless the bushing is rotationally symmetric about it.
 void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) {
     const auto refuse = [&](const char* why) {
-        frame.fail(fmt::format("one axis is not enough, as {}; give a second one", why));
+        frame.fail(fmt::format("one axis is not enough, because {}; give a second one", why));
     };
     const Matrix6 turn = quarter_turn(axis);
     const auto is_same = [](const auto& x, const auto& y) {
@@ -268,10 +267,10 @@ void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) 
     };
     const auto is_round = [&](const Vector6& v) { return is_same(v, turn * v); };
     const auto K = rates_round(axis, bushing.law);
-    if (!K) refuse("a curve across it is not the same all round");
+    if (!K) refuse("a curve across it is not axisymmetric");
     if (!is_same(*K, turn * *K * turn.transpose()) || !is_round(bushing.preload))
-        refuse("the rates or the preload across it are not the same all round");
-    if (!is_round(bushing.undeformed)) refuse("the undeformed position is off it");
+        refuse("the rates or the preload across it are not axisymmetric");
+    if (!is_round(bushing.undeformed)) refuse("the undeformed position is not on it");
     if (bushing.formulation.angles != Formulation::Angles::rotation_vector)
         refuse("cardan and projected angles need all three");
 }

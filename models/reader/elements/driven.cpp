@@ -51,9 +51,8 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
             result.table[name] = entry;
         } else {
             result.not_driven[name] = fmt::format(
-                "a {} joint, which has nothing to drive; allowed: the length of a distance, the "
-                "offset "
-                "of an in_plane, the displacement of a translational, the angle of a revolute or "
+                "a {} joint cannot be driven; allowed: the length of a distance, the offset of an "
+                "in_plane, the displacement of a translational, the angle of a revolute or "
                 "cylindrical joint",
                 type_of(joint.kind));
         }
@@ -70,7 +69,7 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
     const double* rate = rate_of(law);
     if (rate != nullptr && *rate == 0) {
         for (const char* field : {".free_length", ".preload"})
-            result.not_driven[name + field] = "of a spring of zero rate, which it does not move";
+            result.not_driven[name + field] = "a spring of rate zero, on which it has no effect";
         return;
     }
     add(".free_length", ParameterUnit::metre, units.length, 1);
@@ -78,8 +77,8 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
         add(".preload", ParameterUnit::newton, units.force, 1 / *rate);
     else
         result.not_driven[name + ".preload"] =
-            "of a spring with a curve, where it is not in proportion to any length; "
-            "allowed: its free_length";
+            "the preload of a spring with a curve is not proportional to a length; allowed: its "
+            "free_length";
 }
 
 // A torsion spring has a preload about its axis only.
@@ -167,10 +166,10 @@ bool is_same(const Driven& a, const Driven& b) {
 int add_joint(const Cursor& at, const Joint& joint, Scene& scene) {
     if (std::ranges::any_of(scene.joints,
                             [&](const Joint& other) { return other.name == joint.name; }))
-        at.fail(fmt::format(
-            "needs a joint of its own called {}, but there is one already; call that one "
-            "something else",
-            quote(joint.name)));
+        at.fail(
+            fmt::format("the joint name {} is reserved for its drive, but already in use; rename "
+                        "the other joint",
+                        quote(joint.name)));
     scene.joints.push_back(joint);
     return static_cast<int>(scene.joints.size()) - 1;
 }
@@ -183,7 +182,7 @@ const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& d
             at.fail(fmt::format("{} is {}", quote(name), why->second));
         std::vector<std::string> names;
         for (const auto& entry : drivables.table) names.push_back(entry.first);
-        at.fail(fmt::format("{} is nothing that can be driven{}", quote(name),
+        at.fail(fmt::format("{} cannot be driven{}", quote(name),
                             did_you_mean(name, names, "allowed")));
     }
     Drivable& result = found->second;

@@ -14,8 +14,7 @@ Vector3d read_acceleration(const Cursor& at, const Definitions& defs) {
     const Vector3d g = vector(at, {"m/s²"});
     if (defs.mirror && g.y() != 0)
         at.fail(
-            "has a part along y, and a scene that mirrors itself is pulled to neither side; "
-            "allowed: [x, 0, "
+            "has a y component, which is not symmetric; allowed in a scene with a mirror: [x, 0, "
             "z]");
     return g;
 }
@@ -25,7 +24,8 @@ std::optional<double> read_mass(const Cursor& body) {
     const auto mass = body.optional("mass");
     if (!mass) {
         if (const auto centre = body.optional("centre_of_gravity"))
-            centre->fail("of a body without a mass; give its mass or leave this out");
+            centre->fail(
+                "centre of gravity of a body without mass; give its mass or remove this field");
         return std::nullopt;
     }
     const double m = mass->number("kg");
@@ -35,10 +35,10 @@ std::optional<double> read_mass(const Cursor& body) {
 
 void add_weight(const Cursor& body, const Load& weight, Scene& scene) {
     if (std::ranges::find(scene.static_loads, weight.name, &Load::name) != scene.static_loads.end())
-        body.fail(fmt::format(
-            "its weight is a load called '{}', but there is one already; call that one something "
-            "else",
-            weight.name));
+        body.fail(
+            fmt::format("the load name '{}' is reserved for its weight, but already in use; rename "
+                        "the other load",
+                        weight.name));
     scene.static_loads.push_back(weight);
 }
 
@@ -67,7 +67,7 @@ void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result) {
                         twin(weight.kind, defs)},
                        result);
     }
-    if (field && !any_mass) field->fail("pulls nothing: no body has a mass");
+    if (field && !any_mass) field->fail("has no effect: no body has a mass");
 }
 
 }  // namespace elastocheck::reader

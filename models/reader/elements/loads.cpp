@@ -22,9 +22,9 @@ Load load_in(const std::string& name, const Cursor& at, const Definitions& defs,
         return {name,
                 is_follower ? LoadKind(FollowerForce{point, f}) : LoadKind(DeadForce{point, f})};
     }
-    if (!moment) at.fail("no load; allowed: force with at, or moment");
+    if (!moment) at.fail("no load; required: force with at, or moment");
     if (const auto point = at.optional("at"))
-        point->fail("a moment has no point of application; leave it out");
+        point->fail("a moment has no point of application; remove this field");
     const Eigen::Vector3d m = vector(*moment, moment_unit);
     return {name, is_follower ? LoadKind(FollowerMoment{on, m}) : LoadKind(DeadMoment{on, m})};
 }

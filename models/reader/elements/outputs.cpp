@@ -23,7 +23,7 @@ Place end_of_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
 }
 
 SteeringAxis read_steering_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
-    const auto ends = at.list(2, "ends, the lower and the upper one");
+    const auto ends = at.list(2, "ends, the lower and the upper");
     const Place lower = end_of_axis(ends[0], wheel, defs),
                 upper = end_of_axis(ends[1], wheel, defs);
     if (!((upper.position - lower.position).norm() > coincident))

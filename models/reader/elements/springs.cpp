@@ -75,7 +75,7 @@ std::vector<Elastic> read_stops(const std::string& name, const Cursor& at,
     at.only_keys({"bodies", "from", "to", "bump", "rebound"});
     std::vector<Elastic> result;
     add_stops(name, at, read_ends(at, defs), "bump", "rebound", defs, result);
-    if (result.empty()) at.fail("no stop; allowed: bump, rebound");
+    if (result.empty()) at.fail("no stop; required: bump or rebound");
     return result;
 }
 

@@ -26,16 +26,16 @@ bool stands_only_where_driven(const Drivable& quantity, const Scene& scene) {
 Trim::Adjustment read_adjustment(const Term& term, const Loads& loads, Drivables& drivables,
                                  Scene& scene) {
     if (loads.contains(term.name) && !drivables.table.contains(term.name))
-        term.at.fail(fmt::format(
-            "{} is a load, and loads are not adjusted; allowed: preloads, free lengths and "
-            "offsets, named as in drive",
-            quote(term.name)));
+        term.at.fail(
+            fmt::format("{} is a load, which cannot be adjusted; allowed: preloads, free lengths "
+                        "and offsets, named as in drive",
+                        quote(term.name)));
     if (const auto found = drivables.table.find(term.name);
         found != drivables.table.end() && stands_only_where_driven(found->second, scene))
-        term.at.fail(fmt::format(
-            "{} is there only on the branches that drive it; allowed: what stands on all of "
-            "them",
-            quote(term.name)));
+        term.at.fail(
+            fmt::format("{} is active only on the branches that drive it; allowed: elements and "
+                        "joints that are active on all branches",
+                        quote(term.name)));
     const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
     return {.name = term.name,
             .what = quantity.what,
@@ -47,13 +47,14 @@ std::vector<Trim::Adjustment> read_adjustments(const Cursor& at, const Loads& lo
                                                Drivables& drivables, Scene& scene) {
     if (at.value->kind == Value::Kind::map)
         at.fail(
-            "expected a name or a list of names, found a map; what is adjusted has no value yet");
+            "expected a name or a list of names, found a map; adjusted quantities have no values "
+            "before the trim");
     std::vector<Trim::Adjustment> adjustments;
-    for (const Term& term : terms(at, "what is adjusted")) {
+    for (const Term& term : terms(at, "an adjusted quantity")) {
         const auto adjustment = read_adjustment(term, loads, drivables, scene);
         for (const auto& other : adjustments)
             if (is_same(other.what, adjustment.what))
-                term.at.fail(fmt::format("{} adjusts the same thing as {}; allowed: once",
+                term.at.fail(fmt::format("{} adjusts the same quantity as {}; allowed: once",
                                          quote(term.name), quote(other.name)));
         adjustments.push_back(adjustment);
     }
@@ -92,7 +93,7 @@ std::vector<Trim::Condition> read_conditions(const Cursor& at, const Scene& scen
     for (const Term& term : terms(at, "an output")) {
         const auto found = table.find(term.name);
         if (found == table.end())
-            term.at.fail(fmt::format("{} is no output that a trim can ask for{}", quote(term.name),
+            term.at.fail(fmt::format("{} cannot be a condition of a trim{}", quote(term.name),
                                      did_you_mean(term.name, names, "allowed")));
         const auto& [what, unit] = found->second;
         const auto value =

@@ -19,10 +19,10 @@ namespace {
 using Eigen::Vector3d;
 
 std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
-    if (scene.wheels.empty()) tyre.fail("there is no wheel for it; give wheel or wheels");
+    if (scene.wheels.empty()) tyre.fail("the scene has no wheel; give wheel or wheels");
     const auto named = tyre.optional("wheel");
     if (scene.wheels.front().name.empty()) {  // the short form
-        if (named) named->fail("the only wheel of the scene has no name; leave this out");
+        if (named) named->fail("the only wheel of the scene has no name; remove this field");
         return 0;
     }
     std::map<std::string, std::size_t> wheels;
@@ -78,8 +78,8 @@ void read_tyres(const Cursor& scene, const Definitions& defs, Drivables& drivabl
         const auto other_wheel = turned(*defs.mirror, result.wheels[wheel].name);
         if (other.has_value() != other_wheel.has_value())
             at.fail(
-                fmt::format("the mirror makes another of {} but not of {}; both, or neither, have "
-                            "{} in their name",
+                fmt::format("the mirror generates a twin of {} but not of {}; both or neither must "
+                            "have {} in their name",
                             other ? "the tyre" : "its wheel", other ? "its wheel" : "the tyre",
                             quote(defs.mirror->from)));
         if (!other) continue;

@@ -22,8 +22,7 @@ constexpr double beyond_all = 1e6;
 std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& half) {
     if (half.front().x != 0 || half.front().f != 0)
         at.fail(
-            "the table of a symmetric curve begins with [0, 0], and the other half is made from "
-            "it");
+            "the table of a symmetric curve must begin with [0, 0]; the other half is generated");
     std::vector<TablePoint> points;
     for (std::size_t k = half.size() - 1; k > 0; --k) points.push_back({-half[k].x, -half[k].f});
     points.insert(points.end(), half.begin(), half.end());
@@ -32,7 +31,7 @@ std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& hal
 
 void scale(const Cursor& at, std::vector<TablePoint>& points) {
     const double factor = at.number();
-    if (!(factor > 0)) at.fail(fmt::format("{} is no scale; allowed: above zero", at.found()));
+    if (!(factor > 0)) at.fail(fmt::format("{} is not a scale; allowed: above zero", at.found()));
     for (TablePoint& point : points) point.f *= factor;
 }
 
@@ -41,20 +40,20 @@ void shift(const Cursor& at, const Unit& unit, std::vector<TablePoint>& points) 
     for (std::size_t k = 0; k < points.size(); ++k) {
         points[k].x += offset;
         if (k > 0 && !(points[k].x > points[k - 1].x))
-            at.fail(fmt::format("{} is so large that rows of the table fall together", at.found()));
+            at.fail(fmt::format("{} is so large that rows of the table coincide", at.found()));
     }
 }
 
 Curve through(const Cursor& curve, const std::vector<TablePoint>& points) {
     const auto way = curve.optional("interpolation");
     const bool is_linear =
-        way && way->one_of("a way between the rows", {"monotone", "linear"}) == 1;
+        way && way->one_of("a kind of interpolation", {"monotone", "linear"}) == 1;
     return is_linear ? polygon(points) : interpolant(points);
 }
 
 bool is_known_outside(const Cursor& curve) {
     const auto outside = curve.optional("outside");
-    return !outside || outside->one_of("a way to go on", {"linear", "unknown"}) == 0;
+    return !outside || outside->one_of("a kind of extrapolation", {"linear", "unknown"}) == 0;
 }
 
 // Force over the penetration s: zero up to s = 0.
@@ -62,7 +61,7 @@ Curve read_contact(const Cursor& at, const Definitions& defs) {
     at.only_keys({"table", "file", "scale", "interpolation", "outside"});
     auto points = read_table(at, of_lengths(defs.units), defs);
     if (points.front().x != 0 || points.front().f != 0)
-        at.fail("the table of a stop begins with [0, 0], where it touches");
+        at.fail("the table of a stop must begin with [0, 0], where it closes");
     if (const auto factor = at.optional("scale")) scale(*factor, points);
     Curve contact = through(at, points);
     contact.pieces.front() = {};
@@ -91,7 +90,7 @@ Curve read_curve(const Cursor& at, const LawUnits& units, const Definitions& def
 ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitions& defs) {
     const auto k = element.optional("rate"), curve = element.optional("curve");
     if (k && curve) curve->fail("given together with rate; allowed: one of the two");
-    if (!k && !curve) element.fail("no law; allowed: rate or curve");
+    if (!k && !curve) element.fail("no law; required: rate or curve");
     if (k) return LinearRate{rate(*k, units.rate)};
     return read_curve(*curve, units, defs);
 }
@@ -102,14 +101,14 @@ Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs) {
     const double clearance = length.si(at.require("clearance").number(length.name));
     const auto k = at.optional("rate"), curve = at.optional("curve");
     if (k && curve) curve->fail("given together with rate; allowed: one of the two");
-    if (!k && !curve) at.fail("no law; allowed: rate or curve");
+    if (!k && !curve) at.fail("no law; required: rate or curve");
     Curve law =
         k ? Curve{{0}, {{}, {0, rate(*k, defs.units.rate), 0, 0}}} : read_contact(*curve, defs);
     for (double& knot : law.knots) knot += clearance;
     for (std::size_t n = 1; n < law.knots.size(); ++n)
         if (!(law.knots[n] > law.knots[n - 1]))
             at.require("clearance")
-                .fail(fmt::format("{} is so large that rows of the curve fall together",
+                .fail(fmt::format("{} is so large that rows of the curve coincide",
                                   at.require("clearance").found()));
     return stop == Stop::rebound ? law : reversed(law);
 }
@@ -128,8 +127,9 @@ double deflection_at(const Cursor& at, const Curve& curve, double force, const U
         return std::abs(at_knot(k) - force) <= round_off * largest;
     };
     const auto many = [&] {
-        at.fail(fmt::format("the curve has {:g} {} at more than one deflection; give a free_length",
-                            unit.written(force), unit.name));
+        at.fail(fmt::format(
+            "the curve has {:g} {} at more than one deflection; give free_length instead",
+            unit.written(force), unit.name));
     };
     const bool goes_on = curve.known_outside;
     if (goes_on && ((below == 0 && is_equal(0)) || (above == 0 && is_equal(last)))) many();
@@ -156,7 +156,8 @@ double deflection_at(const Cursor& at, const Curve& curve, double force, const U
 
 double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit) {
     const auto of_rate = [&](const LinearRate& u) {
-        if (u.k == 0) at.fail("a spring of zero rate has no preload; leave it out or give a rate");
+        if (u.k == 0)
+            at.fail("a spring of rate zero cannot have a preload; remove it or give a rate");
         return force / u.k;
     };
     return std::visit(

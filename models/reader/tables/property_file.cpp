@@ -89,13 +89,13 @@ double unit(const PropertyFile& file, const PropertyBlock& block, std::size_t k,
         names.emplace_back(entry.name);
     }
     fail(file.file, block.lines[k], "UNITS." + block.values[k].first,
-         fmt::format("{} is no unit that is known here{}", quote(block.values[k].second),
+         fmt::format("{} is not a known unit{}", quote(block.values[k].second),
                      did_you_mean(word, names, "known")));
 }
 
 void read_units(PropertyFile& file) {
     const PropertyBlock* units = file.find("UNITS");
-    if (!units) fail(file.file, 0, "UNITS", "missing: without it no number has a unit");
+    if (!units) fail(file.file, 0, "UNITS", "missing: the units of the file are unknown");
     bool has_length = false, has_force = false;
     for (std::size_t k = 0; k < units->values.size(); ++k) {
         const std::string& name = units->values[k].first;
@@ -130,7 +130,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         if (line.empty()) continue;
         const auto closed = [&](char closing) {
             const std::size_t at = line.find(closing);
-            if (at == line.npos) wrong(fmt::format("{} is left open", quote(line)));
+            if (at == line.npos) wrong(fmt::format("{} is not closed", quote(line)));
             return capitals(trimmed(line.substr(1, at - 1)));
         };
         if (line.front() == '[') {
@@ -153,7 +153,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         PropertyBlock& block = file.blocks.back();
         if (line.front() == '{') {
             const std::size_t at = line.find('}');
-            if (at == line.npos) wrong(fmt::format("{} is left open", quote(line)));
+            if (at == line.npos) wrong(fmt::format("{} is not closed", quote(line)));
             block.table = {};
             block.table.columns = words(line.substr(1, at - 1));
             if (block.table.columns.empty()) wrong("a table without columns");
@@ -179,7 +179,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         block.table.rows.push_back(std::move(row));
         block.table.lines.push_back(line_number);
     }
-    if (file.blocks.empty()) fail(name, line_number, "", "no block: this is no property file");
+    if (file.blocks.empty()) fail(name, line_number, "", "no block: this is not a property file");
     read_units(file);
     return file;
 }
@@ -200,14 +200,14 @@ std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock
             if (error != std::errc{} || end != text.data() + text.size() ||
                 !std::isfinite(value[k]))
                 fail(file.file, block.table.lines[n], block.name,
-                     fmt::format("{} is no number", quote(text)));
+                     fmt::format("{} is not a number", quote(text)));
         }
         if (n > 0 && !(value[0] * x_unit > points.back().x))
             fail(file.file, block.table.lines[n], block.name,
-                 fmt::format("{} is not above the one before", value[0]));
+                 fmt::format("{} is not larger than the value before", value[0]));
         if (n > 0 && value[1] * f_unit < points.back().f)
             fail(file.file, block.table.lines[n], block.name,
-                 fmt::format("force {} is below the one before; it may stay, but not fall",
+                 fmt::format("force {} is smaller than the one before; it must not decrease",
                              value[1]));
         points.push_back({value[0] * x_unit, value[1] * f_unit});
     }

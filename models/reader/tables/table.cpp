@@ -27,7 +27,7 @@ std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
         at.fail(
             fmt::format("expected at least two rows [deflection, force], found {}", at.found()));
     if (rows.size() > most_rows)
-        at.fail(fmt::format("{} rows; a table has {} at most", rows.size(), most_rows));
+        at.fail(fmt::format("{} rows; allowed: at most {}", rows.size(), most_rows));
     std::vector<TablePoint> points;
     for (std::size_t n = 0; n < rows.size(); ++n) {
         const auto cells = rows[n].items();
@@ -37,11 +37,12 @@ std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
         const TablePoint point{units.deflection.si(cells[0].number(units.deflection.name)),
                                units.force.si(cells[1].number(units.force.name))};
         if (n > 0 && !(point.x > points.back().x))
-            cells[0].fail(fmt::format("row {}: deflection {} is not above that of the row before",
-                                      n + 1, cells[0].found()));
+            cells[0].fail(
+                fmt::format("row {}: deflection {} is not larger than that of the row before",
+                            n + 1, cells[0].found()));
         if (n > 0 && point.f < points.back().f)
             cells[1].fail(fmt::format(
-                "row {}: force {} is below that of the row before; it may stay, but not fall",
+                "row {}: force {} is smaller than that of the row before; it must not decrease",
                 n + 1, cells[1].found()));
         points.push_back(point);
     }
@@ -84,10 +85,10 @@ FileBeside read_beside(const Cursor& at, const Definitions& defs) {
     const fs::path name = at.text("the name of a file");
     if (name.is_absolute() || std::ranges::find(name, fs::path("..")) != name.end())
         at.fail(fmt::format(
-            "{} leads out of the scene's folder; allowed: a file in it, or in a folder below",
+            "{} is outside the scene's folder; allowed: a file in it, or in a folder below",
             at.found()));
     if (!defs.folder)
-        at.fail("read from beside the scene's file, which there is none of here; give a table");
+        at.fail("relative to the scene's file, but this scene is not a file; give a table");
     const fs::path path = *defs.folder / name;
     // Resolves symbolic links. A path that cannot be resolved cannot be read either, which is
     // reported next.
@@ -103,7 +104,7 @@ FileBeside read_beside(const Cursor& at, const Definitions& defs) {
     const TextFile file = read_text(path, Pipes::refused);
     if (!file.trouble.empty()) at.fail(fmt::format("{}: {}", at.found(), file.trouble));
     if (file.text.size() > largest_text)
-        at.fail(fmt::format("{}: larger than 1 MiB, which no table is", at.found()));
+        at.fail(fmt::format("{}: larger than 1 MiB, the limit for a table", at.found()));
     return {path.string(), file.text};
 }
 
@@ -117,10 +118,11 @@ std::vector<TablePoint> read_file(const Cursor& at, const LawUnits& units,
     const auto [file_name, text] = read_beside(at, defs);
     if (is_property_file(file_name)) {  // with its own units
         if (units.deflection.name != defs.units.length.name)
-            at.fail(fmt::format("{} is a curve of lengths, and this is one of angles", at.found()));
+            at.fail(fmt::format("{} is a curve over a length, but a curve over an angle is needed",
+                                at.found()));
         const PropertyFile file = parse_property_file(text, file_name);
         const PropertyBlock* curve = file.find("CURVE");
-        if (!curve) fail(file_name, 0, "CURVE", "missing: there is no curve in this file");
+        if (!curve) fail(file_name, 0, "CURVE", "missing: the file has no curve");
         auto rows = curve_rows(file, *curve, file.length, file.force);
         // F = AKISPL(free length - DM(I, J)), and here f(ℓ - ℓ₀), tension positive.
         if (units.of_spring && file_name.ends_with(".spr")) {
@@ -163,7 +165,7 @@ std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
                                    const Definitions& defs) {
     const auto table = curve.optional("table"), file = curve.optional("file");
     if (table && file) file->fail("given together with table; allowed: one of the two");
-    if (!table && !file) curve.fail("no points; allowed: table or file");
+    if (!table && !file) curve.fail("no points; required: table or file");
     return table ? read_rows(*table, units) : read_file(*file, units, defs);
 }
 

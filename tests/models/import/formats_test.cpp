@@ -223,7 +223,7 @@ TEST(Chrono, AMisspeltSpringIsAnErrorThatNamesTheRightKey) {
     const std::string said = refusal(replaced(sample("generic__DoubleWishbone.json"),
                                               "\"Spring Coefficient\"", "\"Spring Coefficent\""),
                                      "model.json");
-    EXPECT_NE(said.find("Spring/Spring Coefficent: not known of this template, did you mean "
+    EXPECT_NE(said.find("Spring/Spring Coefficent: not a field of this template, did you mean "
                         "'Spring Coefficient'?"),
               said.npos)
         << said;
@@ -258,12 +258,12 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
     };
     const std::string both = with("\"Spring Curve Data\": [[-0.1, -500], [0.1, 500]]");
     EXPECT_EQ(std::get<Curve>(law(chrono_scene(both)).law).pieces.at(1)[1], 5000);
-    says(both, "Spring Coefficient: not used: Chrono takes the Spring Curve Data instead");
+    says(both, "Spring Coefficient: not used: Chrono uses the Spring Curve Data instead");
 
     const std::string damper = with("\"Damping Curve Data\": [[-1, -5], [1, 5]]");
     const auto elastics = parse_scene(chrono_scene(damper), "scene").elastics;
     EXPECT_EQ(elastics.size(), 0u);
-    says(damper, "Chrono takes the Damping Curve Data instead: there is no spring");
+    says(damper, "Chrono uses the Damping Curve Data instead: there is no spring");
 
     const std::string one_stop = with("\"Minimum Length\": 0.2");
     EXPECT_EQ(chrono_scene(one_stop).find("bump_stop"), std::string::npos);
@@ -411,29 +411,29 @@ TEST(Chrono, ATableIsStraightBetweenItsRows) {
 TEST(Chrono, SaysWhatIsWrongAndWhere) {
     const std::string sound = sample("generic__DoubleWishbone.json");
     const std::tuple<const char*, std::string, const char*> cases[] = {
-        {"empty", "", "model.json:1: the file ends where a value is expected"},
+        {"empty", "", "model.json:1: the file ends, expected a value"},
         {"no object", "[1]", "expected an object"},
-        {"binary", std::string("{\0}", 3), "this is no JSON"},
-        {"deep", std::string(100, '[') + std::string(100, ']'), "nested deeper than 32"},
+        {"binary", std::string("{\0}", 3), "this is not JSON"},
+        {"deep", std::string(100, '[') + std::string(100, ']'), "nested more than 32 levels deep"},
         {"twice", "{\"a\": 1, \"a\": 2}", "'a' is given twice"},
-        {"open", "{\"a\": 1", "the file ends where a comma or } is expected"},
+        {"open", "{\"a\": 1", "the file ends, expected a comma or }"},
         {"a comma too many", "{\"a\": [1, ], }", "expected a value"},
-        {"an open string", "{\"a\": \"b\n\"}", "a string is left open"},
+        {"an open string", "{\"a\": \"b\n\"}", "a string is not closed"},
         {"an escape", "{\"a\": \"\\q\"}", "an unknown escape"},
-        {"an open comment", "{ /* \"a\": 1}", "a comment /* is left open"},
-        {"more", sound + "{}", "more behind the end"},
+        {"an open comment", "{ /* \"a\": 1}", "a comment /* is not closed"},
+        {"more", sound + "{}", "text after the end"},
         {"NaN", replaced(sound, "14.705", "NaN"), "expected a value"},
         {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"),
          "'Vehicle' is no suspension"},
         {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""),
          "did you mean 'DoubleWishbone'"},
-        {"no spring", sample("generic__RigidPinnedAxle.json"), "no spring at all"},
+        {"no spring", sample("generic__RigidPinnedAxle.json"), "the template has no spring"},
         {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"),
          "model.json:12: Spindle.COM: expected a list of 3"},
         {"a key", replaced(sound, "\"Location Arm\"", "\"Location Am\""),
          "Spring.Location Arm: missing"},
         {"no such part", replaced(sound, "\"Axle\"", "\"Wing\""),
-         "Wing: not known of this template"},
+         "Wing: not a field of this template"},
     };
     for (const auto& [what, text, message] : cases) {
         const std::string said = refusal(text, "model.json");
@@ -536,15 +536,16 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
     for (const auto& [what, text, message] : {
              std::tuple{"nothing", std::string(), "no block"},
              {"no units", replaced(sound, "[UNITS]", "[UNIT]"), "UNITS: missing"},
-             {"a unit", replaced(sound, "'mm'", "'ell'"), "'ell' is no unit"},
+             {"a unit", replaced(sound, "'mm'", "'ell'"), "'ell' is not a known unit"},
              {"no length", replaced(sound, "LENGTH", "WIDTH"), "UNITS.LENGTH: missing"},
              {"no curve", replaced(sound, "[TY_CURVE]", "[T_CURVE]"), "TY_CURVE: missing"},
-             {"open", replaced(sound, "[TY_CURVE]", "[TY_CURVE"), "is left open"},
+             {"open", replaced(sound, "[TY_CURVE]", "[TY_CURVE"), "is not closed"},
              {"three in a row", replaced(sound, "1   4000\n", "1 4000 3\n"),
               ":24: 3 values in a table of 2 columns"},
-             {"a word", replaced(sound, "1   4000\n", "1 much\n"), "'much' is no number"},
-             {"falling", replaced(sound, "1   4000\n", "1 -5000\n"), "it may stay, but not fall"},
-             {"back", replaced(sound, "1   4000\n", "-2 4000\n"), "is not above the one before"},
+             {"a word", replaced(sound, "1   4000\n", "1 much\n"), "'much' is not a number"},
+             {"falling", replaced(sound, "1   4000\n", "1 -5000\n"), "it must not decrease"},
+             {"back", replaced(sound, "1   4000\n", "-2 4000\n"),
+              "is not larger than the value before"},
              {"alone", replaced(sound, "-1  -4000\n1   4000\n", "1 4000\n"), "fewer than two rows"},
              {"no columns", replaced(sound, "{ y  fy }\n", ""),
               "expected NAME = value, or columns"},
@@ -558,7 +559,7 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
     EXPECT_NE(said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]")
                   .find("the file has all six curves"),
               std::string::npos);
-    EXPECT_NE(said(sound, "rates: ../mount.bus").find("leads out of the scene's folder"),
+    EXPECT_NE(said(sound, "rates: ../mount.bus").find("is outside the scene's folder"),
               std::string::npos);
 }
 
@@ -598,7 +599,7 @@ TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
     EXPECT_NE(front("x-forward,y-right").find("lca_front_left: [-200, 400, -150]"),
               std::string::npos);
     EXPECT_NE(front("x-rearward,y-right")
-                  .find("# Axes turned from x-rearward,y-right, z up to x forward, y left, z up "
+                  .find("# Axes rotated from x-rearward,y-right, z up to x forward, y left, z up "
                         "(ISO 8855)."),
               std::string::npos);
     EXPECT_THROW(front("x-up,y-left"), SceneError);
@@ -707,7 +708,7 @@ TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
         importer::export_chrono(other, false);
         ADD_FAILURE() << "another curve passes for Chrono's";
     } catch (const SceneError& error) {
-        EXPECT_NE(std::string(error.what()).find("stops in Chrono are of one hard-coded curve"),
+        EXPECT_NE(std::string(error.what()).find("stops in Chrono have one hard-coded curve"),
                   std::string::npos)
             << error.what();
     }
