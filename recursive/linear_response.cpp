@@ -14,22 +14,20 @@ void check(const Model& model, const Equilibrium& state,
     const auto require = [](bool met, const char* what) {
         if (!met) throw std::invalid_argument(what);
     };
-    require(state.poses.size() == model.bodies.size(), "the state is of another model");
+    require(state.poses.size() == model.bodies.size(), "the state belongs to another model");
     for (const Disturbance& disturbance : disturbances)
-        std::visit(
-            overloaded{
-                [&](const UnitWrench& wrench) {
-                    require(static_cast<std::size_t>(wrench.at.body) < model.bodies.size(),
-                            "a disturbance acts on no body of the model");
-                },
-                [&](const Motion& motion) {
-                    const auto at = static_cast<std::size_t>(motion.joint);
-                    require(
-                        at < model.joints.size() && model.joints[at].driven >= 0,
-                        "a disturbance moves a joint that has no offset, length or angle to move");
-                },
-            },
-            disturbance);
+        std::visit(overloaded{
+                       [&](const UnitWrench& wrench) {
+                           require(static_cast<std::size_t>(wrench.at.body) < model.bodies.size(),
+                                   "a disturbance acts on no body of the model");
+                       },
+                       [&](const Motion& motion) {
+                           const auto at = static_cast<std::size_t>(motion.joint);
+                           require(at < model.joints.size() && model.joints[at].driven >= 0,
+                                   "a disturbance drives a joint without offset, length or angle");
+                       },
+                   },
+                   disturbance);
 }
 
 // Right-hand side of one disturbance. A wrench enters the upper rows. A motion of a joint enters
@@ -136,7 +134,8 @@ std::string words(Outcome outcome, const Disturbance& disturbance, const Model& 
             }},
         disturbance);
     if (outcome == Outcome::loaded_idle_mode)
-        return what + " acts on a motion that no joint or element resists as drawn: " +
+        return what +
+               " acts on a motion that no joint or element resists at the design position: " +
                idle_modes(diagnosis);
     if (outcome == Outcome::inconsistent_constraints) return what + " would open redundant joints";
     return what;
@@ -162,7 +161,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
         return response;
     };
     if (const Outcome outcome = factorise(s, method); outcome != Outcome::converged)
-        return fail(outcome, "a small disturbance has no one response at the state");
+        return fail(outcome, "the response to a small disturbance is not unique at the state");
     for (const Disturbance& disturbance : disturbances) {
         disturb(s, disturbance);
         back_substitute(s);

@@ -31,7 +31,8 @@ std::string in_unit(ParameterUnit unit, double a) {
     return {};
 }
 
-// Names of the redundant joints that are inconsistent as drawn: "'upper', 'lower'"; empty if none.
+// Names of the redundant joints that are inconsistent at the design position: "'upper', 'lower'";
+// empty if none.
 std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
     std::string names;
     for (const auto& redundancy : diagnosis.redundant)
@@ -51,21 +52,25 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                                              : "at " + in_unit(branch.unit, stop.at);
     switch (outcome) {
         case Outcome::loaded_idle_mode:
-            detail += ": the load acts on a motion that no joint or element resists as drawn: " +
-                      idle_modes(diagnosis);
+            detail +=
+                ": the load acts on a motion that no joint or element resists at the design "
+                "position: " +
+                idle_modes(diagnosis);
             break;
         case Outcome::singular:
             detail += ": the branch bifurcates, turns back or loses its stability before";
             if (diagnosis.null_space.cols() > 0)
-                detail += ", or what was idle or redundant at the design position no longer is";
+                detail +=
+                    ", or an idle mode or redundant constraint of the design position no longer is "
+                    "one";
             break;
         case Outcome::inconsistent_constraints:
             if (!std::isnan(stop.at))
                 detail += ": redundant joints are inconsistent";
             else
                 detail = fmt::format(
-                    "the joints{} cannot be closed; as drawn they are open by up to {:.3g} mm, or "
-                    "mrad",
+                    "the joints{} cannot be closed; at the design position their gap is up to "
+                    "{:.3g} mm, or mrad",
                     in_contradiction(model, diagnosis), 1e3 * diagnosis.constraint_error);
             break;
         case Outcome::limit_point:
@@ -158,7 +163,7 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
         const auto limit = stability_limit(model, branch, options.method, analysis);
         path.detail +=
             limit ? "; by the model the method is stable to " + in_unit(branch.unit, *limit)
-                  : std::string("; the model alone sets it no limit on this branch");
+                  : std::string("; the model sets no stability limit on this branch");
     }
     return path;
 }

@@ -38,7 +38,7 @@ double in_unit(Unit unit);      // factor from SI (m, rad, N, N·m, 1) to this u
 std::optional<Unit> find_unit(std::string_view symbol);
 Unit unit_of(ParameterUnit unit);  // display unit of a branch parameter
 
-// ---- What a channel reads, one type each.
+// ---- Kinds of channels: the quantity that a channel reads, one type each.
 
 enum class ChannelKind {
     motion,    // of the configuration alone: a position or an angle
@@ -91,7 +91,7 @@ struct Track {
     static constexpr ChannelKind kind = ChannelKind::motion;
     std::size_t left = 0, right = 0;  // positions in Model::wheels
 };
-// Ackermann fraction: how nearly the perpendiculars to two steered wheels meet on the line of the
+// Ackermann fraction, 1 where the perpendiculars to the two steered wheels meet on the line of the
 // other axle. With δ the steer angles, positive to the left, δ = -side · toe:
 //
 //   (cot δ_right - cot δ_left) l / j      1 where they meet on it, 0 for parallel wheels

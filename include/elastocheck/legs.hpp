@@ -44,13 +44,13 @@ struct SolverSettings {
 // Runs one branch side by any leg. Ends before the first point at which an element is deformed
 // beyond the end of a curve that is not extrapolated: Outcome::outside_table. With a `visit`,
 // points are not kept.
-EquilibriumPath walk(const BranchSide& way, const SolverSettings& solver, const Visit& visit = {});
+EquilibriumPath walk(const BranchSide& side, const SolverSettings& solver, const Visit& visit = {});
 
 // Joins the sides into one path from `from` to `to`; one side is returned as it was run. The path
 // has the outcome of the first side that failed, and the points reached on either side of a = 0.
-EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver);
+EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver);
 
 // Residuals of the state in the equations of a leg.
-Residuals judge(Leg by, const BranchSide& way, const Equilibrium& state);
+Residuals judge(Leg by, const BranchSide& side, const Equilibrium& state);
 
 }  // namespace elastocheck::compare

@@ -36,10 +36,10 @@ struct Driver {
 
 enum class ParameterUnit { newton, newton_metre, metre, radian, none };
 
-// A path of equilibria. At a = 0 it starts with the scene as drawn, settled under the start values.
-// From there a goes to `to`, and to `from` if that is on the other side of 0: one path with two
-// sides. The paper's example is two branches driven by a load, to +3000 and to -3000 N, 300 steps
-// each.
+// A path of equilibria. At a = 0 it starts with the scene at the design position, settled under the
+// start values. From there a goes to `to`, and to `from` if that is on the other side of 0: one
+// path with two sides. The paper's example is two branches driven by a load, to +3000 and to -3000
+// N, 300 steps each.
 struct Branch {
     std::string name;
     double from = 0;  // of the parameter a
@@ -49,9 +49,9 @@ struct Branch {
     std::vector<Driver> drivers;
 };
 
-// Steering axis of the wheel as drawn: the line through two points, each fixed in its body (two
-// ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs do not read
-// it.
+// Steering axis of the wheel at the design position: the line through two points, each fixed in its
+// body (two ball joints of a wheel carrier; the top mount of a strut). For outputs only; the legs
+// do not read it.
 struct SteeringAxis {
     Point lower, upper;  // or ground
 };
@@ -107,8 +107,8 @@ struct Number {
 };
 
 // ---- Trim: parameters adjusted until the design position is in equilibrium under the start values
-// of every branch. As many conditions as adjustments. Solved first (compare/comparison/trim.hpp); the branches
-// start from there.
+// of every branch. As many conditions as adjustments. Solved first (compare/comparison/trim.hpp);
+// the branches start from there.
 
 struct WheelTravel {
     int wheel = 0;
@@ -137,7 +137,7 @@ struct Trim {
     struct Condition {
         std::string name;  // "left.travel"
         ConditionKind what;
-        std::optional<double> value;  // SI; none: its value in the scene as drawn
+        std::optional<double> value;  // SI; none: its value in the scene at the design position
     };
     std::vector<Adjustment> adjust;
     std::vector<Condition> until;

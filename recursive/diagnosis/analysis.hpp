@@ -12,9 +12,9 @@ namespace elastocheck::recursive {
 // elastic elements and bodies of its model; loads and drivers belong to the branches.
 struct Analysis {
     Diagnosis diagnosis;
-    // (24) with ∂G/∂q for K at the design position as drawn, λ = 0: factorised
+    // (24) with ∂G/∂q for K at the design position at the design position, λ = 0: factorised
     SaddlePoint<double> system;
-    Vector<double> R_d, Phi_d;  // residuals as drawn: f_ext - f_elast [6nb], Φ [m]
+    Vector<double> R_d, Phi_d;  // residuals at the design position: f_ext - f_elast [6nb], Φ [m]
     double pivot_ratio = 0;     // of those factors, smallest over largest
     // R_d and Φ_d are below rounding: the design position is an equilibrium
     bool at_rest = false;

@@ -490,10 +490,9 @@ std::string undecided(const Model& model, const Diagnosis& diagnosis) {
     const auto in_doubt = std::ranges::find_if(diagnosis.redundant, &Redundancy::undecided);
     if (in_doubt == diagnosis.redundant.end()) return {};
     return fmt::format(
-        "whether joint '{}' repeats what others hold cannot be told: {:.1e} of one of its "
-        "equations is left, "
-        "more than "
-        "rounding and less than {:.0e}; draw it to repeat them, or not to",
+        "whether joint '{}' is redundant is undecidable: the independent part of one of its "
+        "equations is {:.1e}, more than rounding and less than {:.0e}; make it exactly redundant "
+        "or clearly independent",
         model.joints[static_cast<std::size_t>(in_doubt->joint)].name, in_doubt->left,
         rank_threshold);
 }
@@ -508,7 +507,7 @@ std::vector<std::string> told_idle_modes(const Diagnosis& diagnosis) {
             lines.push_back(mode.description + ", " + moving(mode.outputs));
     if (together)
         lines.push_back((spinning.size() == 2 ? "both " : "") + listed(spinning) +
-                        " spin about themselves, which " + moving({}));
+                        " rotate about their own axis, which " + moving({}));
     return lines;
 }
 

@@ -41,7 +41,7 @@ std::string not_finite(const Model& model) {
             name("element", model.elastics[at].name);
     std::string all;
     for (const auto& one : names)
-        all += (all.empty() ? "as drawn a number is not finite in " : ", ") + one;
+        all += (all.empty() ? "a number of the model is not finite in " : ", ") + one;
     return all;
 }
 

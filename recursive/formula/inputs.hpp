@@ -1,10 +1,10 @@
 // Inputs of the equations that the drivers of a branch change.
 // Balance and Φ are functions of (q, inputs); at the parameter a
 //
-//   input(t, a) = as drawn + t · start + a · rate
+//   input(t, a) = value at the design position + t · start + a · rate
 //
-// for every driver. t goes from 0, the model as drawn, to 1 while the start is settled
-// (settle.hpp), and stays 1 on the branch.
+// for every driver. t goes from 0, the model at the design position, to 1 while the start is
+// settled (settle.hpp), and stays 1 on the branch.
 #pragma once
 
 #include <stdexcept>
@@ -31,7 +31,7 @@ struct Inputs {
     std::vector<int> row;           // per constraint: its first row of Φ
 };
 
-// ---- Values of the model as drawn.
+// ---- Values of the model at the design position.
 
 template <class Real>
 Real offset_of(const ConstraintKind& kind) {
@@ -82,17 +82,17 @@ inline void check(const Model& model, const Branch& branch) {
                        [&](const Motion& m) {
                            const auto at = static_cast<std::size_t>(m.joint);
                            require(at < model.joints.size() && model.joints[at].driven >= 0,
-                                   "it drives a joint that has no offset, length or angle to move");
+                                   "it drives a joint without offset, length or angle");
                        },
                        [&](const FreeLength& f) {
                            const ElasticKind* kind = elastic(f.elastic);
                            require(kind != nullptr && driven_number(*kind) != nullptr,
-                                   "it drives the free length of what is no spring");
+                                   "it drives the free length of an element that is not a spring");
                        },
                        [&](const Preload& p) {
                            const ElasticKind* kind = elastic(p.elastic);
                            require(kind != nullptr && preload(*kind) != nullptr,
-                                   "it drives the preload of what is no bushing");
+                                   "it drives the preload of an element that is not a bushing");
                        },
                    },
                    driver.what);
@@ -100,16 +100,17 @@ inline void check(const Model& model, const Branch& branch) {
         const auto* f = member<Formulation>(element.kind);
         if (f == nullptr) continue;
         require(f->frame != Formulation::Frame::on_j,
-                "a bushing's frame is on j, which compile() turns round");
+                "a bushing's frame is on j; compile() converts it to one on i");
         require(f->conjugate || f->frame == Formulation::Frame::on_i,
                 "a bushing's forces are not conjugate, which is defined with its frame on i only");
     }
-    require(stands_on(model, branch),
-            "the model does not stand on it, or it does not begin at 0 (on_branch, ways)");
+    require(
+        stands_on(model, branch),
+        "the model has parts that are inactive on it, or it does not begin at 0 (on_branch, ways)");
 }
 
-// The inputs at (t, a), from those as drawn. Allocates only on the first call with the same
-// `inputs`.
+// The inputs at (t, a), from those at the design position. Allocates only on the first call with
+// the same `inputs`.
 template <class Real>
 void set_inputs(const Model& model, const Branch& branch, const Inputs<Real>& drawn, Real t, Real a,
                 Inputs<Real>& inputs) {

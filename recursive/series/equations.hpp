@@ -192,7 +192,8 @@ struct Equations {
     std::vector<ConstraintSeries> constraints;
     std::vector<LoadSeries> loads;  // static, then driven
     Vector<double> G, Phi;          // coefficient k after pass `known` [6nb], [m]
-    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d replace G and Φ; d: as drawn.
+    // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d replace G and Φ; d: at the design
+    // position.
     Vector<double> G_d, Phi_d;  // [6nb], [m]
     bool curved = false;        // whether any law is a curve
 

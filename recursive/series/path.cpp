@@ -580,16 +580,18 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
         case Outcome::singular:
             return at +
                    ": the matrix is or was singular: the branch bifurcates or loses its stability" +
-                   (diagnosis.null_space.cols() > 0
-                        ? ", or what was idle or redundant at the design position no longer is"
-                        : "");
+                   (diagnosis.null_space.cols() > 0 ? ", or an idle mode or redundant constraint "
+                                                      "of the design position no longer is one"
+                                                    : "");
         case Outcome::bifurcation_point:
             return at +
                    ": another curve of equilibria crosses the branch, which is unstable past this "
                    "point";
         case Outcome::inconsistent_constraints: return at + ": redundant joints are inconsistent";
         case Outcome::loaded_idle_mode:
-            return at + ": the load acts on a motion that no joint or element resists as drawn: " +
+            return at +
+                   ": the load acts on a motion that no joint or element resists at the design "
+                   "position: " +
                    idle_modes(diagnosis);
         default: return at;
     }

@@ -1,6 +1,6 @@
 // Settling: homotopy from the design position to the equilibrium at the start of the branch.
 // t goes from 0 to 1 (stepping_state.hpp), under preloads, static loads, start values of drivers
-// and joints that are open as drawn.
+// and joints that are open at the design position.
 #pragma once
 
 #include "recursive/stepping/continuation.hpp"
@@ -14,7 +14,8 @@ inline bool starts_as_drawn(const Branch& branch) {
                                [](const Driver& driver) { return driver.start == 0; });
 }
 
-// Whether the forces load an idle mode, tested as drawn, where the modes are most accurate.
+// Whether the forces load an idle mode, tested at the design position, where the modes are most
+// accurate.
 template <class Real>
 bool loads_idle_mode(const SteppingState<Real>& s) {
     Vector<Real> f_ext, f_elast;
@@ -27,8 +28,8 @@ bool loads_idle_mode(const SteppingState<Real>& s) {
              rounding + Real(guard::share_per_error) * blur);
 }
 
-// Whether joints that are open as drawn are still open after settling. An angle counts as closed on
-// one side only (u_i·w = 0 has two solutions).
+// Whether joints that are open at the design position are still open after settling. An angle
+// counts as closed on one side only (u_i·w = 0 has two solutions).
 template <class Real>
 bool remains_open(const SteppingState<Real>& s, Real share) {
     const Real open = s.Phi_d.norm();

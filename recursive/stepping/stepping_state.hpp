@@ -20,8 +20,8 @@ namespace elastocheck::recursive {
 //
 //   Φ(q, inputs(t, a)) = (1 - t) Φ_d        G(q, λ, inputs(t, a)) = -(1 - t) R_d
 //
-// Φ_d is the constraint error and R_d = f_ext - f_elast the imbalance as drawn. At t = 0 the design
-// position satisfies the equations by definition, and the path to t = 1 is smooth.
+// Φ_d is the constraint error and R_d = f_ext - f_elast the imbalance at the design position. At t
+// = 0 the design position satisfies the equations by definition, and the path to t = 1 is smooth.
 template <class Real>
 struct Parameters {
     Real t = 0, a = 0;
@@ -33,17 +33,17 @@ namespace guard {
 // A mode counts as idle while its strain, as a fraction of the strain if only one end of each
 // element moved, is less than this; a real mode has a fraction near one.
 inline constexpr double idle_strain = 1e-3;
-// The constraint error blurs what is idle or redundant: the strain and the load fraction allowed
-// for each unit of |Φ| / L.
+// The constraint error blurs which modes are idle and which constraints redundant: the strain and
+// the load fraction allowed for each unit of |Φ| / L.
 inline constexpr double strain_per_error = 100, share_per_error = 10;
 // Rounding blurs it too: in multiples of the unit round-off, since the load fraction is a small
 // difference of forces, amplified by the condition number.
 inline constexpr double rounding = 1e7;
-// Joints that are open by less than this [m, rad] as drawn count as closed: their points are given
-// with nine digits.
+// Joints that are open by less than this [m, rad] at the design position count as closed: their
+// points are given with nine digits.
 inline constexpr double closed = 1e-9;
-// Redundant joints agree as drawn within nine digits of L or of a direction; else they are
-// inconsistent.
+// Redundant joints agree at the design position within nine digits of L or of a direction; else
+// they are inconsistent.
 inline constexpr double agreeing = 1e-9;
 // The linearisation of a rotation, eq. (6), is wrong by half at one radian.
 inline constexpr double largest_turn = 1;
@@ -122,7 +122,7 @@ struct SteppingState {
     Real a = 0;                   // parameter of qⁿ
     Parameters<Real> parameters;  // of `inputs`
     Inputs<Real> drawn, inputs;
-    Vector<Real> R_d, Phi_d;  // imbalance and constraint error as drawn [6nb], [m]
+    Vector<Real> R_d, Phi_d;  // imbalance and constraint error at the design position [6nb], [m]
     SaddlePoint<Real> system;
 
     Vector<Real> applied;  // f_ext at (qⁿ, aⁿ⁺¹), of the load configuration that the method uses
@@ -161,7 +161,7 @@ struct SteppingState {
           system(in_arithmetic<Real>(analysis.system)) {
         const int n = system.n, m = system.m;
         if (n != coordinates(model) || m != constraint_rows(model))
-            throw std::invalid_argument("the analysis is of another model");
+            throw std::invalid_argument("the analysis belongs to another model");
         for (auto* v : {&applied, &stored, &upper, &force, &dq, &last}) v->setZero(n);
         for (auto* v : {&lambda, &lambda_half, &lower, &Phi}) v->setZero(m);
         x.setZero(n + m);
@@ -194,7 +194,8 @@ struct SteppingState {
             const BodyId body = body_of(load->kind);
             if (!has_entry(pattern, 6 * body, 6 * body + 3))
                 throw std::invalid_argument(
-                    "the analysis is of a model without the branch's load '" + load->name + "'");
+                    "the analysis belongs to a model without the branch's load '" + load->name +
+                    "'");
         }
     }
 };

@@ -5,8 +5,9 @@
 
 namespace elastocheck::recursive {
 
-// f_ext for the step to `next`, minus the held part of the imbalance as drawn. Where the load does
-// not follow, the applied load keeps its moment and only the increment acts at the current lever.
+// f_ext for the step to `next`, minus the held part of the imbalance at the design position. Where
+// the load does not follow, the applied load keeps its moment and only the increment acts at the
+// current lever.
 template <class Real>
 void apply_load(SteppingState<Real>& s, const Follow& follow, Drive drive, Real amount, Real held) {
     if (follow.load) {

@@ -430,11 +430,11 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         tube.detail = why;
         return tube;
     };
-    if (states.size() < 2) return open("a way between states needs two of them");
+    if (states.size() < 2) return open("a path between states needs two of them");
     if (!arithmetic_is_as_proved())
         return open(
-            "this machine does not round to nearest, or drops small numbers: nothing can be "
-            "proved");
+            "the arithmetic does not round to nearest, or flushes denormals to zero: nothing can "
+            "be proved");
     const System system = make_system(model, branch, Corners::apart);
     if (const auto why = too_large(system); !why.empty()) return open(why);
     std::vector<StateAt> at;
@@ -460,7 +460,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     Node from = solver.node(tube.from), middle_node, to;
     if (!from.found)
         return open(
-            fmt::format("Newton's method settles nowhere near the state at {:.9g}", tube.from));
+            fmt::format("Newton's method does not converge near the state at {:.9g}", tube.from));
     enclose(solver, from);
     if (from.box.size() == 0 || !solver.is_sound(from))
         return open(fmt::format("nothing is proved at {:.9g}", tube.from));
@@ -471,21 +471,22 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     while (tube.to != end) {
         if (bridges == most_bridges)
             return open(
-                fmt::format("past {:.12g} the way stays on a knot, or close to one", tube.to));
+                fmt::format("past {:.12g} the path stays on a knot, or close to one", tube.to));
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
         if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
             if (pushed.held > tolerance.held)
                 return open(fmt::format(
-                    "past {:.12g} the idle motion of {} is pushed by up to {:.2g} N or N·m",
+                    "past {:.12g} the idle motion of {} is loaded by up to {:.2g} N or N·m",
                     tube.to, idle_bodies(system, solver.border), pushed.held));
             if (pushed.gap > tolerance.gap)
-                return open(fmt::format("past {:.12g} joints {} stay open by up to {:.2g} m or rad",
-                                        tube.to, redundant_joints(system, solver.border),
-                                        pushed.gap));
-            return open(fmt::format(
-                "no piece is proved past {:.12g}: the branch turns back or divides, or a law ends",
-                tube.to));
+                return open(
+                    fmt::format("past {:.12g} joints {} have a gap of up to {:.2g} m or rad",
+                                tube.to, redundant_joints(system, solver.border), pushed.gap));
+            return open(
+                fmt::format("no piece is proved past {:.12g}: the branch turns back or bifurcates, "
+                            "or a law ends",
+                            tube.to));
         }
         to = halved && middle_node.a == a1 ? middle_node : solver.node(a1);
         middle_node = solver.node(tube.to / 2 + a1 / 2);
@@ -554,20 +555,17 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     if (!near)
         return open(
             fmt::format("a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} "
-                        "N and {:.2g} N·m "
-                        "from the states, which is more than the tolerance",
+                        "N and {:.2g} N·m from the states, beyond the tolerance",
                         1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi,
                         tube.width.force, tube.width.moment));
     tube.answer = Answer::proved;
     if (solver.border.count() > solver.border.redundant)
         tube.detail =
-            fmt::format("idle motion of {} goes as in the states, held by at most {:.1e} N or N·m",
+            fmt::format("idle motion of {} as in the states, held by at most {:.1e} N or N·m",
                         idle_bodies(system, solver.border), held.held);
     if (solver.border.redundant > 0)
         tube.detail += fmt::format(
-            "{}joints {} hold more than once: they share as in the states, and stay open by at "
-            "most "
-            "{:.1e} m or rad",
+            "{}joints {} are redundant: load sharing as in the states, gap at most {:.1e} m or rad",
             tube.detail.empty() ? "" : "; ", redundant_joints(system, solver.border), held.gap);
     return tube;
 }

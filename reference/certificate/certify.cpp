@@ -266,12 +266,10 @@ std::string theorem(const Problem& problem, const Certificate& certificate) {
     std::string words;
     const Border& border = problem.border;
     if (border.count() > border.redundant)
-        say(words,
-            fmt::format("idle motion of {} stands as in the state, held by at most {:.1e} N or N·m",
-                        idle_bodies(problem.system, border), certificate.held));
+        say(words, fmt::format("idle motion of {} as in the state, held by at most {:.1e} N or N·m",
+                               idle_bodies(problem.system, border), certificate.held));
     if (border.redundant > 0)
-        say(words, fmt::format("joints {} hold more than once: they share as in the state, and "
-                               "stay open by at most "
+        say(words, fmt::format("joints {} are redundant: load sharing as in the state, gap at most "
                                "{:.1e} m or rad",
                                redundant_joints(problem.system, border), certificate.gap));
     return words;
@@ -287,8 +285,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
     };
     if (!arithmetic_is_as_proved())
         return open(
-            "this machine does not round to nearest, or drops small numbers: nothing can be "
-            "proved");
+            "the arithmetic does not round to nearest, or flushes denormals to zero: nothing can "
+            "be proved");
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
     if (const auto why = too_large(system); !why.empty()) return open(why);
 
@@ -317,7 +315,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
                     say(certificate.detail,
                         fmt::format(
-                            "{} on a knot of its curve, whose pieces are taken to meet there",
+                            "{} on a knot of its curve, whose pieces are assumed to meet there",
                             knots));
                 return certificate;
             }
@@ -327,35 +325,34 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         certificate.answer = Answer::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail = fmt::format(
-                "the nearest one found{} is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m away",
+                "the nearest equilibrium found{} is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m "
+                "away",
                 problem.border.count() > problem.border.redundant
-                    ? fmt::format(", with the idle motion of {} where the state has it,",
+                    ? fmt::format(", with the idle motion of {} at its position in the state,",
                                   idle_bodies(system, problem.border))
                     : "",
                 1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
                 certificate.error.force, certificate.error.moment);
         else
-            certificate.detail = "none is found near the state either";
+            certificate.detail = "no equilibrium is found near the state either";
         if (there.pushed)
             say(certificate.detail,
-                fmt::format("the idle motion of {} is pushed by {:.2g} N or N·m",
+                fmt::format("the idle motion of {} is loaded by {:.2g} N or N·m",
                             idle_bodies(system, problem.border), certificate.held));
         if (there.open)
             say(certificate.detail,
-                fmt::format("joints {} stay open by {:.2g} m or rad",
+                fmt::format("joints {} have a gap of {:.2g} m or rad",
                             redundant_joints(system, problem.border), certificate.gap));
         return certificate;
     }
-    if (!found.settled) return open("Newton's method settles nowhere near the state");
+    if (!found.settled) return open("Newton's method does not converge near the state");
     if (!std::isfinite(certificate.error.length))
         return open(
-            "the test contracts in no box: the stiffness is too near to singular for doubles, or a "
-            "law ends "
-            "here");
+            "Krawczyk's operator contracts in no box: the stiffness is too close to singular for "
+            "double precision, or a law ends here");
     return open(fmt::format(
-        "an equilibrium is within {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m, which is more "
-        "than "
-        "the tolerance, and none could not be shown",
+        "an equilibrium is proved within {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m, beyond "
+        "the tolerance; that none is within the tolerance could not be proved",
         1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
         certificate.error.force, certificate.error.moment));
 }

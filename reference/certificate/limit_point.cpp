@@ -135,8 +135,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     };
     if (!arithmetic_is_as_proved())
         return open(
-            "this machine does not round to nearest, or drops small numbers: nothing can be "
-            "proved");
+            "the arithmetic does not round to nearest, or flushes denormals to zero: nothing can "
+            "be proved");
     const System system = make_system(model, branch);
     if (const auto why = too_large(system); !why.empty()) return open(why);
     const StateAt at = state_at(system, state);
@@ -159,8 +159,8 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
     if (!top.found) return open("no limit point is found near the state");
     if (!worth(problem, top.y, top.y[n - 1]).sound)
         return open(
-            "what is held as idle or redundant at the limit point is not, or is pushed or open "
-            "there");
+            "an idle motion or redundant constraint at the limit point is none, is loaded, or has "
+            "a gap");
 
     problem.y_t = top.y;
     for (double delta = 1e-9; delta < 1e-3; delta *= 4) {
@@ -201,12 +201,12 @@ LimitPoint certify_limit_point(const Model& model, const Branch& branch, const E
         else
             limit.detail = fmt::format(
                 "a limit point is proved, {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m from the "
-                "state, which is more than the tolerance",
+                "state, beyond the tolerance",
                 1e3 * limit.error.length, limit.error.angle * 180 / std::numbers::pi,
                 limit.error.force, limit.error.moment);
         return limit;
     }
-    return open("no box contracts on both sides of the limit point");
+    return open("Krawczyk's operator contracts in no box on both sides of the limit point");
 }
 
 }  // namespace elastocheck::reference::certificate

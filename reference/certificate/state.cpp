@@ -77,7 +77,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
     if (state.poses.size() != static_cast<std::size_t>(system.bodies) ||
         state.reactions.size() != system.model->joints.size())
         throw std::invalid_argument(
-            "the state has not one pose a body and one reaction a joint of the model");
+            "the state does not have one pose per body and one reaction per joint of the model");
     StateAt at{system, state, VectorXd::Zero(system.n()), {}};
     for (BodyId body = 0; body < system.bodies; ++body) {
         const Pose& pose = state.poses[static_cast<std::size_t>(body)];

@@ -36,7 +36,7 @@ void check(const Model& model, const Equilibrium& state,
     const auto require = [](bool met, const char* what) {
         if (!met) throw std::invalid_argument(what);
     };
-    require(state.poses.size() == model.bodies.size(), "the state is of another model");
+    require(state.poses.size() == model.bodies.size(), "the state belongs to another model");
     for (const auto& disturbance : disturbances)
         std::visit(
             overloaded{[&](const UnitWrench& wrench) {
@@ -46,7 +46,7 @@ void check(const Model& model, const Equilibrium& state,
                        [&](const Motion& motion) {
                            const auto joint = static_cast<std::size_t>(motion.joint);
                            require(joint < model.joints.size() && model.joints[joint].driven >= 0,
-                                   "a disturbance moves a joint that has no offset to move");
+                                   "a disturbance drives a joint without offset");
                        }},
             disturbance);
 }
@@ -154,9 +154,7 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
         const VectorXd driven_rate = -at.D.cwiseProduct(rates.Phi_a);
         t = at.J.solve(driven_rate);
         if (!((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
-            return {Outcome::inconsistent_constraints,
-                    "joints that repeat each other do not let it move",
-                    {}};
+            return {Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}};
     }
     b = at.S.cwiseProduct(b) / at.path.scales.energy();
 
@@ -167,13 +165,13 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
             t -= at.Z * at.W.solve(at.Z.transpose() * left);
             left = b + times(at, t);
         }
-    if (!t.allFinite()) return {Outcome::not_finite, "the answer is not finite", {}};
+    if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}};
     // Where the stiffness in the approximate Hessian is only its error, the iteration does not
     // converge to a solution.
     if (!(largest(at.Z.transpose() * left) <= unanswered * size))
-        return {Outcome::singular, "what resists a motion is spent", {}};
+        return {Outcome::singular, "the stiffness of a motion vanishes", {}};
     if (!(largest(at.idle.transpose() * left) <= idle_push * size))
-        return {Outcome::loaded_idle_mode, "a motion that nothing resists is pushed", {}};
+        return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}};
     return {Outcome::converged, "", t};
 }
 
@@ -182,8 +180,8 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances) {
     if (!stands_on(model, branch))
-        throw std::invalid_argument("the model does not stand on branch '" + branch.name +
-                                    "', or it goes two ways");
+        throw std::invalid_argument("the model has parts that are inactive on branch '" +
+                                    branch.name + "', or the branch has two sides");
     check(model, state, disturbances);
     const auto fail = [&](Outcome outcome, const std::string& what) {
         return Response{outcome, fmt::format("branch '{}': {}", branch.name, what), {}};
@@ -194,8 +192,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
         return fail(
             Outcome::too_large,
             fmt::format(
-                "the energy leg is not asked: some {:.1g} operations for {} coordinates, at "
-                "most {:.1g} are worth it",
+                "about {:.1g} operations for {} coordinates, the limit of the energy leg is {:.1g}",
                 operations, coordinates(model), most_operations));
 
     const Options options;
@@ -217,7 +214,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     const Tangent tangent = tangent_of(path, here);
     if (answer(tangent, course.rate).outcome == Outcome::loaded_idle_mode)
         return fail(Outcome::singular,
-                    "what resists a motion is spent, the branch turns back here");
+                    "the stiffness of a motion vanishes, the branch turns back here");
     Response response;
     for (const auto& disturbance : disturbances) {
         const Answer answered = answer(tangent, rate_of(model, disturbance));

@@ -27,8 +27,8 @@ double max_or_nan(double a, double b) {
 Residuals residuals(const Model& given_model, const Branch& branch,
                     const Equilibrium& given_state) {
     if (!stands_on(given_model, branch))
-        throw std::invalid_argument("the model does not stand on branch '" + branch.name +
-                                    "', or it goes two ways");
+        throw std::invalid_argument("the model has parts that are inactive on branch '" +
+                                    branch.name + "', or the branch has two sides");
     if (given_state.poses.size() != given_model.bodies.size())
         return {unknown, unknown, unknown, unknown};
     const Eigen::Vector3d centre = centre_of(given_model);

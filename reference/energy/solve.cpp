@@ -75,8 +75,8 @@ Failure reason(const Path& path, const State& last, double a, const Failure& fai
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> values,
                       const Options& options, const Visit& visit) {
     if (!stands_on(model, branch))
-        throw std::invalid_argument("the model does not stand on branch '" + branch.name +
-                                    "', or it goes two ways");
+        throw std::invalid_argument("the model has parts that are inactive on branch '" +
+                                    branch.name + "', or the branch has two sides");
     EquilibriumPath result;
     if (const auto what = without_potential(model, branch)) {
         result.outcome = Outcome::not_conservative;
@@ -87,9 +87,8 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         operations > most_operations) {
         result.outcome = Outcome::too_large;
         result.detail = fmt::format(
-            "branch '{}': the energy leg is not asked: some {:.1g} operations for {} coordinates, "
-            "at most "
-            "{:.1g} are worth it",
+            "branch '{}': about {:.1g} operations for {} coordinates, the limit of the energy leg "
+            "is {:.1g}",
             branch.name, operations, coordinates(model), most_operations);
         return result;
     }

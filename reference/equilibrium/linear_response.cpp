@@ -45,7 +45,7 @@ System disturbed(System system, const Disturbance& disturbance, double a) {
             [&](const Motion& motion) {
                 const auto joint = static_cast<std::size_t>(motion.joint);
                 if (joint >= model.joints.size() || model.joints[joint].driven < 0)
-                    throw std::invalid_argument("a disturbance moves a joint that has no offset");
+                    throw std::invalid_argument("a disturbance drives a joint without offset");
                 Affine& value = system.values[static_cast<std::size_t>(model.joints[joint].driven)];
                 value = {value.start - a, 1};
             }},
@@ -114,7 +114,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     const double a = state.load;
     const System moving = make_system(model, branch, {&a, 1});
     if (state.poses.size() != model.bodies.size())
-        throw std::invalid_argument("the state is of another model");
+        throw std::invalid_argument("the state belongs to another model");
     const System system = stopped(moving, a);
     const auto fail = [&](Outcome outcome, const std::string& what) {
         return Response{outcome,
@@ -141,10 +141,10 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
         const Rate rate = answered(at, E_rate);
         if (!rate.dx.allFinite())
             return fail(Outcome::not_finite,
-                        name_of(model, disturbance) + " is answered by what is not finite");
+                        name_of(model, disturbance) + " has a response that is not finite");
         if (rate.dx.norm() > farthest * E_rate.norm())
             return fail(Outcome::singular,
-                        name_of(model, disturbance) + " meets hardly any resistance left");
+                        name_of(model, disturbance) + " acts on a motion with almost no stiffness");
         if (is_pushed(rate, E_rate)) {
             const Failure why = unsolvable_load(system, at.modes.left * rate.mu);
             return fail(why.outcome, name_of(model, disturbance) + ": " + why.what);

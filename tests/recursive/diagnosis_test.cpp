@@ -73,7 +73,7 @@ TEST(Diagnosis, LinksThatSpinAboutThemselvesAreToldTogether) {
         parse_scene(begin + "probes: {b: {on: block, at: b}}\n", "links"), Detail::everything));
     ASSERT_EQ(silent.idle.size(), 2u);
     EXPECT_EQ(idle_modes(silent),
-              "both 'front' and 'rear' spin about themselves, which moves no output");
+              "both 'front' and 'rear' rotate about their own axis, which moves no output");
     const auto seen = diagnose(
         compile(parse_scene(begin + "probes: {b: {on: block, at: b}, side: {on: front, at: off}}\n",
                             "links"),
@@ -224,7 +224,7 @@ TEST(Diagnosis, WhatIsNoNumberAsDrawnIsNamedAndNothingElseIsTold) {
                 const auto path =
                     solve(model, model.branches.front(), {.method = method, .steps = 3});
                 EXPECT_EQ(path.outcome, Outcome::not_finite) << method.name << named << bad;
-                EXPECT_NE(path.detail.find("as drawn a number is not finite in "),
+                EXPECT_NE(path.detail.find("a number of the model is not finite in "),
                           std::string::npos)
                     << path.detail;
                 EXPECT_NE(path.detail.find(named), std::string::npos) << path.detail;

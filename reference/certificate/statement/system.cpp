@@ -75,7 +75,7 @@ void set_formulations(System& system) {
         if (f.frame == Formulation::Frame::on_j ||
             (f.frame == Formulation::Frame::middle && !f.conjugate))
             throw std::invalid_argument("bushing '" + elastic.name +
-                                        "' has a frame that this leg has no law for");
+                                        "' has a frame for which this leg has no law");
         if (!elastocheck::has_energy(f)) system.conservative = false;
     }
 }
@@ -147,7 +147,7 @@ System make_system(const Model& model, const Branch& branch, Corners corners) {
     if (!stands_on(model, branch))
         throw std::invalid_argument(
             "branch '" + branch.name +
-            "' wants one way from 0, and the model as it stands there (on_branch)");
+            "' must be a single side from 0, with the model of that side (on_branch)");
     System system;
     system.model = &model;
     system.branch = &branch;

@@ -61,9 +61,9 @@ constexpr double spent = 0.01;           // of its first stiffness: the mode wil
 constexpr double last_correction = 1e-10, known = 1e-9;  // of L or 1 rad
 constexpr int corrections = 4;
 
-constexpr const char* not_finite = "a number stopped being finite";
+constexpr const char* not_finite = "a number is not finite";
 constexpr const char* jumped = "the nearest minimum is not a continuation of the branch";
-constexpr const char* sudden = "the stiffness changes too fast to be followed";
+constexpr const char* sudden = "the stiffness changes too fast for the continuation";
 constexpr const char* unstable = "the equilibrium stops being a minimum of the potential";
 constexpr const char* turns_back = "a limit point, past which no equilibrium continues the branch";
 constexpr const char* divides =
@@ -279,11 +279,11 @@ Attempt corrected(const Path& path, State state) {
         if (far <= last_correction || (k == corrections && far <= known))
             return {std::move(state), {}};
         if (k == corrections || !(far <= largest_step))
-            return {std::move(state), Failure{Outcome::iteration_limit,
-                                              fmt::format("what is stiff leaves the minimum along "
-                                                          "a soft motion unknown to {:.1g} of the "
-                                                          "model's size",
-                                                          far)}};
+            return {std::move(state),
+                    Failure{Outcome::iteration_limit,
+                            fmt::format("beside stiff elements the minimum along a soft motion is "
+                                        "determined only to {:.1g} of the model's size",
+                                        far)}};
         state = state_at(path, state.a, moved(path, state.poses, ahead));
     }
 }
@@ -331,8 +331,7 @@ std::optional<Failure> advance(const Path& path, Continuation& continuation, dou
     const double smallest = resolution * std::max(std::abs(to), std::abs(state.a));
     int halved = 0;  // since the last equilibrium
     for (int points = 0; state.a != to; ++points) {
-        if (points == internal_points)
-            return Failure{Outcome::iteration_limit, "too many steps were needed on the way"};
+        if (points == internal_points) return Failure{Outcome::iteration_limit, "too many steps"};
         const VectorXd t = tangent(path, state);
         if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
         if (continuation.record.samples.size() == 1) continuation.first_tangent = largest(t);
@@ -348,7 +347,7 @@ std::optional<Failure> advance(const Path& path, Continuation& continuation, dou
         }
         if (idle_mode_loaded(path, state, a))
             return Failure{Outcome::loaded_idle_mode,
-                           "a motion that nothing resists is pushed by the load"};
+                           "the load acts on a motion that nothing resists"};
         if (attempt.failure->outcome == Outcome::not_finite) return attempt.failure;
         continuation.next_step = 0.5 * std::abs(h);
         if (++halved <= halvings &&

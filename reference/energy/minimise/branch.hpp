@@ -13,7 +13,8 @@ namespace elastocheck::reference::energy {
 
 // Reasons for the end of a branch, as half a sentence.
 inline constexpr const char* law_ended =
-    "a bushing has turned to where its law ends, half a turn or what its angles allow";
+    "the rotation of a bushing has reached the end of its law, half a turn or the range of its "
+    "angles";
 
 struct Failure {
     Outcome outcome;

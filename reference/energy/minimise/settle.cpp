@@ -99,8 +99,9 @@ std::optional<Failure> follow(const Path& settling, State& state) {
     const auto failure = advance(path, continuation, 0);
     state = continuation.state;
     if (!failure) return {};
-    return Failure{failure->outcome, fmt::format("{}, with {:.3g} % of what is held applied",
-                                                 failure->what, 100 * (1 - state.a))};
+    return Failure{failure->outcome,
+                   fmt::format("{}, with {:.3g} % of the static loads and held quantities applied",
+                               failure->what, 100 * (1 - state.a))};
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ bool follows(const Load& load) {
 }
 
 std::string why(const Load& load) {
-    return fmt::format("load '{}' turns with its body, which no potential does", load.name);
+    return fmt::format("load '{}' rotates with its body and has no potential", load.name);
 }
 
 // Whether the branch drives a preload of the element.

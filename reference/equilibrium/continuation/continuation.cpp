@@ -250,7 +250,7 @@ std::optional<Failure> change_pieces(Continuation& continuation, double directio
         const std::string a =
             parameter(*continuation.system.branch, loading_at(continuation, continuation.here.t).a);
         return continuation.stage == Stage::settling
-                   ? fmt::format("while settling at {}, {:.0f} % of the way", a,
+                   ? fmt::format("while settling at {}, at {:.0f} % of the homotopy", a,
                                  100 * continuation.here.t)
                    : "at " + a;
     };
@@ -353,8 +353,8 @@ std::optional<Failure> begin_branch(Continuation& continuation, double reach) {
         case Stability::uncertain: break;
     }
     return Failure{Outcome::iteration_limit,
-                   fmt::format("arithmetic cannot tell what the joints leave free of the "
-                               "equilibrium that settles at {}",
+                   fmt::format("the motions that the joints leave free at the equilibrium that "
+                               "settles at {} cannot be computed in double precision",
                                at_0)};
 }
 
@@ -362,10 +362,10 @@ namespace {
 Failure too_long(const Continuation& continuation, double target) {
     const auto at = [&](double t) {
         return continuation.stage == Stage::settling
-                   ? fmt::format("{:.0f} % of the way to what settles", 100 * t)
+                   ? fmt::format("{:.0f} % of the homotopy", 100 * t)
                    : parameter(*continuation.system.branch, t);
     };
-    return {Outcome::iteration_limit, fmt::format("{} steps have come to {}, and {} is too far",
+    return {Outcome::iteration_limit, fmt::format("{} steps reached {}, too far from {}",
                                                   most_steps, at(continuation.here.t), at(target))};
 }
 }  // namespace

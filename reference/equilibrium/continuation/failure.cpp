@@ -94,23 +94,23 @@ Failure unsolvable_load(const System& system, const VectorXd& left) {
                  of_bodies = left.head(6 * system.bodies).norm();
     if (of_joints > of_bodies && of_bodies > repeated * of_joints)
         return {Outcome::iteration_limit,
-                fmt::format("the joints {} so nearly repeat each other that arithmetic cannot tell "
-                            "what they leave free",
+                fmt::format("the joints {} are nearly redundant, and the motions that they leave "
+                            "free cannot be computed in double precision",
                             joints_in(system, left.tail(system.constraint_rows)))};
     if (of_joints > of_bodies)
         return {Outcome::inconsistent_constraints,
-                fmt::format("the joints {} contradict each other",
+                fmt::format("the joints {} are inconsistent",
                             joints_in(system, left.tail(system.constraint_rows)))};
     return {Outcome::loaded_idle_mode,
-            fmt::format("body '{}' is pushed along a motion that nothing resists",
+            fmt::format("body '{}' is loaded along a motion that nothing resists",
                         body_with_largest(system, left))};
 }
 
 Failure too_soft(const System& system, const VectorXd& left) {
-    return {Outcome::iteration_limit, fmt::format("body '{}' is pushed along a motion so much "
-                                                  "softer than others that arithmetic cannot tell "
-                                                  "its stiffness",
-                                                  body_with_largest(system, left))};
+    return {Outcome::iteration_limit,
+            fmt::format("body '{}' is loaded along a motion so much softer than others that its "
+                        "stiffness cannot be computed in double precision",
+                        body_with_largest(system, left))};
 }
 
 Failure failure(Continuation& continuation, double t, const Trial& trial) {
@@ -119,7 +119,7 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
     const auto at = [&](double a) { return parameter(*system.branch, a); };
     const bool settling = continuation.stage == Stage::settling;
     const std::string where =
-        settling ? fmt::format("while settling at {}, {:.0f} % of the way", at(0),
+        settling ? fmt::format("while settling at {}, at {:.0f} % of the homotopy", at(0),
                                100 * continuation.here.t)
         : at(continuation.here.t) == at(t)
             ? "at " + at(t)
@@ -127,15 +127,17 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
 
     if (!settling && has_divided(continuation, trial))
         return {Outcome::bifurcation_point,
-                "the branch divides: another curve of equilibria crosses it, and past that it is "
-                "unstable, " +
+                "a bifurcation point: another curve of equilibria crosses the branch, which is "
+                "unstable past this point, " +
                     where};
     if (trial.verdict == Verdict::past_singular_point)
-        return {Outcome::singular,
-                "the system is singular and the branch may divide or lose its stability " + where};
+        return {
+            Outcome::singular,
+            "the system is singular and the branch may bifurcate or lose its stability " + where};
     if (trial.verdict == Verdict::uncertain)
-        return {Outcome::singular,
-                "the system is too nearly singular to say that the branch goes on " + where};
+        return {
+            Outcome::singular,
+            "the system is too close to singular to decide whether the branch continues " + where};
     // A mechanism at the end of its range has almost no gap here: its gap is evaluated farther on.
     constexpr double further = 12, far = 1.8e-4;  // trial steps; share of the whole stage
     const double target =
@@ -163,13 +165,13 @@ Failure failure(Continuation& continuation, double t, const Trial& trial) {
     if (trial.verdict == Verdict::past_knot)
         return {Outcome::iteration_limit, "no step ends at the knot of a law " + where};
     if (trial.verdict == Verdict::out_of_reach)
-        return {Outcome::branch_lost, "the branch becomes too steep to be followed " + where};
+        return {Outcome::branch_lost, "the branch is too steep for the continuation " + where};
     if (trial.verdict == Verdict::unsettled)
         return {Outcome::iteration_limit,
-                "the solution does not settle within arithmetic " + where};
+                "Newton's method does not converge to the accuracy of the arithmetic " + where};
     if (trial.verdict == Verdict::unsolved) {
         if (!std::isfinite(attempt.residual))
-            return {Outcome::not_finite, "the equations gave a number that is not finite " + where};
+            return {Outcome::not_finite, "the equations give a number that is not finite " + where};
         const VectorXd left_over = residual(system, loading_at(continuation, t), attempt.x);
         const Sparse& U = continuation.here.linearised.modes.left;
         constexpr double mostly = 0.9;

@@ -69,7 +69,7 @@ void set_formulations(System& system) {
         if (f.frame == Formulation::Frame::on_j ||
             (f.frame == Formulation::Frame::middle && !f.conjugate))
             throw std::invalid_argument("bushing '" + elastic.name +
-                                        "' has a frame that this leg has no law for");
+                                        "' has a frame for which this leg has no law");
         if (!elastocheck::has_energy(f)) system.conservative = false;
     }
 }
@@ -168,9 +168,9 @@ double force_scale(const System& system, double a) {
 
 System make_system(const Model& model, const Branch& branch, std::span<const double> points) {
     if (!stands_on(model, branch))
-        throw std::invalid_argument("branch '" + branch.name +
-                                    "' wants one way from 0, and the model as it "
-                                    "stands there (on_branch)");
+        throw std::invalid_argument(
+            "branch '" + branch.name +
+            "' must be a single side from 0, with the model of that side (on_branch)");
     System system;
     system.model = &model;
     system.branch = &branch;
@@ -224,7 +224,7 @@ Frame<double> frame_of(const System& system, const VectorXd& x, BodyId body) {
 
 VectorXd unknowns_at(const System& system, const std::vector<Pose>& poses) {
     if (poses.size() != static_cast<std::size_t>(system.bodies))
-        throw std::invalid_argument("a state to start from has not one pose a body");
+        throw std::invalid_argument("the start state does not have one pose per body");
     VectorXd x = VectorXd::Zero(system.unknowns());
     for (int body = 0; body < system.bodies; ++body) {
         const Pose& pose = poses[static_cast<std::size_t>(body)];
@@ -324,8 +324,9 @@ std::string bushing_without_angles(const System& system, const VectorXd& x) {
         const Eigen::Quaterniond B = product(conjugate(axes_i), axes_j);
         if (short_of_the_end(bushing->formulation, system.elements[e].rotational, B) < near)
             return fmt::format(
-                "bushing '{}' is turned {}, where its rotation has no value", elastic.name,
-                2 * std::abs(B.w()) < near ? "by half a turn" : "to the end of its angles");
+                "bushing '{}' is rotated {}, where its angles are undefined", elastic.name,
+                2 * std::abs(B.w()) < near ? "by half a turn"
+                                           : "to the end of the range of its angles");
     }
     return {};
 }

@@ -54,7 +54,7 @@ TEST(CertifyBranch, StatesThatAreOffOrAtOtherLoadsHaveNoTube) {
     moved[7].poses[1].r[2] += 1e-8;
     const Tube off = certify_branch(walk.model, walk.branch, moved);
     EXPECT_EQ(off.answer, Answer::open);
-    EXPECT_NE(off.detail.find("more than the tolerance"), std::string::npos) << off.detail;
+    EXPECT_NE(off.detail.find("beyond the tolerance"), std::string::npos) << off.detail;
     auto loads = points;
     loads[7].load += 0.1;
     EXPECT_EQ(certify_branch(walk.model, walk.branch, loads).answer, Answer::open);

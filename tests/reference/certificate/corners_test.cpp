@@ -80,7 +80,7 @@ TEST(CertifyBranch, ItsCurveIsThatOfTheStopThatIsThere) {
         EXPECT_EQ(way.tube(other, 0.9999, 19.998).answer, Answer::proved);
         const Tube wrong = way.tube(other);
         EXPECT_EQ(wrong.answer, Answer::open) << other.c << " " << other.k_s;
-        EXPECT_NE(wrong.detail.find("more than the tolerance"), std::string::npos) << wrong.detail;
+        EXPECT_NE(wrong.detail.find("beyond the tolerance"), std::string::npos) << wrong.detail;
     }
 }
 

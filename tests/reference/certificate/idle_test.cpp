@@ -86,7 +86,7 @@ TEST(CertificateIdle, AMotionWithoutAnyRateIsIdleWhereNothingLoadsIt) {
     // A load of 1e-6 N acts on the idle motion.
     const Certificate pushed = at(way, 1e-6, 0);
     EXPECT_EQ(pushed.answer, Answer::excluded) << pushed.detail;
-    EXPECT_NE(pushed.detail.find("is pushed by"), std::string::npos) << pushed.detail;
+    EXPECT_NE(pushed.detail.find("is loaded by"), std::string::npos) << pushed.detail;
 }
 
 // A pendulum on a point: its spin about the vertical is idle, its swing is resisted by the load

@@ -176,7 +176,7 @@ TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
         pushed.static_loads = {{"push", FollowerMoment{2, moment * axis}}};
         const Certificate c = certify(pushed, p.branch, p.state);
         EXPECT_EQ(c.answer, Answer::excluded) << moment << ": " << c.detail;
-        EXPECT_NE(c.detail.find("is pushed by"), std::string::npos) << moment << ": " << c.detail;
+        EXPECT_NE(c.detail.find("is loaded by"), std::string::npos) << moment << ": " << c.detail;
     }
     // A follower moment with a part across the axis rotates with the strut, so that the load on the
     // wheel depends on the spin: it is not idle.

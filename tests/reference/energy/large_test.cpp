@@ -100,8 +100,9 @@ TEST(LargeScenes, AreNotAskedAndSayHowMuchItWouldTake) {
         EXPECT_EQ(path.outcome, Outcome::too_large);
         EXPECT_TRUE(path.points.empty());
         EXPECT_EQ(path.counts.evaluations, 0);
-        for (const char* part : {"branch 'up': the energy leg is not asked: some ", "e+1",
-                                 "operations for 6000 coordinates, at most 1e+11"})
+        for (const char* part :
+             {"branch 'up': the energy leg is not asked: some ", "e+1",
+              "operations for 6000 coordinates, the limit of the energy leg is 1e+11"})
             EXPECT_NE(path.detail.find(part), std::string::npos) << path.detail;
         EXPECT_STREQ(name(path.outcome), "too large");
         const Model model = compile(chain(1000, hinged));
