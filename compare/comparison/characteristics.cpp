@@ -257,47 +257,38 @@ constexpr const char* no_vertical = "the wheel does not rise";
 constexpr const char* does_not_steer =
     "the steering does not turn the wheel about an upright axis here";
 constexpr const char* gives_nothing = "rigid: nothing gives";
-constexpr const char* not_steered = "the steering does not stand on this branch";
-constexpr const char* does_not_roll = "its wheels move only as one: the axle does not roll";
+constexpr const char* not_steered = "the steering is not driven or held on this branch";
+constexpr const char* does_not_roll = "its wheels move only together: the axle does not roll";
 constexpr const char* no_rate =
-    "nothing resists the travel of the wheel, nothing lets it travel, or it stands at a corner of "
-    "a law";
+    "the travel of the wheel is unresisted or blocked, or an element is at a kink of its law";
 
 const std::array table{
     Entry{Of::every_wheel, "bump_steer", Unit::deg_per_m,
-          "change of toe over travel of the wheel centre, all wheels rising alike; positive "
-          "towards toe-in "
-          "in jounce",
+          "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
+          "positive towards toe-in in jounce",
           never, [](const Wheels& x, std::size_t w) { return x.toe(w, raised(x, w)); }},
     Entry{Of::every_wheel, "bump_camber", Unit::deg_per_100mm,
-          "change of camber over travel of the wheel centre, all wheels rising alike; positive "
-          "where the top "
-          "leans out in "
-          "jounce",
+          "change of camber over travel of the wheel centre, all wheels rising by the same amount; "
+          "positive where the top leans out in jounce",
           never, [](const Wheels& x, std::size_t w) { return x.camber(w, raised(x, w)); }},
     Entry{Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
-          "lateral displacement of the contact patch over travel, all wheels rising alike; "
-          "positive outwards "
-          "in jounce",
+          "lateral displacement of the contact patch over travel, all wheels rising by the same "
+          "amount; positive outwards in jounce",
           never,
           [](const Wheels& x, std::size_t w) {
               return x.side(w) * moved(x.state, raised(x, w), x.patch(w)).y();
           }},
     Entry{Of::every_wheel, "recession_gradient", Unit::mm_per_100mm,
-          "longitudinal displacement of the wheel centre over travel, all wheels rising alike; "
-          "positive to "
-          "the back in "
-          "jounce",
+          "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
+          "same amount; positive to the back in jounce",
           never,
           [](const Wheels& x, std::size_t w) {
               return -moved(x.state, raised(x, w), x.centre(w)).x();
           }},
     Entry{Of::every_wheel, "front_view_swing_arm", Unit::mm,
-          "distance from the wheel centre, across, to where the carrier seen from the front turns "
-          "about, all "
-          "wheels rising "
-          "alike; positive where that is inboard",
-          "the carrier does not turn as seen from the front: the arm is endless",
+          "lateral distance from the wheel centre to the instant centre of the carrier seen from "
+          "the front, all wheels rising by the same amount; positive inboard",
+          "the carrier does not rotate as seen from the front: the arm is infinite",
           [](const Wheels& x, std::size_t w) {
               const Motions by = raised(x, w);
               const Vector3d v = moved(x.state, by, x.centre(w));
@@ -305,11 +296,9 @@ const std::array table{
           },
           true},
     Entry{Of::every_wheel, "side_view_swing_arm", Unit::mm,
-          "distance from the wheel centre, along the vehicle, to where the carrier seen from the "
-          "side turns "
-          "about, all wheels "
-          "rising alike; positive where that is ahead of the wheel",
-          "the carrier does not turn as seen from the side: the arm is endless",
+          "longitudinal distance from the wheel centre to the instant centre of the carrier seen "
+          "from the side, all wheels rising by the same amount; positive ahead of the wheel",
+          "the carrier does not rotate as seen from the side: the arm is infinite",
           [](const Wheels& x, std::size_t w) {
               const Motions by = raised(x, w);
               const Vector3d v = moved(x.state, by, x.centre(w));
@@ -318,8 +307,7 @@ const std::array table{
           true},
     Entry{Of::every_wheel, "wheel_rate", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, all "
-          "wheels "
-          "loaded alike",
+          "wheels with the same load",
           no_rate, [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
     Entry{Of::every_wheel, "lateral_force_steer", Unit::deg_per_kN,
           "change of toe over a force at the contact patch towards the middle of the vehicle (as "
@@ -394,18 +382,17 @@ const std::array table{
           "positive "
           "towards toe-in",
           not_steered, steer_gradient},
-    Entry{Of::steered_wheel, "caster_steered", Unit::deg,
-          "of the axis that the carrier turns about as the steering moves and the wheel centres "
-          "keep their "
-          "height: angle to the "
-          "vertical seen from the side, positive where its top leans back",
-          does_not_steer,
-          [](const Wheels& x, std::size_t w) {
-              const auto axis = steering_axis(x, w);
-              return axis ? std::atan2(-axis->n.x(), axis->n.z()) : undefined;
-          }},
+    Entry{
+        Of::steered_wheel, "caster_steered", Unit::deg,
+        "angle to the vertical seen from the side of the axis about which the carrier turns when "
+        "the steering moves, wheel centres held at their height; positive where its top leans back",
+        does_not_steer,
+        [](const Wheels& x, std::size_t w) {
+            const auto axis = steering_axis(x, w);
+            return axis ? std::atan2(-axis->n.x(), axis->n.z()) : undefined;
+        }},
     Entry{Of::steered_wheel, "kingpin_inclination_steered", Unit::deg,
-          "of the same axis: angle to the vertical seen from the front, positive where its top "
+          "angle to the vertical seen from the front of the same axis; positive where its top "
           "leans inwards",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
@@ -413,69 +400,59 @@ const std::array table{
               return axis ? std::atan2(-x.side(w) * axis->n.y(), axis->n.z()) : undefined;
           }},
     Entry{Of::steered_wheel, "scrub_radius_steered", Unit::mm,
-          "across the wheel, from the contact patch to where the same axis meets the road, "
-          "positive where "
-          "that is inboard",
+          "distance across the wheel from the contact patch to the intersection of the same axis "
+          "with the road, positive inboard",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
               return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
     Entry{Of::steered_wheel, "mechanical_trail_steered", Unit::mm,
-          "along the wheel, from the contact patch to where the same axis meets the road, positive "
-          "where "
-          "that is in front",
+          "distance along the wheel from the contact patch to the intersection of the same axis "
+          "with the road, positive in front",
           does_not_steer,
           [](const Wheels& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
               return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
     Entry{Of::front_wheel, "anti_dive", Unit::percent,
-          "brake_share · wheelbase / cg_height · how far the contact patch goes forward over how "
-          "far it rises: "
-          "what the "
-          "links carry of "
-          "the load that braking shifts; positive where they hold the nose up",
+          "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
+          "patch: share of the load transfer under braking that the links carry; positive where "
+          "they resist dive",
           no_vertical,
           [](const Wheels& x, std::size_t w) {
               return anti(x, x.patch(w), x.model.vehicle->brake_share, 1);
           }},
     Entry{Of::front_wheel, "anti_lift", Unit::percent,
-          "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the "
-          "patch) goes "
-          "forward over how far it rises; "
-          "positive where the links hold the nose down as the axle drives",
+          "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
+          "centre (of a rigid axle the patch); positive where the links resist lift of the front "
+          "when the axle drives",
           no_vertical,
           [](const Wheels& x, std::size_t w) {
               return anti(x, driven_at(x, w), x.model.vehicle->drive_share, 1);
           }},
     Entry{Of::rear_wheel, "anti_lift", Unit::percent,
-          "brake_share · wheelbase / cg_height · how far the contact patch goes back over how far "
-          "it rises: "
-          "what the "
-          "links carry of the "
-          "load that braking shifts; positive where they hold the tail down",
+          "brake_share · wheelbase / cg_height · rearward over vertical displacement of the "
+          "contact patch: share of the load transfer under braking that the links carry; positive "
+          "where they resist lift of the rear",
           no_vertical,
           [](const Wheels& x, std::size_t w) {
               return anti(x, x.patch(w), x.model.vehicle->brake_share, -1);
           }},
     Entry{Of::rear_wheel, "anti_squat", Unit::percent,
-          "drive_share · wheelbase / cg_height · how far the wheel centre (of a rigid axle the "
-          "patch) goes "
-          "back over how far it rises; "
-          "positive where the links hold the tail up as the axle drives",
+          "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
+          "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
+          "drives",
           no_vertical,
           [](const Wheels& x, std::size_t w) {
               return anti(x, driven_at(x, w), x.model.vehicle->drive_share, -1);
           }},
-    Entry{Of::wheels, "roll_centre_height", Unit::mm,
-          "height above the contact patches of where the lines meet that stand, seen from the "
-          "front, square "
-          "on the motion of the "
-          "patches: of an axle that rolls, of one wheel with the middle of the vehicle; positive "
-          "above the "
-          "road",
-          "no finite roll centre", [](const Wheels& x, std::size_t) { return roll_centre(x); }},
+    Entry{
+        Of::wheels, "roll_centre_height", Unit::mm,
+        "height above the contact patches of the intersection of the lines that are perpendicular, "
+        "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
+        "with the middle plane of the vehicle for one wheel; positive above the road",
+        "no finite roll centre", [](const Wheels& x, std::size_t) { return roll_centre(x); }},
     Entry{Of::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "
           "positive "
@@ -493,23 +470,26 @@ const std::array table{
               return x.response.tied ? undefined : x.camber(w, rolled_towards(x, w));
           }},
     Entry{Of::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
-          "vertical force at the contact patch over vertical displacement of the wheel centre, the "
-          "other "
-          "wheel's opposite",
+          "vertical force at the contact patch over vertical displacement of the wheel centre, "
+          "with the opposite force on the other wheel",
           no_rate,
           [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::opposite); }},
-    Entry{Of::spring, "motion_ratio", Unit::none,
-          "shortening of the spring over travel of the wheel centres, all rising alike", never,
-          [](const Wheels& x, std::size_t k) {
-              const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
-              return shortening(x, spring.i, spring.j);
-          }},
-    Entry{Of::damper, "motion_ratio", Unit::none,
-          "shortening of the damper over travel of the wheel centres, all rising alike", never,
-          [](const Wheels& x, std::size_t k) {
-              const auto& damper = x.model.dampers[k];
-              return shortening(x, damper.i, damper.j);
-          }},
+    Entry{
+        Of::spring, "motion_ratio", Unit::none,
+        "shortening of the spring over travel of the wheel centres, all rising by the same amount",
+        never,
+        [](const Wheels& x, std::size_t k) {
+            const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
+            return shortening(x, spring.i, spring.j);
+        }},
+    Entry{
+        Of::damper, "motion_ratio", Unit::none,
+        "shortening of the damper over travel of the wheel centres, all rising by the same amount",
+        never,
+        [](const Wheels& x, std::size_t k) {
+            const auto& damper = x.model.dampers[k];
+            return shortening(x, damper.i, damper.j);
+        }},
 };
 
 bool turns(const Model& model, int joint) {

@@ -24,11 +24,11 @@ Residuals worse(const Residuals& a, const Residuals& b) {
 
 // Time of a run that ignores its points. Steps as short as the recursion's take half as long again
 // when other work evicts their data from the caches.
-double seconds_alone(const std::vector<BranchSide>& ways, SolverSettings solver) {
+double seconds_alone(const std::vector<BranchSide>& sides, SolverSettings solver) {
     solver.error_bound = false;
     using clock = std::chrono::steady_clock;
     const auto start = clock::now();
-    for (const auto& way : ways) walk(way, solver, [](const Equilibrium&) {});
+    for (const auto& side : sides) walk(side, solver, [](const Equilibrium&) {});
     return std::chrono::duration<double>(clock::now() - start).count();
 }
 
@@ -37,7 +37,7 @@ bool asks_for_characteristics(const std::vector<Channel>& channels) {
         channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
 }
 
-std::vector<Compliance> compliance_of(const Model& model, const BranchSide& way,
+std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side,
                                       const SolverSettings& solver, const LegRun& run) {
     std::vector<Compliance> list;
     Analyses analyses;
@@ -46,19 +46,19 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& way,
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
         const WheelResponse response =
-            wheel_response(way, solver, steering_joint(model), **state, analyses);
+            wheel_response(side, solver, steering_joint(model), **state, analyses);
         Compliance& at = list.emplace_back();
         at.a = a;
         at.why_not = response.why_not_free;
-        at.centre = compliance(way.model, WheelPoint::centre, **state, response);
-        at.patch = compliance(way.model, WheelPoint::patch, **state, response);
-        at.reciprocity = reciprocity(way.model, at.centre);
+        at.centre = compliance(side.model, WheelPoint::centre, **state, response);
+        at.patch = compliance(side.model, WheelPoint::patch, **state, response);
+        at.reciprocity = reciprocity(side.model, at.centre);
     }
     return list;
 }
 
 // The points of a path that ended early are still checked: each is an equilibrium or not.
-Tally proved(const BranchSide& way, const LegRun& run) {
+Tally proved(const BranchSide& side, const LegRun& run) {
     Tally tally;
     std::vector<double> done;
     const auto& [front, start, middle, back] = run.landmarks;
@@ -66,7 +66,7 @@ Tally proved(const BranchSide& way, const LegRun& run) {
         if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
         done.push_back((*state)->load);
         add(tally, (*state)->load, run.curve.unit,
-            reference::certificate::certify(way.model, way.branch, **state));
+            reference::certificate::certify(side.model, side.branch, **state));
     }
     return tally;
 }
@@ -86,28 +86,28 @@ SolverSettings with_account(const Model& standing, SolverSettings solver) {
 }
 
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
-           const std::vector<BranchSide>& ways, const SolverSettings& solver) {
+           const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     LegRun run;
     run.leg = solver.leg;
     if (solver.leg == Leg::recursive) run.method = solver.recursion.method.name;
-    const BranchSide& way = ways.front();
-    run.scale = scale_of(way.model, branch, {});
-    const auto asked = requested_parameters(ways, solver.every);
-    const double middle = asked[asked.size() / 2];
-    const bool both_ways = ways.size() > 1;
+    const BranchSide& side = sides.front();
+    run.scale = scale_of(side.model, branch, {});
+    const auto requested = requested_parameters(sides, solver.every);
+    const double middle = requested[requested.size() / 2];
+    const bool both_sides = sides.size() > 1;
     auto& marks = run.landmarks;
-    BranchErrorBounds error_bound{promise_of(way.model, solver)};
+    BranchErrorBounds error_bound{promise_of(side.model, solver)};
     static_cast<PathCurve&>(run) =
-        walk(model, channels, branch, ways, solver, [&](const Equilibrium& state) {
+        walk(model, channels, branch, sides, solver, [&](const Equilibrium& state) {
             for (const Leg by : legs) {
                 auto& worst = run.judged[static_cast<std::size_t>(by)];
-                worst = worse(worst, judge(by, way, state));
+                worst = worse(worst, judge(by, side, state));
             }
-            run.scale = larger(run.scale, scale_of(way.model, branch, {&state, 1}));
+            run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
             // The farthest point on either side comes last.
             if (state.load == 0)
                 marks.start = state;
-            else if (both_ways && state.load * way.branch.to > 0)
+            else if (both_sides && state.load * side.branch.to > 0)
                 marks.front = state;
             else
                 marks.back = state;
@@ -118,9 +118,9 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     if (!marks.front) marks.front = marks.start;
     if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
-        run.compliance = compliance_of(model, way, solver, run);
+        run.compliance = compliance_of(model, side, solver, run);
     if (solver.leg == Leg::recursive || solver.leg == Leg::series)
-        run.seconds = seconds_alone(ways, solver);
+        run.seconds = seconds_alone(sides, solver);
     return run;
 }
 
@@ -167,12 +167,12 @@ int count(const Reading& reading, const std::vector<bool>& determined) {
 // about the error of either. Bodies with an idle motion are not compared, as their position along
 // it is arbitrary. "the energy leg is on another equilibrium than the equilibrium leg at -120 N,
 // each proved: body 'a' is 160 mm away"; empty if there is none.
-std::string on_two_branches(const Model& model, const Branch& asked, const LegRun& truth,
+std::string on_two_branches(const Model& model, const Branch& requested, const LegRun& truth,
                             const LegRun& other) {
     using namespace reference::certificate;
-    const auto ways = sides_of(model, asked);
+    const auto sides = sides_of(model, requested);
     std::vector<bool> idle(model.bodies.size());
-    for (const auto& mode : recursive::diagnose(ways.back().model).idle)
+    for (const auto& mode : recursive::diagnose(sides.back().model).idle)
         for (Eigen::SparseVector<double>::InnerIterator entry(mode.dq); entry; ++entry)
             if (std::abs(entry.value()) > 1e-6)
                 idle[static_cast<std::size_t>(entry.index() / 6)] = true;
@@ -188,17 +188,17 @@ std::string on_two_branches(const Model& model, const Branch& asked, const LegRu
             if (apart > length) length = apart, farthest = b;
             angle = std::max(angle, here->poses[b].p.angularDistance(there->poses[b].p));
         }
-        const auto way = std::ranges::find_if(
-            ways, [&](const BranchSide& w) { return w.branch.to * here->load >= 0; });
-        if (way == ways.end()) continue;
-        const Certificate of_here = certify(way->model, way->branch, *here);
+        const auto side = std::ranges::find_if(
+            sides, [&](const BranchSide& w) { return w.branch.to * here->load >= 0; });
+        if (side == sides.end()) continue;
+        const Certificate of_here = certify(side->model, side->branch, *here);
         if (of_here.answer != Answer::proved) continue;
-        const Certificate of_there = certify(way->model, way->branch, *there);
+        const Certificate of_there = certify(side->model, side->branch, *there);
         if (of_there.answer != Answer::proved) continue;
         if (!(length > of_here.error.length + of_there.error.length ||
               angle > of_here.error.angle + of_there.error.angle))
             continue;
-        const Unit unit = unit_of(asked.unit);
+        const Unit unit = unit_of(requested.unit);
         return fmt::format(
             "the {} leg is on another equilibrium than the {} leg at {:.6g} {}, each proved: body "
             "'{}' is "
@@ -215,7 +215,7 @@ std::string which_is_right(const LegRun& other) {
     if (t.excluded > 0 || t.points == 0) return {};
     if (t.proved == t.points)
         return fmt::format("; the {} leg is right, by proof", name(other.leg));
-    return fmt::format("; of the {} leg's points {} of {} are proved and none is excluded",
+    return fmt::format("; of the points of the {} leg {} of {} are proved and none is excluded",
                        name(other.leg), t.proved, t.points);
 }
 
@@ -236,8 +236,8 @@ std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& 
                    by_other = other.curve.values[k][c] != undefined;
         if (by_one != by_other)
             return fmt::format(
-                "the reference legs disagree on whether {} has a value at {:.6g} {}: by the {} leg "
-                "it has",
+                "the reference legs disagree on whether {} is defined at {:.6g} {}: it is by the "
+                "{} leg",
                 channel.name, one.curve.a[k], symbol(one.curve.unit),
                 name(by_one ? one.leg : other.leg));
     }
@@ -259,7 +259,7 @@ std::vector<std::string> Objections::texts() const {
     std::vector<std::string> list;
     for (const auto& objection : worst) list.push_back(objection.what);
     if (const int more = count - static_cast<int>(worst.size()); more > 0)
-        list.push_back(fmt::format("and {} more, none of them worse", more));
+        list.push_back(fmt::format("and {} more with smaller differences", more));
     return list;
 }
 
@@ -269,7 +269,7 @@ bool energy_judges_states(const BranchComparison& branch) {
 }
 
 Objections disagreements(const Model& model, const std::vector<Channel>& channels,
-                         const Branch& asked, const BranchComparison& branch, Of of) {
+                         const Branch& requested, const BranchComparison& branch, Of of) {
     Objections objections;
     for (const auto& run : branch.runs) {
         if (run.leg == Leg::recursive && of == Of::references) continue;
@@ -282,7 +282,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     if (!objections.empty()) return objections;
     const LegRun &equilibrium = run_of(branch, Leg::equilibrium),
                  &second = run_of(branch, branch.second);
-    if (const auto why = nothing_moves(model, channels, asked, equilibrium.curve); !why.empty())
+    if (const auto why = nothing_moves(model, channels, requested, equilibrium.curve); !why.empty())
         objections.add(why);
 
     const auto& reading = branch.uncertainty.equal_parameter;
@@ -302,7 +302,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                       part);
     }
     if (!apart.empty())
-        if (const auto two = on_two_branches(model, asked, equilibrium, second); !two.empty())
+        if (const auto two = on_two_branches(model, requested, equilibrium, second); !two.empty())
             objections.add(two), apart = {};
     for (const auto& one : apart.worst) objections.add(one.what, one.share);
     objections.count += apart.count - static_cast<int>(apart.worst.size());
@@ -329,11 +329,11 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                       share(1e3 * r.length, b.residual_length)});
         if (!(part <= 1))
             objections.add(
-                fmt::format("the {} leg's states leave {:.3g} N, {:.3g} N·m, {:.3g} mm in the {} "
-                            "leg's equations; "
-                            "at most {:.3g} N, {:.3g} N·m, {:.3g} mm are allowed",
-                            name(run->leg), r.force, r.moment, 1e3 * r.length, name(other),
-                            b.residual_force, b.residual_moment, b.residual_length),
+                fmt::format(
+                    "the {} leg's states have residuals of {:.3g} N, {:.3g} N·m, {:.3g} mm in the "
+                    "{} leg's equations; at most {:.3g} N, {:.3g} N·m, {:.3g} mm are allowed",
+                    name(run->leg), r.force, r.moment, 1e3 * r.length, name(other),
+                    b.residual_force, b.residual_moment, b.residual_length),
                 part);
     }
     return objections;
@@ -354,18 +354,18 @@ Comparison compare(const Model& model, const Options& options) {
     Comparison result;
     result.channels = channels(model);
     std::ranges::move(characteristics(model), std::back_inserter(result.channels));
-    const int asked =
+    const int requested =
         options.abscissa.empty() ? -1 : find_channel(result.channels, options.abscissa);
-    if (asked < 0 && !options.abscissa.empty())
+    if (requested < 0 && !options.abscissa.empty())
         throw std::invalid_argument(
-            fmt::format("'{}' is no output of the scene", options.abscissa));
+            fmt::format("'{}' is not an output of the scene", options.abscissa));
 
-    std::vector<std::vector<BranchSide>> ways;
+    std::vector<std::vector<BranchSide>> sides;
     std::vector<std::vector<bool>> determined;  // per branch and joint
     std::vector<std::vector<int>> groups;
     for (const auto& branch : model.branches) {
-        ways.push_back(sides_of(model, branch, options.recursion.steps));
-        const auto diagnosis = recursive::diagnose(ways.back().front().model);
+        sides.push_back(sides_of(model, branch, options.recursion.steps));
+        const auto diagnosis = recursive::diagnose(sides.back().front().model);
         determined.push_back(diagnosis.determined);
         for (const auto& group : diagnosis.redundant_sets)
             if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
@@ -377,34 +377,34 @@ Comparison compare(const Model& model, const Options& options) {
         BranchComparison b;
         b.branch = branch.name;
         b.unit = unit_of(branch.unit);
-        for (const auto& way : ways[k]) b.steps += way.branch.steps;
+        for (const auto& side : sides[k]) b.steps += side.branch.steps;
         b.every = options.every;
-        b.determined = determined_channels(result.channels, ways[k].front().model, determined[k]);
+        b.determined = determined_channels(result.channels, sides[k].front().model, determined[k]);
         for (const Leg leg : legs) {
             if (options.progress)
                 options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
             b.runs.push_back(
-                run(model, result.channels, branch, ways[k],
+                run(model, result.channels, branch, sides[k],
                     with_account(
-                        ways[k].front().model,
+                        sides[k].front().model,
                         {.leg = leg, .recursion = options.recursion, .every = options.every})));
         }
         if (const LegRun& energy = run_of(b, Leg::energy); is_not_applicable(energy.outcome)) {
             b.second = Leg::series;
             b.not_asked = energy.detail;
             if (options.progress) options.progress(fmt::format("{}: series", branch.name));
-            b.runs.push_back(run(model, result.channels, branch, ways[k],
+            b.runs.push_back(run(model, result.channels, branch, sides[k],
                                  {.leg = Leg::series, .every = options.every}));
         }
         if (options.prove) {
             if (options.progress) options.progress(fmt::format("{}: proofs", branch.name));
-            for (LegRun& run : b.runs) run.proved = proved(ways[k].front(), run);
+            for (LegRun& run : b.runs) run.proved = proved(sides[k].front(), run);
         }
         for (std::size_t c = 0; c < result.channels.size(); ++c)
             b.determined[c] =
                 b.determined[c] && !is_undefined_somewhere(result.channels[c], c, b.runs);
         const LegRun& truth = run_of(b, Leg::equilibrium);
-        b.abscissa = asked >= 0 ? asked : default_abscissa(result.channels, truth.curve);
+        b.abscissa = requested >= 0 ? requested : default_abscissa(result.channels, truth.curve);
         const auto pair = [&](Leg a, Leg c) {
             const Curve &of_a = run_of(b, a).curve, &of_c = run_of(b, c).curve;
             return Pair{

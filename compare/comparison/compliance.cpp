@@ -56,23 +56,23 @@ struct ResponseCase {
     Equilibrium state;
 };
 
-ResponseCase freed(const BranchSide& way, const Equilibrium& state) {
-    ResponseCase free{way.model, way.branch, state};
+ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
+    ResponseCase free{side.model, side.branch, state};
     const auto push = [&](const Point& at, double force) {
         free.model.static_loads.push_back({"held", DeadForce{at, force * Vector3d::UnitZ()}});
     };
     std::erase_if(free.branch.drivers, [&](const Driver& driver) {
         const int joint = driven_joint(driver.what);
-        return joint >= 0 && is_jack(way.model, static_cast<std::size_t>(joint));
+        return joint >= 0 && is_jack(side.model, static_cast<std::size_t>(joint));
     });
-    for (std::size_t k = 0; k < way.model.joints.size(); ++k)
-        if (is_jack(way.model, k)) {
-            push(way.model.joints[k].at, state.reactions[k].force.z());
+    for (std::size_t k = 0; k < side.model.joints.size(); ++k)
+        if (is_jack(side.model, k)) {
+            push(side.model.joints[k].at, state.reactions[k].force.z());
             free.state.reactions[k] = {};
         }
-    for (std::size_t k = 0; k < way.model.elastics.size(); ++k)
-        if (const Bushing* at = tyre(way.model.elastics[k])) {
-            push({at->j.body, at->j.s_local}, tyre_force(*at, k, way.branch, state));
+    for (std::size_t k = 0; k < side.model.elastics.size(); ++k)
+        if (const Bushing* at = tyre(side.model.elastics[k])) {
+            push({at->j.body, at->j.s_local}, tyre_force(*at, k, side.branch, state));
             std::erase_if(free.branch.drivers, [&](const Driver& driver) {
                 return driven_element(driver.what) == static_cast<int>(k);
             });
@@ -156,12 +156,12 @@ Response linear_response(const SolverSettings& solver, const Model& model, const
     return {};
 }
 
-WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver, int steering,
+WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver, int steering,
                              const Equilibrium& state, Analyses& analyses) {
     WheelResponse response;
-    const std::size_t wheels = way.model.wheels.size();
-    const ResponseCase freed_case = freed(way, state);
-    const auto wrenches = causes_at(way.model);
+    const std::size_t wheels = side.model.wheels.size();
+    const ResponseCase freed_case = freed(side, state);
+    const auto wrenches = causes_at(side.model);
     if (const Response free = linear_response(solver, freed_case.model, freed_case.branch,
                                               freed_case.state, wrenches, analyses.free);
         free.outcome == Outcome::converged)
@@ -201,7 +201,7 @@ WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver
     response.travel.assign(
         jacked.increments.end() - static_cast<std::ptrdiff_t>(response.tied ? 1 : wheels),
         jacked.increments.end());
-    response.travel.resize(wheels, Motions(way.model.bodies.size()));
+    response.travel.resize(wheels, Motions(side.model.bodies.size()));
     return response;
 }
 

@@ -28,7 +28,7 @@ namespace elastocheck::compare {
 // per Model::bodies, per unit of the cause [m/N, m/(N·m), m/m, ...]
 using Motions = std::vector<Increment>;
 
-// What acts on a wheel, ground axes: a force at the wheel centre, a moment, a force at the contact
+// Wrenches on a wheel, ground axes: a force at the wheel centre, a moment, a force at the contact
 // patch.
 inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
@@ -61,12 +61,12 @@ int steering_joint(const Model& model);
 // that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to
 // the branch side and are reused over its states: the two models differ between states only in
 // loads and jack heights, which an analysis does not use.
-WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver, int steering,
+WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver, int steering,
                              const Equilibrium& state, Analyses& analyses);
-inline WheelResponse wheel_response(const BranchSide& way, const SolverSettings& solver,
+inline WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver,
                                     int steering, const Equilibrium& state) {
     Analyses analyses;
-    return wheel_response(way, solver, steering, state, analyses);
+    return wheel_response(side, solver, steering, state, analyses);
 }
 
 // Response by one leg. `analysis` is that of the recursion, computed here if empty.

@@ -81,26 +81,24 @@ Naming naming(const Elastic& elastic, int component) {
         return is_force
                    ? Naming{"force", fmt::format("force of {}, positive in compression", who)}
                    : Naming{"deflection",
-                            fmt::format("how much shorter {} is than free, positive in compression",
+                            fmt::format("free length less length of {}, positive in compression",
                                         who)};
     if (elastic.written_as == WrittenAs::tyre)
         return is_force
                    ? Naming{"force",
                             fmt::format("vertical force of tyre {} on the wheel, positive up", who)}
-                   : Naming{"deflection",
-                            fmt::format("how much flatter tyre {} is than without load, positive "
-                                        "where it is pressed",
-                                        who)};
+                   : Naming{"deflection", fmt::format("reduction of the height of tyre {} under "
+                                                      "load, positive in compression",
+                                                      who)};
     if (elastic.written_as == WrittenAs::torsion_spring)
         return is_force
                    ? Naming{"moment",
                             fmt::format("moment of {} about its axis, positive where it turns the "
                                         "second body back against the axis",
                                         who)}
-                   : Naming{"angle",
-                            fmt::format("angle of {}, of the second body against the first about "
-                                        "its axis, right-handed",
-                                        who)};
+                   : Naming{"angle", fmt::format("angle of {}, of the second body relative to the "
+                                                 "first about its axis, right-handed",
+                                                 who)};
     const char* axis = axes[static_cast<std::size_t>(component % 3)];
     if (is_force)
         return {
@@ -108,13 +106,11 @@ Naming naming(const Elastic& elastic, int component) {
             fmt::format("{} of {} {} its own axis {}, positive where it pulls the second body back "
                         "against the axis",
                         turns ? "moment" : "force", who, turns ? "about" : "along", axis)};
-    return {
-        fmt::format("{}_{}", turns ? "rotation" : "displacement", axis),
-        fmt::format(
-            "{} of {} {} its own axis {} from where it is undeformed, of the second body against "
-            "the first, {}",
-            turns ? "rotation" : "displacement", who, turns ? "about" : "along", axis,
-            turns ? "right-handed" : "positive along the axis")};
+    return {fmt::format("{}_{}", turns ? "rotation" : "displacement", axis),
+            fmt::format("{} of {} {} its own axis {} from its undeformed position, of the second "
+                        "body relative to the first, {}",
+                        turns ? "rotation" : "displacement", who, turns ? "about" : "along", axis,
+                        turns ? "right-handed" : "positive along the axis")};
 }
 
 // "NAME", or "NAME#2" where NAME.output is taken.

@@ -94,18 +94,15 @@ std::string exceeded_bounds(const ErrorBoundSummary& error_bounds, const ErrorBo
     std::string text;
     if (error_bounds.beyond > 0)
         text = fmt::format(
-            "promises {:.2g} mm and {:.2g} deg, which {} of {} points do not keep by their own "
-            "account: "
-            "within {:.2g} mm "
-            "and {:.2g} deg at {:.5g} {}",
+            "promises {:.2g} mm and {:.2g} deg, which the error bounds of {} of {} points exceed: "
+            "{:.2g} mm and {:.2g} deg at {:.5g} {}",
             1e3 * tolerance.length, angle(tolerance.angle), error_bounds.beyond,
             error_bounds.points, 1e3 * error_bounds.worst_bound.length,
             angle(error_bounds.worst_bound.angle), in_unit(unit_of(unit)) * error_bounds.worst_load,
             symbol(unit_of(unit)));
     if (error_bounds.unbounded > 0)
-        text +=
-            fmt::format("{}of {} of {} points no account can be given: nothing is promised of them",
-                        text.empty() ? "" : "; ", error_bounds.unbounded, error_bounds.points);
+        text += fmt::format("{}{} of {} points have no error bound", text.empty() ? "" : "; ",
+                            error_bounds.unbounded, error_bounds.points);
     return text;
 }
 
@@ -113,24 +110,24 @@ std::string stiffness_message(std::span<const Equilibrium> points, ParameterUnit
     const auto gone = announced(points);
     if (!gone) return {};
     const Unit shown = unit_of(unit);
-    return fmt::format("at this rate the stiffness is gone near {:.5g} {}", in_unit(shown) * *gone,
-                       symbol(shown));
+    return fmt::format("by extrapolation the stiffness vanishes near {:.5g} {}",
+                       in_unit(shown) * *gone, symbol(shown));
 }
 
 void add(BranchErrorBounds& error_bound, const Equilibrium& point) {
-    if (error_bound.ways.empty() || point.load == 0) error_bound.ways.emplace_back();
-    add(error_bound.ways.back(), point, error_bound.tolerance);
+    if (error_bound.sides.empty() || point.load == 0) error_bound.sides.emplace_back();
+    add(error_bound.sides.back(), point, error_bound.tolerance);
 }
 
 std::vector<std::string> messages(const BranchErrorBounds& error_bound, ParameterUnit unit) {
     const Unit shown = unit_of(unit);
     std::vector<std::string> lines;
-    for (const auto& points : error_bound.ways) {
+    for (const auto& points : error_bound.sides) {
         if (error_bound.tolerance)
             if (auto text = exceeded_bounds(points, *error_bound.tolerance, unit); !text.empty())
                 lines.push_back(std::move(text));
         if (const auto from = points.announced_from)
-            lines.push_back(fmt::format("{}, announced from {:.5g} {} on",
+            lines.push_back(fmt::format("{}, predicted from {:.5g} {} on",
                                         stiffness_message(points.last, unit),
                                         in_unit(shown) * *from, symbol(shown)));
     }

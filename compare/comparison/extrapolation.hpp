@@ -48,7 +48,7 @@ std::string exceeded_bounds(const ErrorBoundSummary& error_bounds, const ErrorBo
 // Summaries of the sides of a branch, one after the other, each from a = 0 on.
 struct BranchErrorBounds {
     std::optional<ErrorBound> tolerance = {};
-    std::vector<ErrorBoundSummary> ways = {};
+    std::vector<ErrorBoundSummary> sides = {};
 };
 void add(BranchErrorBounds& error_bound, const Equilibrium& point);
 

@@ -26,36 +26,38 @@ namespace elastocheck::compare {
 namespace {
 
 // Whether the k-th recorded point of a branch side is requested.
-bool is_asked_for(const Branch& way, int k, int every) { return k % every == 0 || k == way.steps; }
+bool is_requested(const Branch& side, int k, int every) {
+    return k % every == 0 || k == side.steps;
+}
 
 // Requested parameters of a branch side.
-std::vector<double> grid(const Branch& way, int every) {
+std::vector<double> grid(const Branch& side, int every) {
     std::vector<double> a;
-    for (int k = 0; k <= way.steps; ++k)
-        if (is_asked_for(way, k, every)) a.push_back(way.to * k / way.steps);
+    for (int k = 0; k <= side.steps; ++k)
+        if (is_requested(side, k, every)) a.push_back(side.to * k / side.steps);
     return a;
 }
 
-EquilibriumPath recursion(const BranchSide& way, recursive::Options options, int refine, int every,
+EquilibriumPath recursion(const BranchSide& side, recursive::Options options, int refine, int every,
                           const Visit& visit) {
-    options.record = way.branch.steps;
-    options.steps = way.branch.steps * refine;
+    options.record = side.branch.steps;
+    options.steps = side.branch.steps * refine;
     options.error_bound_every = every;
-    return recursive::solve(way.model, way.branch, options,
+    return recursive::solve(side.model, side.branch, options,
                             [&, k = 0](const Equilibrium& state) mutable {
-                                if (is_asked_for(way.branch, k++, every)) visit(state);
+                                if (is_requested(side.branch, k++, every)) visit(state);
                             });
 }
 
 // Runs the leg with extrapolated curves, without a check of their ends.
-EquilibriumPath walk_anywhere(const BranchSide& way, const SolverSettings& solver,
+EquilibriumPath walk_anywhere(const BranchSide& side, const SolverSettings& solver,
                               const Visit& visit) {
-    const auto& [model, branch] = std::tie(way.model, way.branch);
+    const auto& [model, branch] = std::tie(side.model, side.branch);
     switch (solver.leg) {
         case Leg::recursive: {
             recursive::Options options = solver.recursion;
             options.error_bound = solver.error_bound;
-            return recursion(way, options, solver.refine, solver.every, visit);
+            return recursion(side, options, solver.refine, solver.every, visit);
         }
         case Leg::equilibrium:
             return reference::equilibrium::solve(model, branch, grid(branch, solver.every),
@@ -64,7 +66,7 @@ EquilibriumPath walk_anywhere(const BranchSide& way, const SolverSettings& solve
             return reference::energy::solve(model, branch, grid(branch, solver.every),
                                             {.error_bound = solver.error_bound}, visit);
         case Leg::series:
-            return recursion(way,
+            return recursion(side,
                              {.method = recursive::find_method("series").value(),
                               .error_bound = solver.error_bound},
                              1, solver.every, visit);
@@ -75,36 +77,36 @@ EquilibriumPath walk_anywhere(const BranchSide& way, const SolverSettings& solve
 // Joins both sides. The points of the reversed side are buffered as `Row` until they can be handed
 // over.
 template <class Row, class Read, class HandOver>
-EquilibriumPath join(const std::vector<BranchSide>& ways, const SolverSettings& solver,
+EquilibriumPath join(const std::vector<BranchSide>& sides, const SolverSettings& solver,
                      const Read& read, const HandOver& hand_over) {
-    if (ways.empty()) return {Outcome::not_finite, "the branch leads nowhere", {}, {}};
-    if (ways.size() == 1)
-        return walk(ways.front(), solver,
+    if (sides.empty()) return {Outcome::not_finite, "the branch has no length", {}, {}};
+    if (sides.size() == 1)
+        return walk(sides.front(), solver,
                     [&](const Equilibrium& state) { hand_over(read(state)); });
-    const auto tell = [](const BranchSide& way, const std::string& detail) {
-        return fmt::format("{}: {}", way.name, detail);
+    const auto tell = [](const BranchSide& side, const std::string& detail) {
+        return fmt::format("{}: {}", side.name, detail);
     };
     // Both sides start at a = 0 in the same settled state: the second side's start is used, if it
     // has one.
     std::optional<Equilibrium> start;
     std::vector<Row> reversed;
-    EquilibriumPath joined = walk(ways.front(), solver, [&](const Equilibrium& state) {
+    EquilibriumPath joined = walk(sides.front(), solver, [&](const Equilibrium& state) {
         if (!start)
             start = state;
         else
             reversed.push_back(read(state));
     });
     for (; !reversed.empty(); reversed.pop_back()) hand_over(std::move(reversed.back()));
-    EquilibriumPath second = walk(ways.back(), solver, [&](const Equilibrium& state) {
+    EquilibriumPath second = walk(sides.back(), solver, [&](const Equilibrium& state) {
         start.reset();
         hand_over(read(state));
     });
     if (start) hand_over(read(*start));
     // A leg that does not apply to one side does not apply to either.
     if (is_not_applicable(joined.outcome) && second.outcome == joined.outcome) return second;
-    if (joined.outcome != Outcome::converged) joined.detail = tell(ways.front(), joined.detail);
+    if (joined.outcome != Outcome::converged) joined.detail = tell(sides.front(), joined.detail);
     if (second.outcome != Outcome::converged) {
-        joined.detail += (joined.detail.empty() ? "" : "; ") + tell(ways.back(), second.detail);
+        joined.detail += (joined.detail.empty() ? "" : "; ") + tell(sides.back(), second.detail);
         if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
     }
     joined.counts.factorisations += second.counts.factorisations;
@@ -113,9 +115,9 @@ EquilibriumPath join(const std::vector<BranchSide>& ways, const SolverSettings& 
     return joined;
 }
 
-std::string label(const Branch& way) {
-    const Unit unit = unit_of(way.unit);
-    return fmt::format("{} to {:.4g} {}", way.name, in_unit(unit) * way.to, symbol(unit));
+std::string label(const Branch& side) {
+    const Unit unit = unit_of(side.unit);
+    return fmt::format("{} to {:.4g} {}", side.name, in_unit(unit) * side.to, symbol(unit));
 }
 
 }  // namespace
@@ -134,28 +136,29 @@ std::vector<BranchSide> sides_of(const Model& model, Branch branch, int points) 
     if (points > 0) branch.steps = points;
     std::vector<BranchSide> result;
     const auto all = ways(branch);
-    for (const auto& way : all)
-        result.push_back({all.size() > 1 ? label(way) : branch.name, on_branch(model, way), way});
+    for (const auto& side : all)
+        result.push_back(
+            {all.size() > 1 ? label(side) : branch.name, on_branch(model, side), side});
     return result;
 }
 
-std::vector<double> requested_parameters(const std::vector<BranchSide>& ways, int every) {
+std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, int every) {
     std::vector<double> a;
-    for (std::size_t w = 0; w < ways.size(); ++w) {
-        auto way = grid(ways[w].branch, every);
-        const bool comes_reversed = w + 1 < ways.size();
-        if (comes_reversed) std::ranges::reverse(way), way.pop_back();
-        std::ranges::copy(way, std::back_inserter(a));
+    for (std::size_t w = 0; w < sides.size(); ++w) {
+        auto side = grid(sides[w].branch, every);
+        const bool comes_reversed = w + 1 < sides.size();
+        if (comes_reversed) std::ranges::reverse(side), side.pop_back();
+        std::ranges::copy(side, std::back_inserter(a));
     }
     return a;
 }
 
-EquilibriumPath walk(const BranchSide& way, const SolverSettings& solver, const Visit& visit) {
+EquilibriumPath walk(const BranchSide& side, const SolverSettings& solver, const Visit& visit) {
     std::vector<Equilibrium> kept;
     std::string ended;
-    EquilibriumPath path = walk_anywhere(way, solver, [&](const Equilibrium& state) {
+    EquilibriumPath path = walk_anywhere(side, solver, [&](const Equilibrium& state) {
         if (!ended.empty()) return;
-        ended = ends_at_table(way.model, way.branch, state);
+        ended = ends_at_table(side.model, side.branch, state);
         if (!ended.empty()) return;
         if (visit)
             visit(state);
@@ -171,18 +174,18 @@ bool is_not_applicable(Outcome outcome) {
     return outcome == Outcome::not_conservative || outcome == Outcome::too_large;
 }
 
-EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver) {
+EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     std::vector<Equilibrium> points;
     EquilibriumPath path = join<Equilibrium>(
-        ways, solver, [](const Equilibrium& state) { return state; },
+        sides, solver, [](const Equilibrium& state) { return state; },
         [&](Equilibrium state) { points.push_back(std::move(state)); });
     path.points = std::move(points);
     return path;
 }
 
-Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
-    Row row{state.load, state.constraint_error, evaluate(model, way.branch, channels, state)};
+    Row row{state.load, state.constraint_error, evaluate(model, side.branch, channels, state)};
     std::optional<WheelResponse> response;
     std::optional<bool> corner;
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -190,34 +193,34 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
         if (characteristic == nullptr) continue;
         // At the corner of a law a stiffness has two values; rounding would select one of them.
         if (channels[c].unit == Unit::newton_per_mm && channels[c].may_be_undefined()) {
-            if (!corner) corner = at_corner(way.model, way.branch, state);
+            if (!corner) corner = at_corner(side.model, side.branch, state);
             if (*corner) {
                 row.values[c] = undefined;
                 continue;
             }
         }
         if (!response)
-            response = wheel_response(way, solver, steering_joint(model), state, analyses);
+            response = wheel_response(side, solver, steering_joint(model), state, analyses);
         row.values[c] =
-            in_unit(channels[c].unit) * value_of(way.model, *characteristic, state, *response);
+            in_unit(channels[c].unit) * value_of(side.model, *characteristic, state, *response);
     }
     return row;
 }
 
-Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state) {
     Analyses analyses;
-    return row_of(model, channels, way, solver, state, analyses);
+    return row_of(model, channels, side, solver, state, analyses);
 }
 
-EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver,
+EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver,
                      const std::function<Row(const Equilibrium&)>& read,
                      const std::function<void(Row)>& hand_over) {
-    return join<Row>(ways, solver, read, hand_over);
+    return join<Row>(sides, solver, read, hand_over);
 }
 
 PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
-               const std::vector<BranchSide>& ways, const SolverSettings& solver,
+               const std::vector<BranchSide>& sides, const SolverSettings& solver,
                const Visit& also) {
     using clock = std::chrono::steady_clock;
     PathCurve walked;
@@ -226,11 +229,11 @@ PathCurve walk(const Model& model, std::span<const Channel> channels, const Bran
     Analyses analyses;
     const auto start = clock::now();
     const EquilibriumPath path = walk(
-        ways, solver,
+        sides, solver,
         [&](const Equilibrium& state) {
             const auto found = clock::now();
             if (also) also(state);
-            Row row = row_of(model, channels, ways.front(), solver, state, analyses);
+            Row row = row_of(model, channels, sides.front(), solver, state, analyses);
             reading += clock::now() - found;
             return row;
         },
@@ -245,7 +248,7 @@ PathCurve walk(const Model& model, std::span<const Channel> channels, const Bran
     return walked;
 }
 
-EquilibriumPath rest(const BranchSide& way, Leg leg) {
+EquilibriumPath rest(const BranchSide& side, Leg leg) {
     constexpr std::array at_start{0.0};
     std::optional<Equilibrium> start;
     const Visit first = [&](const Equilibrium& state) {
@@ -254,29 +257,29 @@ EquilibriumPath rest(const BranchSide& way, Leg leg) {
     EquilibriumPath path;
     switch (leg) {
         case Leg::equilibrium:
-            path = reference::equilibrium::solve(way.model, way.branch, at_start, {}, first);
+            path = reference::equilibrium::solve(side.model, side.branch, at_start, {}, first);
             break;
         case Leg::energy:
-            path = reference::energy::solve(way.model, way.branch, at_start, {}, first);
+            path = reference::energy::solve(side.model, side.branch, at_start, {}, first);
             break;
         case Leg::recursive:
-        case Leg::series: path = walk_anywhere(way, {.leg = leg}, first); break;
+        case Leg::series: path = walk_anywhere(side, {.leg = leg}, first); break;
     }
     if (!start) return path;
-    path.detail = ends_at_table(way.model, way.branch, *start);
+    path.detail = ends_at_table(side.model, side.branch, *start);
     // the outcome beyond this point is irrelevant
     path.outcome = path.detail.empty() ? Outcome::converged : Outcome::outside_table;
     if (path.outcome == Outcome::converged) path.points.push_back(std::move(*start));
     return path;
 }
 
-Residuals judge(Leg by, const BranchSide& way, const Equilibrium& state) {
+Residuals judge(Leg by, const BranchSide& side, const Equilibrium& state) {
     switch (by) {
         case Leg::recursive:
-        case Leg::series: return recursive::residuals(way.model, way.branch, state);
+        case Leg::series: return recursive::residuals(side.model, side.branch, state);
         case Leg::equilibrium:
-            return reference::equilibrium::residuals(way.model, way.branch, state);
-        case Leg::energy: return reference::energy::residuals(way.model, way.branch, state);
+            return reference::equilibrium::residuals(side.model, side.branch, state);
+        case Leg::energy: return reference::energy::residuals(side.model, side.branch, state);
     }
     return {};
 }
@@ -305,24 +308,24 @@ std::string nothing_moves(const Model& model, const std::vector<Channel>& channe
                   (channels[c].unit == Unit::deg ? dust_deg : dust_mm)))
                 return {};
     }
-    return fmt::format("no asked-for output moves on branch '{}'", branch.name);
+    return fmt::format("no requested output changes on branch '{}'", branch.name);
 }
 
 References references(const Model& model, const std::vector<Channel>& channels,
-                      const Branch& branch, const std::vector<BranchSide>& ways) {
+                      const Branch& branch, const std::vector<BranchSide>& sides) {
     References result;
-    const Model& standing = ways.front().model;
+    const Model& standing = sides.front().model;
     result.scale = scale_of(standing, branch, {});
     PathCurve equilibrium = walk(
-                  model, channels, branch, ways, {.leg = Leg::equilibrium},
+                  model, channels, branch, sides, {.leg = Leg::equilibrium},
                   [&](const Equilibrium&state) {
                       result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
                   }),
-              second = walk(model, channels, branch, ways, {.leg = Leg::energy});
+              second = walk(model, channels, branch, sides, {.leg = Leg::energy});
     if (is_not_applicable(second.outcome)) {
         result.second_leg = Leg::series;
         result.not_asked = second.detail;
-        second = walk(model, channels, branch, ways, {.leg = Leg::series});
+        second = walk(model, channels, branch, sides, {.leg = Leg::series});
     }
     for (const auto& [leg, walked] :
          {std::pair{Leg::equilibrium, &equilibrium}, {result.second_leg, &second}})
@@ -347,8 +350,8 @@ References references(const Model& model, const std::vector<Channel>& channels,
 }
 
 Settled settled(const Model& model, const std::vector<Channel>& channels, const Branch& branch) {
-    const BranchSide way = sides_of(model, branch).front();
-    const auto path = rest(way, Leg::equilibrium);
+    const BranchSide side = sides_of(model, branch).front();
+    const auto path = rest(side, Leg::equilibrium);
     Settled result{branch.name, path.outcome, path.detail,
                    std::vector<double>(channels.size(), nan)};
     if (path.outcome != Outcome::converged || path.points.empty()) return result;

@@ -15,7 +15,7 @@ namespace elastocheck::compare {
 
 // Requested values of the parameter, in the order of the points: from a = 0 for one side, from
 // `from` to `to` for two.
-std::vector<double> requested_parameters(const std::vector<BranchSide>& ways, int every);
+std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, int every);
 
 // Whether the outcome means that the energy leg does not apply here, in contrast to a failure.
 bool is_not_applicable(Outcome outcome);
@@ -30,26 +30,26 @@ struct Analyses;  // compliance.hpp
 // Evaluates the channels at one point. A characteristic is computed by the leg that found the
 // state, with these settings. `analyses` are reused over the points of a branch
 // side.
-Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses);
-Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& way,
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state);
 
 // The same path without keeping points: `read` converts each point when it is found, and
 // `hand_over` receives the rows in the order of the path. The rows of the first of two sides are
 // buffered, since that side runs backwards.
-EquilibriumPath walk(const std::vector<BranchSide>& ways, const SolverSettings& solver,
+EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings& solver,
                      const std::function<Row(const Equilibrium&)>& read,
                      const std::function<void(Row)>& hand_over);
 
 // The same path as a curve. `also` is called with every point when it is found.
 PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
-               const std::vector<BranchSide>& ways, const SolverSettings& solver,
+               const std::vector<BranchSide>& sides, const SolverSettings& solver,
                const Visit& also = {});
 
 // Start of a branch side by this leg: one point, the settled state at a = 0; no point where it does
 // not settle.
-EquilibriumPath rest(const BranchSide& way, Leg leg);
+EquilibriumPath rest(const BranchSide& side, Leg leg);
 
 // ---- The references along a branch.
 
@@ -70,7 +70,7 @@ struct References {
 };
 
 References references(const Model& model, const std::vector<Channel>& channels,
-                      const Branch& branch, const std::vector<BranchSide>& ways);
+                      const Branch& branch, const std::vector<BranchSide>& sides);
 
 // Reason why a branch gives no information: it has no driver left, or no main channel moves by more
 // than its rounding. Empty otherwise.

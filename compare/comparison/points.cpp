@@ -59,10 +59,10 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
     for (std::size_t a = 0; a < all.size(); ++a)
         for (std::size_t b = 0; b < a; ++b)
             if (!apart(model.branches[a], model.branches[b]))
-                throw std::invalid_argument(fmt::format(
-                    "branches '{}' and '{}' lie on the same side; a point has to say which one it "
-                    "belongs to",
-                    all[b].branch, all[a].branch));
+                throw std::invalid_argument(
+                    fmt::format("branches '{}' and '{}' are on the same side; each point needs the "
+                                "name of its branch",
+                                all[b].branch, all[a].branch));
     std::vector<std::vector<double>> over;
     for (const auto& branch : all)
         over.push_back(

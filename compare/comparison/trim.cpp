@@ -30,9 +30,9 @@ constexpr double known = 1e-6;       // of the largest singular value: resolutio
 // The trim equations for any p.
 struct Problem {
     const Trim* trim = nullptr;
-    BranchSide way;                 // branch on which the adjustments are held
+    BranchSide side;                // branch on which the adjustments are held
     std::vector<Channel> channels;  // read by the conditions
-    VectorXd asked;                 // [m, rad]
+    VectorXd target;                // [m, rad]
 };
 
 struct TrimAttempt {
@@ -72,7 +72,7 @@ Channel channel_of(const Model& model, const ConditionKind& kind) {
 }
 
 VectorXd values(const Problem& problem, const Equilibrium& state) {
-    const auto shown = evaluate(problem.way.model, problem.channels, state);
+    const auto shown = evaluate(problem.side.model, problem.channels, state);
     VectorXd c(static_cast<Index>(shown.size()));
     for (std::size_t k = 0; k < shown.size(); ++k)
         c[static_cast<Index>(k)] = shown[k] / in_unit(problem.channels[k].unit);
@@ -95,34 +95,35 @@ Problem pose(const Scene& scene) {
         std::string why;
         for (const auto& omission : model.omitted)
             if (omission.why.find("(branch 'trim')") != std::string::npos) why = omission.what;
-        throw std::invalid_argument(fmt::format(
-            "what is adjusted has no influence on any output{}{}", why.empty() ? "" : ": ", why));
+        throw std::invalid_argument(
+            fmt::format("the adjusted quantities have no influence on any output{}{}",
+                        why.empty() ? "" : ": ", why));
     }
     for (auto& driver : model.branches.front().drivers) driver.rate = 0;
-    problem.way = {"trim", on_branch(model, model.branches.front()), model.branches.front()};
+    problem.side = {"trim", on_branch(model, model.branches.front()), model.branches.front()};
     for (const auto& condition : problem.trim->until)
-        problem.channels.push_back(channel_of(problem.way.model, condition.what));
-    const VectorXd drawn = values(problem, design_state(problem.way.model));
-    problem.asked = drawn;
+        problem.channels.push_back(channel_of(problem.side.model, condition.what));
+    const VectorXd drawn = values(problem, design_state(problem.side.model));
+    problem.target = drawn;
     for (std::size_t k = 0; k < problem.trim->until.size(); ++k)
         if (const auto& value = problem.trim->until[k].value)
-            problem.asked[static_cast<Index>(k)] = *value;
+            problem.target[static_cast<Index>(k)] = *value;
     return problem;
 }
 
 BranchSide held_at(const Problem& problem, const VectorXd& p) {
-    BranchSide way = problem.way;
-    for (std::size_t k = 0; k < way.branch.drivers.size(); ++k)
-        way.branch.drivers[k].start = problem.trim->adjust[k].per_unit * p[static_cast<Index>(k)];
-    way.model.branches = {way.branch};
-    return way;
+    BranchSide side = problem.side;
+    for (std::size_t k = 0; k < side.branch.drivers.size(); ++k)
+        side.branch.drivers[k].start = problem.trim->adjust[k].per_unit * p[static_cast<Index>(k)];
+    side.model.branches = {side.branch};
+    return side;
 }
 
 TrimAttempt settle(const Problem& problem, const VectorXd& p, Leg leg) {
     const EquilibriumPath path = rest(held_at(problem, p), leg);
     if (path.points.empty()) return {path.outcome, path.detail, {}, {}};
     return {Outcome::converged, "", path.points.front(),
-            values(problem, path.points.front()) - problem.asked};
+            values(problem, path.points.front()) - problem.target};
 }
 
 // h, in the unit of the adjustment.
@@ -180,15 +181,15 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
         const double size = J.col(k).norm();
         if (!(size > moves))
             return fmt::format(
-                "'{}' has no influence on {}: adjust something else, or ask for a condition that "
-                "it moves",
+                "'{}' has no influence on {}: adjust another quantity, or choose a condition that "
+                "it changes",
                 trim.adjust[static_cast<std::size_t>(k)].name,
                 listed(taking_part(trim.until, VectorXd::Ones(J.rows()))));
         scaled.col(k) /= size;
     }
     for (Index k = 0; k < J.rows(); ++k) {
         if (!(J.row(k).norm() > moves))
-            return fmt::format("no adjustment moves '{}': {} does not",
+            return fmt::format("no adjustment changes '{}': {} does not",
                                trim.until[static_cast<std::size_t>(k)].name,
                                listed(taking_part(trim.adjust, VectorXd::Ones(J.cols()))));
         scaled.row(k).normalize();
@@ -197,7 +198,7 @@ std::string ill_posed(const Trim& trim, const MatrixXd& J) {
     const VectorXd s = svd.singularValues();
     if (s[s.size() - 1] > known * s[0]) return {};
     return fmt::format(
-        "ambiguous: {} move only together, whatever {} do; a condition that tells these apart is "
+        "ambiguous: {} change only together, whatever {} do; a condition that separates these is "
         "missing",
         listed(taking_part(trim.until, svd.matrixU().rightCols<1>())),
         listed(taking_part(trim.adjust, svd.matrixV().rightCols<1>())));
@@ -256,7 +257,7 @@ std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Prob
                 const auto& spring =
                     std::get<AxialSpring>(scene.elastics[static_cast<std::size_t>(l.elastic)].kind);
                 const auto element = static_cast<std::size_t>(std::get<FreeLength>(driven).elastic);
-                const ElasticKind& standing = problem.way.model.elastics[element].kind;
+                const ElasticKind& standing = problem.side.model.elastics[element].kind;
                 const double f =
                     force(standing, deformation(standing, element, held.branch, state))[0];
                 return fmt::format("force {:.6g} N in {}, free length {:.6g} mm", std::abs(f),
@@ -280,7 +281,7 @@ Trimmed trim(const Scene& scene) {
     const Trim& trim = *scene.trim;
     if (trim.adjust.size() != trim.until.size() || trim.adjust.empty())
         throw std::invalid_argument(
-            fmt::format("{} adjusted until {} conditions hold; as many are needed",
+            fmt::format("{} adjusted quantities for {} conditions; their numbers must be equal",
                         trim.adjust.size(), trim.until.size()));
     const Problem problem = pose(scene);
     TrimRecord& record = result.record.emplace();
@@ -296,17 +297,17 @@ Trimmed trim(const Scene& scene) {
         h[static_cast<Index>(k)] = step(trim.adjust[k]);
     TrimAttempt here = settle(problem, p, Leg::equilibrium);
     if (here.outcome != Outcome::converged)
-        return give_up(here, "the scene as written does not settle");
+        return give_up(here, "the scene has no settled equilibrium before the trim");
     std::string stuck;
     // J is checked before convergence is accepted: conditions met by chance may leave p
     // undetermined.
     for (bool first = true; first || here.missed.lpNorm<2>() > met; first = false) {
         TrimAttempt failed;
         const auto J = responses(problem, p, failed);
-        if (!J && record.iterations == 0) return give_up(failed, "beside the state reached");
+        if (!J && record.iterations == 0) return give_up(failed, "at a neighbouring state");
         if (!J) {
-            stuck = fmt::format("; beside it: {}: {}", elastocheck::name(failed.outcome),
-                                failed.detail);
+            stuck = fmt::format("; at a neighbouring state: {}: {}",
+                                elastocheck::name(failed.outcome), failed.detail);
             break;
         }
         if (const std::string why = ill_posed(trim, *J); !why.empty()) {
@@ -314,7 +315,7 @@ Trimmed trim(const Scene& scene) {
             // trimmed.
             if (record.iterations == 0 || here.missed.norm() <= acceptable)
                 throw std::invalid_argument(why);
-            stuck = "; there " + why;
+            stuck = "; at that state " + why;
             break;
         }
         if (!(here.missed.norm() > met) || record.iterations == most_iterations) break;
@@ -330,8 +331,8 @@ Trimmed trim(const Scene& scene) {
             // Unreachable conditions lead to a singular state, beyond which rounding decides which
             // are met.
             if (next.outcome != Outcome::converged)
-                stuck =
-                    fmt::format("; farther: {}: {}", elastocheck::name(next.outcome), next.detail);
+                stuck = fmt::format("; at the next iterate: {}: {}",
+                                    elastocheck::name(next.outcome), next.detail);
             break;
         }
         p += share * dp;
@@ -342,7 +343,7 @@ Trimmed trim(const Scene& scene) {
     for (std::size_t k = 0; k < trim.until.size(); ++k) {
         const Unit unit = problem.channels[k].unit;
         const auto i = static_cast<Index>(k);
-        record.conditions.push_back({trim.until[k].name, unit, in_unit(unit) * problem.asked[i],
+        record.conditions.push_back({trim.until[k].name, unit, in_unit(unit) * problem.target[i],
                                      in_unit(unit) * here.missed[i], std::nan("")});
     }
     if (!(here.missed.norm() <= acceptable)) {
@@ -351,7 +352,7 @@ Trimmed trim(const Scene& scene) {
         });
         record.outcome = Outcome::iteration_limit;
         record.detail = fmt::format(
-            "the conditions cannot be met: the nearest that was reached misses '{}' by {:.3g} {}{}",
+            "the conditions cannot be met: the closest iterate misses '{}' by {:.3g} {}{}",
             worst->name, worst->missed, symbol(worst->unit), stuck);
         return result;
     }
@@ -382,8 +383,8 @@ Trimmed trim(const Scene& scene) {
         const Unit unit = unit_of(adjusted.unit);
         record.adjusted.push_back(
             {adjusted.name, unit, in_unit(unit) * p[static_cast<Index>(k)],
-             what_it_makes(result.scene, adjusted.what, problem, problem.way.branch.drivers[k].what,
-                           held, here.state)});
+             what_it_makes(result.scene, adjusted.what, problem,
+                           problem.side.branch.drivers[k].what, held, here.state)});
     }
     return result;
 }

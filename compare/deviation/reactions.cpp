@@ -30,10 +30,8 @@ std::string reaction_off(std::span<const std::string> joints, std::span<const Wr
         if (over <= worst) continue;
         worst = over;
         why = fmt::format(
-            "the reaction of joint '{}' is off by {:.3g} N and {:.3g} N·m; {:.1e} N and {:.1e} N·m "
-            "are "
-            "allowed "
-            "where {:.3g} N act",
+            "the reaction of joint '{}' deviates by {:.3g} N and {:.3g} N·m; {:.1e} N and {:.1e} "
+            "N·m are allowed for acting forces of {:.3g} N",
             joints[k], force, moment, bound.force, bound.moment, acts.force);
     }
     return why;

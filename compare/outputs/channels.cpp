@@ -235,23 +235,22 @@ void add_patch(std::vector<Channel>& list, const Model& model, std::size_t w,
     const Vector3d drawn = position(design_state(model), patch);
     const std::size_t first = list.size();
     add_position(list, prefix + "contact_patch",
-                 "the point of the wheel's body that is the contact patch as drawn", patch);
+                 "the point of the wheel's body that is the contact patch at the design position",
+                 patch);
     for (std::size_t k = first; k < list.size(); ++k) list[k].main = false;
     list.push_back({.name = prefix + "track_change",
                     .main = false,
                     .reads = Coordinate{patch, 1, drawn.y(), wheel.side},
-                    .definition =
-                        "how far the contact patch of this wheel is across from where it is drawn, "
-                        "positive outwards"});
+                    .definition = "lateral displacement of this wheel's contact patch from its "
+                                  "design position, positive outwards"});
     if (model.vehicle)
         list.push_back(
             {.name = prefix + "wheelbase_change",
              .main = false,
              .reads = Coordinate{patch, 0, drawn.x(), model.vehicle->axle == Axle::front ? +1 : -1},
-             .definition =
-                 "how far the contact patch of this wheel is along from where it is drawn, "
-                 "positive where the wheelbase grows (forward in front, rearward at the "
-                 "rear)"});
+             .definition = "longitudinal displacement of this wheel's contact patch from its "
+                           "design position, positive where the wheelbase grows (forward in front, "
+                           "rearward at the rear)"});
 }
 
 void add_steering(std::vector<Channel>& list, std::size_t w, const std::string& prefix) {
@@ -272,18 +271,13 @@ void add_steering(std::vector<Channel>& list, std::size_t w, const std::string& 
         "inwards; "
         "undefined where it lies flatter than 0.1 rad");
     add("scrub_radius", Unit::mm, Figure::scrub_radius,
-        "across the wheel, from the contact patch to where the steering axis meets the road (a "
-        "horizontal "
-        "plane through the patch), positive where that is inboard; undefined where the axis lies "
-        "flatter "
-        "than "
-        "0.1 rad");
+        "distance across the wheel from the contact patch to the intersection of the steering axis "
+        "with the road (the horizontal plane through the patch), positive inboard; undefined where "
+        "the axis lies flatter than 0.1 rad");
     add("mechanical_trail", Unit::mm, Figure::mechanical_trail,
-        "along the wheel, from the contact patch to where the steering axis meets the road (a "
-        "horizontal "
-        "plane through the patch), positive where that is in front; undefined where the axis lies "
-        "flatter "
-        "than 0.1 rad");
+        "distance along the wheel from the contact patch to the intersection of the steering axis "
+        "with the road (the horizontal plane through the patch), positive in front; undefined "
+        "where the axis lies flatter than 0.1 rad");
 }
 
 // Channels of two opposite wheels.
@@ -293,9 +287,8 @@ void add_axle(std::vector<Channel>& list, const Model& model) {
     list.push_back({.name = "track",
                     .main = false,
                     .reads = Track{left, right},
-                    .definition =
-                        "distance across between the contact patches of the two wheels, positive "
-                        "where the left one is to the left"});
+                    .definition = "lateral distance between the contact patches of the two wheels, "
+                                  "positive where the left one is to the left"});
     if (!model.vehicle || model.vehicle->axle != Axle::front) return;
     const Equilibrium drawn = design_state(model);
     const auto y = [&](std::size_t w) {
@@ -310,13 +303,10 @@ void add_axle(std::vector<Channel>& list, const Model& model) {
          .main = false,
          .reads = Ackermann{left, right, model.vehicle->wheelbase / (y(left) - y(right))},
          .definition =
-             "how nearly the perpendiculars to the two wheels meet on the line of the rear axle: "
              "(cot of the right wheel's angle less cot of the left one's) times the wheelbase over "
-             "the "
-             "distance across between the pivots on the road, positive where the inner wheel turns "
-             "more, 100 % where they meet there; undefined unless both are turned the same way by "
-             "2 "
-             "deg or more"});
+             "the lateral distance between the pivots on the road: positive where the inner wheel "
+             "turns more, 100 % where the perpendiculars to the two wheels meet on the line of the "
+             "rear axle; undefined unless both are turned in the same direction by 2 deg or more"});
 }
 
 void add_compression(std::vector<Channel>& list, const Model& model, const std::string& name,
@@ -326,8 +316,7 @@ void add_compression(std::vector<Channel>& list, const Model& model, const std::
         {.name = name + ".compression",
          .main = false,
          .reads = Compression{i, j, (position(drawn, j) - position(drawn, i)).norm()},
-         .definition = fmt::format("how much shorter {} '{}' is than as drawn, positive in "
-                                   "compression",
+         .definition = fmt::format("design length less length of {} '{}', positive in compression",
                                    what, name)});
 }
 

@@ -69,7 +69,7 @@ int default_abscissa(std::span<const Channel> channels, const Curve& curve) {
 }
 
 Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a, const Curve& b) {
-    if (channel < 0) return {-1, "the scene has no position to read by"};
+    if (channel < 0) return {-1, "the scene has no position that can be the abscissa"};
     const Channel& by = channels[static_cast<std::size_t>(channel)];
     std::string why;
     Course first = Course::rising;
@@ -94,7 +94,7 @@ Abscissa abscissa(std::span<const Channel> channels, int channel, const Curve& a
         if (!why.empty()) return {channel, why};
         if (curve == &a) first = found.course;
         if (curve == &b && found.course != first)
-            return {channel, fmt::format("{} goes opposite ways", by.name)};
+            return {channel, fmt::format("{} has opposite directions on the two curves", by.name)};
     }
     return {channel, ""};
 }

@@ -1,4 +1,4 @@
-// Making of output curves, and the channels that can serve as abscissa.
+// Builds output curves from states, and selects the channels that can serve as abscissa.
 #pragma once
 
 #include <span>

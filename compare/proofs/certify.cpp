@@ -20,39 +20,39 @@ std::string solver_of(const SolverSettings& solver) {
                                         : name(solver.leg);
 }
 
-CertifiedWay certify_way(const BranchSide& way, SolverSettings solver,
-                         const CertifyOptions& options) {
-    CertifiedWay result;
-    result.branch = way.name;
-    result.unit = unit_of(way.branch.unit);
-    result.to = in_unit(result.unit) * way.branch.to;
+CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
+                           const CertifyOptions& options) {
+    CertifiedSide result;
+    result.branch = side.name;
+    result.unit = unit_of(side.branch.unit);
+    result.to = in_unit(result.unit) * side.branch.to;
     result.solver = solver_of(solver);
-    solver.every = std::max(1, way.branch.steps / options.points);
-    const EquilibriumPath path = walk(way, solver);
+    solver.every = std::max(1, side.branch.steps / options.points);
+    const EquilibriumPath path = walk(side, solver);
     result.outcome = path.outcome;
     result.detail = path.detail;
     for (const Equilibrium& state : path.points)
         add(result.tally, state.load, result.unit,
-            certificate::certify(way.model, way.branch, state, in_si(options.tolerance)));
+            certificate::certify(side.model, side.branch, state, in_si(options.tolerance)));
     if (solver.leg == Leg::equilibrium && path.points.size() > 1)
-        result.curve = certificate::certify_branch(way.model, way.branch, path.points,
+        result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
     // The last point starts the search for the limit point; it claims no accuracy.
     constexpr certificate::Tolerance anywhere{1, 1, 1e9, 1e9};
     if (path.outcome == Outcome::limit_point && !path.points.empty())
         result.limit =
-            certificate::certify_limit_point(way.model, way.branch, path.points.back(), anywhere);
+            certificate::certify_limit_point(side.model, side.branch, path.points.back(), anywhere);
     return result;
 }
 
 }  // namespace
 
 Tolerance claim(std::string_view text) {
-    Tolerance asked = parse_tolerance(text);
+    Tolerance requested = parse_tolerance(text);
     const Tolerance usual = parse_tolerance(claimed_accuracy);
-    if (std::isinf(asked.mm)) asked.mm = usual.mm;
-    if (std::isinf(asked.deg)) asked.deg = usual.deg;
-    return asked;
+    if (std::isinf(requested.mm)) requested.mm = usual.mm;
+    if (std::isinf(requested.deg)) requested.deg = usual.deg;
+    return requested;
 }
 
 CertifyStudy certify(const Model& model, const CertifyOptions& options) {
@@ -63,12 +63,12 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     CertifyStudy study;
     study.tolerance = options.tolerance;
     for (const Branch& branch : model.branches) {
-        for (const BranchSide& way : sides_of(model, branch)) {
+        for (const BranchSide& side : sides_of(model, branch)) {
             for (const SolverSettings& solver : solvers) {
                 if (options.progress)
                     options.progress(
-                        fmt::format("{}: proving what {} finds", way.name, solver_of(solver)));
-                study.ways.push_back(certify_way(way, solver, options));
+                        fmt::format("{}: proving what {} finds", side.name, solver_of(solver)));
+                study.sides.push_back(certify_side(side, solver, options));
             }
         }
     }
@@ -77,23 +77,23 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
 
 int CertifyStudy::points() const {
     int sum = 0;
-    for (const auto& way : ways) sum += way.tally.points;
+    for (const auto& side : sides) sum += side.tally.points;
     return sum;
 }
 int CertifyStudy::proved() const {
     int sum = 0;
-    for (const auto& way : ways) sum += way.tally.proved;
+    for (const auto& side : sides) sum += side.tally.proved;
     return sum;
 }
 bool CertifyStudy::excluded() const {
-    return std::ranges::any_of(ways, [](const auto& way) { return way.tally.excluded > 0; });
+    return std::ranges::any_of(sides, [](const auto& side) { return side.tally.excluded > 0; });
 }
 bool CertifyStudy::conclusive() const {
-    return proved() > 0 && std::ranges::all_of(ways, [](const CertifiedWay& way) {
-               if (is_not_applicable(way.outcome)) return true;
-               const bool ended = way.outcome == Outcome::converged ||
-                                  (way.limit && way.limit->answer == Answer::proved);
-               return ended && way.tally.points > 0 && way.tally.proved == way.tally.points;
+    return proved() > 0 && std::ranges::all_of(sides, [](const CertifiedSide& side) {
+               if (is_not_applicable(side.outcome)) return true;
+               const bool ended = side.outcome == Outcome::converged ||
+                                  (side.limit && side.limit->answer == Answer::proved);
+               return ended && side.tally.points > 0 && side.tally.proved == side.tally.points;
            });
 }
 

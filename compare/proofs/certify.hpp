@@ -26,7 +26,7 @@ inline constexpr const char* claimed_accuracy = "1e-6mm,1e-6deg";
 Tolerance claim(std::string_view text);
 
 // One solver along one side of a branch.
-struct CertifiedWay {
+struct CertifiedSide {
     std::string branch;        // of the branch side
     Unit unit = Unit::newton;  // of its parameter
     double to = 0;             // end of the branch side, in that unit
@@ -48,7 +48,7 @@ struct CertifyOptions {
 
 struct CertifyStudy {
     Tolerance tolerance;
-    std::vector<CertifiedWay> ways;
+    std::vector<CertifiedSide> sides;
 
     int points() const;
     int proved() const;

@@ -35,10 +35,10 @@ constexpr std::size_t most_bodies = 100;
 constexpr int tries = 4;
 
 // The branch side that contains a.
-BranchSide way_to(const Model& model, const Branch& branch, double a) {
+BranchSide side_to(const Model& model, const Branch& branch, double a) {
     auto all = sides_of(model, branch);
     const auto there =
-        std::ranges::find_if(all, [&](const BranchSide& way) { return way.branch.to * a > 0; });
+        std::ranges::find_if(all, [&](const BranchSide& side) { return side.branch.to * a > 0; });
     return there != all.end() ? *there : all.back();
 }
 
@@ -124,17 +124,14 @@ bool is_other_way_round(const Model& model, const Equilibrium& state) {
 
 std::string meaning_of(const AllEquilibria& all, const FoundEquilibrium& one) {
     const std::string away = fmt::format("{:.4g} mm away ('{}')", 1e3 * one.length, one.body);
-    if (one.on_branch)
-        return one.stable ? "the branch as it is walked"
-                          : "on the branch as it is walked, and unstable there";
+    if (one.on_branch) return one.stable ? "on the branch" : "on the branch, and unstable";
     if (!all.begins)
-        return fmt::format("{}, {} from the drawing, from which no branch begins",
+        return fmt::format("{}, {} from the design position, from which no branch begins",
                            one.stable ? "stable" : "unstable", away);
-    if (!one.stable)
-        return fmt::format("unstable, {}: what is pushed past it does not come back", away);
+    if (!one.stable) return fmt::format("unstable, {}: a motion past it does not return", away);
     if (all.outcome == Outcome::converged)
         return fmt::format("another stable equilibrium, {}: it can snap over to it", away);
-    return fmt::format("stable, {} from where the branch ends: it may {} it there", away,
+    return fmt::format("stable, {} from the end of the branch: it may {} it there", away,
                        all.outcome == Outcome::limit_point ? "snap over to" : "go over to");
 }
 
@@ -147,7 +144,7 @@ int AllEquilibria::stable() const {
 AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a,
                               const FindOptions& options) {
     namespace leg = reference::equilibrium;
-    const BranchSide way = way_to(model, branch, a);
+    const BranchSide side = side_to(model, branch, a);
     AllEquilibria all{branch.name, unit_of(branch.unit), a};
     const auto say = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what));
@@ -165,23 +162,23 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     std::vector<double> values;
     constexpr int pieces = 8;
     for (int k = 0; k <= pieces; ++k) values.push_back(a * k / pieces);
-    EquilibriumPath path = leg::solve(way.model, way.branch, values);
+    EquilibriumPath path = leg::solve(side.model, side.branch, values);
     all.outcome = path.outcome, all.detail = path.detail;
     const bool arrives = path.outcome == Outcome::converged;
     std::vector<Equilibrium> known;
 
     const auto is_known = [&](const Equilibrium& state) {
         return std::ranges::any_of(known, [&](const Equilibrium& other) {
-            return leg::apart(way.model, way.branch, other, state) <= one_state;
+            return leg::apart(side.model, side.branch, other, state) <= one_state;
         });
     };
     const std::vector<Pose> reached =
-        path.points.empty() ? drawn(way.model) : path.points.back().poses;
+        path.points.empty() ? drawn(side.model) : path.points.back().poses;
     std::deque<std::vector<Pose>> starts;
     const auto add = [&](const leg::FromStart& found, bool on_branch) {
         if (found.outcome != Outcome::converged || is_known(found.state)) return;
         known.push_back(found.state);
-        if (is_other_way_round(way.model, found.state)) {
+        if (is_other_way_round(side.model, found.state)) {
             ++all.other_way_round;
             return;
         }
@@ -194,17 +191,18 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         }
         FoundEquilibrium one{found.state, {}, found.stable, found.stiffness, on_branch};
         all.list.push_back(std::move(one));
-        for (auto& start : leg::beside(way.model, way.branch, found.state, options.motions, along))
+        for (auto& start :
+             leg::beside(side.model, side.branch, found.state, options.motions, along))
             starts.push_back(std::move(start));
         say(fmt::format("{} found", known.size()));
     };
-    if (arrives) add(leg::solve_from(way.model, way.branch, a, path.points.back().poses), true);
+    if (arrives) add(leg::solve_from(side.model, side.branch, a, path.points.back().poses), true);
     for (auto point = path.points.rbegin(); point != path.points.rend(); ++point) {
         starts.push_back(point->poses);
-        starts.push_back(mirror_image(way.model, point->poses));
+        starts.push_back(mirror_image(side.model, point->poses));
     }
-    starts.push_back(drawn(way.model));
-    const double size = scale_of(way.model, way.branch, path.points).length;
+    starts.push_back(drawn(side.model));
+    const double size = scale_of(side.model, side.branch, path.points).length;
     std::minstd_rand random(static_cast<unsigned>(options.seed));
 
     for (int k = 0; k < options.at_random; ++k) starts.push_back(at_random(reached, size, random));
@@ -216,7 +214,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
             const std::size_t before = known.size();
             ++all.starts;
             const std::span<const Equilibrium> away_from(known.data(), k == 0 ? 0 : known.size());
-            add(leg::solve_from(way.model, way.branch, a, start, away_from), false);
+            add(leg::solve_from(side.model, side.branch, a, start, away_from), false);
             if (k > 0 && known.size() == before) break;
         }
     }
@@ -225,9 +223,9 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     all.proved = !all.list.empty();
     for (auto& one : all.list) {
         say("proof");
-        one.proof = reference::certificate::certify(way.model, way.branch, one.state);
+        one.proof = reference::certificate::certify(side.model, side.branch, one.state);
         all.proved &= one.proof.answer == Answer::proved;
-        measure(way.model, reached, one);
+        measure(side.model, reached, one);
         one.meaning = meaning_of(all, one);
     }
     for (std::size_t i = 0; i < all.list.size(); ++i)

@@ -70,7 +70,7 @@ LostDigits lost_digits(const Survival& survival) {
             if (cell.lost > (result.worst_right == nullptr ? 0 : result.worst_right->lost))
                 result.worst_right = &cell;
             const bool stood = std::ranges::any_of(drawn, [&](const StressCell* one) {
-                return one->way == cell.way && one->solver == cell.solver &&
+                return one->side == cell.side && one->solver == cell.solver &&
                        one->outcome == Outcome::converged;
             });
             if (stood && cell.outcome != Outcome::converged) result.gave_up.push_back(&cell);

@@ -162,7 +162,7 @@ struct Known {
     }
 };
 
-struct WayRun {
+struct SideRun {
     std::string name;
     std::size_t points = 0;  // requested number
     std::vector<ComparedPoint> places;
@@ -177,7 +177,7 @@ struct WayRun {
 };
 
 struct TrialRun {
-    std::vector<WayRun> ways;
+    std::vector<SideRun> sides;
     double seconds = 0;  // processor time
 };
 
@@ -236,7 +236,7 @@ std::size_t index_of(const std::vector<Solver>& solvers, std::string_view name) 
 
 // Agreement of two solvers without a common equation within their claims. The series is used last:
 // it is not independent in the definition of a bushing's deformation.
-Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t point) {
+Known agreed(const std::vector<Solver>& solvers, const SideRun& run, std::size_t point) {
     std::vector<std::size_t> witnesses;
     for (const char* name : {"equilibrium", "energy", "series"})
         witnesses.push_back(index_of(solvers, name));
@@ -267,7 +267,7 @@ Known agreed(const std::vector<Solver>& solvers, const WayRun& run, std::size_t 
 }
 
 // Tolerance of a proof: a small share of the scene and of the acting forces, in any units.
-reference::certificate::Tolerance tolerance_of(const WayRun& run, double force) {
+reference::certificate::Tolerance tolerance_of(const SideRun& run, double force) {
     const double length = std::max(1e-9 * run.size, 1e3 * eps * run.reach),
                  share = 1e-6 * std::max(force, 1e-9);
     return {.length = length,
@@ -279,19 +279,19 @@ reference::certificate::Tolerance tolerance_of(const WayRun& run, double force) 
 }
 
 // Proof from the first of the accurate states for which it succeeds.
-Known proved(const BranchSide& way, const WayRun& run,
+Known proved(const BranchSide& side, const SideRun& run,
              const std::vector<std::vector<Equilibrium>>& states, std::size_t point,
              const reference::certificate::Tolerance& tolerance) {
     for (const auto& path : states) {
         if (point >= path.size()) continue;
         const auto certificate =
-            reference::certificate::certify(way.model, way.branch, path[point], tolerance);
+            reference::certificate::certify(side.model, side.branch, path[point], tolerance);
         // A weakly resisted motion that is held for the proof stays at its value in the state, not
         // at equilibrium.
         const bool weakly_resisted = certificate.held > 0 && !run.anything_idle;
         if (certificate.answer == reference::certificate::Answer::proved && !weakly_resisted)
             return {Knowledge::proved,
-                    placement(way.model, run.places, path[point]),
+                    placement(side.model, run.places, path[point]),
                     {certificate.error.length, certificate.error.angle},
                     true,
                     certificate.stable,
@@ -312,7 +312,7 @@ struct Breach {
 
 // |x - x_T| minus e, minus the rounding of the coordinates of both states, which grows with their
 // distance from the origin.
-Breach breach(const WayRun& run, const Claim& claim, const Placement& where, const Known& known) {
+Breach breach(const SideRun& run, const Claim& claim, const Placement& where, const Known& known) {
     Breach worst;
     const double digits = 4 * eps;
     for (std::size_t k = 0; k < run.places.size(); ++k) {
@@ -332,7 +332,7 @@ Breach breach(const WayRun& run, const Claim& claim, const Placement& where, con
 // the solver claims none: the linear recursion with a fixed number of steps, and any claim of 1e-4
 // of the size or more. `adaptive` uses at least its tolerance, even where its error bound is
 // smaller.
-double length_promised(const Solver& solver, const WayRun& run, const ErrorBound& claim) {
+double length_promised(const Solver& solver, const SideRun& run, const ErrorBound& claim) {
     constexpr double coarse = 1e-4;
     const auto& method = solver.settings.recursion.method;
     if (!(claim.length < coarse * run.size)) return nan;
@@ -342,30 +342,31 @@ double length_promised(const Solver& solver, const WayRun& run, const ErrorBound
     return adaptive ? std::max(claim.length, adaptive->length_tolerance) : claim.length;
 }
 
-WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector<Solver>& solvers) {
-    WayRun run;
-    run.name = way.name;
-    const auto diagnosis = recursive::diagnose(way.model);
-    run.places = places_of(way.model, diagnosis);
+SideRun walk_all(const Variant& variant, const BranchSide& side,
+                 const std::vector<Solver>& solvers) {
+    SideRun run;
+    run.name = side.name;
+    const auto diagnosis = recursive::diagnose(side.model);
+    run.places = places_of(side.model, diagnosis);
     run.anything_idle = !diagnosis.idle.empty();
-    run.joints = joints_of(way.model, diagnosis, run.places);
-    for (const std::size_t j : run.joints) run.joint_names.push_back(way.model.joints[j].name);
-    const int every = std::max(1, (way.branch.steps + 1) / 2);  // start, about the middle, end
-    run.points = requested_parameters({way}, every).size();
+    run.joints = joints_of(side.model, diagnosis, run.places);
+    for (const std::size_t j : run.joints) run.joint_names.push_back(side.model.joints[j].name);
+    const int every = std::max(1, (side.branch.steps + 1) / 2);  // start, about the middle, end
+    run.points = requested_parameters({side}, every).size();
     std::vector<std::vector<Equilibrium>> states(solvers.size());
     for (std::size_t s = 0; s < solvers.size(); ++s) {
         const Solver& solver = solvers[s];
         Found& found = run.found.emplace_back();
         found.elsewhere.resize(run.points);
-        if (!variant.asked.empty() && !is_reference(solver) &&
-            std::ranges::find(variant.asked, solver.name) == variant.asked.end())
+        if (!variant.requested.empty() && !is_reference(solver) &&
+            std::ranges::find(variant.requested, solver.name) == variant.requested.end())
             continue;
         SolverSettings settings = solver.settings;
         settings.every = every;
         try {
             const WithArithmetic in_force(variant.arithmetic);
-            const EquilibriumPath path = walk(way, settings, [&](const Equilibrium& state) {
-                found.placements.push_back(placement(way.model, run.places, state));
+            const EquilibriumPath path = walk(side, settings, [&](const Equilibrium& state) {
+                found.placements.push_back(placement(side.model, run.places, state));
                 found.error_bounds.push_back(state.bound);
                 found.reactions.push_back(reactions_of(run.joints, state));
                 states[s].push_back(state);
@@ -380,26 +381,26 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
     std::vector<std::vector<Equilibrium>> exactly;
     for (const char* name : {"equilibrium", "energy", "series"})
         exactly.push_back(states[index_of(solvers, name)]);
-    const Equilibrium drawn = design_state(way.model);
+    const Equilibrium drawn = design_state(side.model);
     const auto any = std::ranges::find_if(exactly, [](const auto& path) { return !path.empty(); });
     run.scale =
-        scale_of(way.model, way.branch,
+        scale_of(side.model, side.branch,
                  any == exactly.end() ? std::span(&drawn, 1) : std::span<const Equilibrium>(*any));
     run.size = run.scale.length;
     run.reach = run.size;
-    for (const auto& body : way.model.bodies)
+    for (const auto& body : side.model.bodies)
         run.reach = std::max(run.reach, body.design.r.cwiseAbs().maxCoeff());
     const auto tolerance = tolerance_of(run, run.scale.force);
     for (std::size_t k = 0; k < run.points; ++k) {
         Known known;
         if (variant.known == Construction::nothing_moves)
             known = {Knowledge::construction,
-                     placement(way.model, run.places, drawn),
+                     placement(side.model, run.places, drawn),
                      {eps * run.reach, eps}};
         // then the truth is taken from the default arithmetic
         const bool same_scene = variant.arithmetic != Arithmetic::nearest;
         if (known.how == Knowledge::none && !same_scene)
-            known = proved(way, run, exactly, k, tolerance);
+            known = proved(side, run, exactly, k, tolerance);
         if (known.how == Knowledge::none && !same_scene) known = agreed(solvers, run, k);
         run.known.push_back(known);
         if (known.how != Knowledge::proved) continue;
@@ -409,7 +410,7 @@ WayRun walk_all(const Variant& variant, const BranchSide& way, const std::vector
             const Claim claim = claim_of(solvers[s], found.error_bounds[k], run.size);
             found.elsewhere[k] =
                 (breach(run, claim, found.placements[k], known).any() &&
-                 reference::certificate::certify(way.model, way.branch, states[s][k], tolerance)
+                 reference::certificate::certify(side.model, side.branch, states[s][k], tolerance)
                          .answer == reference::certificate::Answer::proved);
         }
     }
@@ -421,9 +422,9 @@ TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
     const double start = processor_time();
     const Model model = compile(trial.variant.scene);
     for (const auto& branch : model.branches)
-        for (const auto& way : sides_of(model, branch)) {
-            if (way.branch.drivers.empty()) continue;
-            result.ways.push_back(walk_all(trial.variant, way, solvers));
+        for (const auto& side : sides_of(model, branch)) {
+            if (side.branch.drivers.empty()) continue;
+            result.sides.push_back(walk_all(trial.variant, side, solvers));
         }
     result.seconds = processor_time() - start;
     return result;
@@ -473,7 +474,7 @@ bool says_that_it_ends(Outcome outcome) {
 
 // Whether every point is a proved stable equilibrium. A motion that is idle at one point and held
 // by its load at the next has jumped: these are equilibria, but no branch.
-bool all_proved(const WayRun& run) {
+bool all_proved(const SideRun& run) {
     return std::ranges::all_of(run.known, [&](const Known& known) {
         return known.how == Knowledge::proved && known.stable &&
                known.idle == run.known.front().idle;
@@ -482,7 +483,7 @@ bool all_proved(const WayRun& run) {
 
 // Reason where both references report the end of the branch and no state beyond is proved; else
 // empty.
-std::string ended(const std::vector<Solver>& solvers, const WayRun& run) {
+std::string ended(const std::vector<Solver>& solvers, const SideRun& run) {
     if (all_proved(run)) return {};
     std::string why;
     for (std::size_t s = 0; s < solvers.size(); ++s) {
@@ -495,13 +496,13 @@ std::string ended(const std::vector<Solver>& solvers, const WayRun& run) {
     return why;
 }
 
-bool all_known(const WayRun& run) {
+bool all_known(const SideRun& run) {
     return std::ranges::all_of(run.known,
                                [](const Known& known) { return known.how != Knowledge::none; });
 }
 
 // Largest displacement of any place over the known points.
-double range_of(const WayRun& run) {
+double range_of(const SideRun& run) {
     double range = 0;
     const Known* start = nullptr;
     for (const auto& known : run.known) {
@@ -512,13 +513,13 @@ double range_of(const WayRun& run) {
     return range > 1e-9 * run.size ? range : run.size;
 }
 
-void judge_points(const Solver& solver, const Found& found, const WayRun& run, StressCell& cell) {
+void judge_points(const Solver& solver, const Found& found, const SideRun& run, StressCell& cell) {
     double worst = 0;
     bool any_unknown = false, breaks = false, elsewhere = false, no_digit = false, promises = true;
     for (std::size_t k = 0; k < found.placements.size(); ++k) {
         if (!is_finite(found.placements[k])) {
             cell.verdict = Verdict::wrong;
-            cell.why = "a state is no number";
+            cell.why = "a state is not finite";
             return;
         }
         const Claim claim_here = claim_of(solver, found.error_bounds[k], run.size);
@@ -540,7 +541,7 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
             broken.any()) {
             (found.elsewhere[k] ? elsewhere : breaks) = true;
             cell.why = fmt::format(
-                "{} is off by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} "
+                "{} deviates by {:.3e} mm and {:.3e} rad at least, and claims {:.3e} mm and {:.3e} "
                 "rad",
                 broken.where, 1e3 * std::max(0.0, broken.least.length),
                 std::max(0.0, broken.least.angle), 1e3 * broken.claimed.length,
@@ -567,10 +568,10 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
         cell.verdict = Verdict::reported_failure, cell.digits = nan;
     else if (elsewhere)
         cell.verdict = Verdict::elsewhere,
-        cell.why = "at another equilibrium, which is proved as well: " + cell.why;
+        cell.why = "at another equilibrium, which is also proved: " + cell.why;
     else if (no_digit)
         cell.verdict = Verdict::reported_failure,
-        cell.why = "its own account says that no digit is right";
+        cell.why = "its error bound leaves no correct digit";
     else if (any_unknown)
         cell.verdict = Verdict::unjudged, cell.digits = nan;
     else
@@ -581,8 +582,8 @@ void judge_points(const Solver& solver, const Found& found, const WayRun& run, S
 // solver, or without a claim within 1e-7 of the movement and ten thousand roundings of the largest
 // coordinate. The step error depends on the reference point of a body's increments; without a claim
 // the check applies only where rigidly connected bodies use the same reference body.
-void judge_retold(const Solver& solver, const Found& found, const WayRun& run,
-                  const Found& base_found, const WayRun& base, const Transform& how,
+void judge_retold(const Solver& solver, const Found& found, const SideRun& run,
+                  const Found& base_found, const SideRun& base, const Transform& how,
                   StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
     if (cell.verdict == Verdict::wrong) return;
@@ -604,15 +605,15 @@ void judge_retold(const Solver& solver, const Found& found, const WayRun& run,
                                    : 1e-7 * cell.range + rounding;
         if (!(d.length <= allowed)) {
             cell.verdict = Verdict::wrong;
-            cell.why = fmt::format("differs by {:.2e} mm from what it says of the scene itself",
+            cell.why = fmt::format("differs by {:.2e} mm from its result for the unchanged scene",
                                    1e3 * d.length);
         }
     }
 }
 
 // Distance from the answer of the unchanged scene, and the lost digits.
-void count_lost(const Solver& solver, const Found& found, const WayRun& run,
-                const Found& base_found, const WayRun& base, const Transform& how,
+void count_lost(const Solver& solver, const Found& found, const SideRun& run,
+                const Found& base_found, const SideRun& base, const Transform& how,
                 StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
     StressCell drawn;
@@ -632,16 +633,16 @@ void count_lost(const Solver& solver, const Found& found, const WayRun& run,
 }
 
 StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::size_t s,
-                 const WayRun& run, const WayRun* base) {
+                 const SideRun& run, const SideRun* base) {
     const Found& found = run.found[s];
     StressCell cell;
     cell.scene = trial.scene, cell.sweep = trial.sweep, cell.variant = trial.variant.label;
-    cell.way = run.name, cell.solver = solvers[s].name;
+    cell.side = run.name, cell.solver = solvers[s].name;
     cell.outcome = found.outcome, cell.detail = found.detail;
     cell.range = range_of(run);
     if (found.threw) {
         cell.verdict = Verdict::wrong;
-        cell.why = "gave no answer but an exception";
+        cell.why = "ended with an exception";
         return cell;
     }
     judge_points(solvers[s], found, run, cell);
@@ -651,22 +652,22 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     if (is_reference(solvers[s]) && says_that_it_ends(found.outcome)) {
         if (base != nullptr && all_known(*base))
             cell.verdict = Verdict::wrong, cell.why =
-                                               "says that no equilibrium continues the branch; "
-                                               "told otherwise, the same scene has one";
+                                               "reports that no equilibrium continues the branch, "
+                                               "but finds one in the transformed scene";
         else if (all_proved(run) && !found.placements.empty())
             cell.verdict = Verdict::wrong, cell.why =
-                                               "says that no equilibrium continues the branch, "
-                                               "where the states of another are proved";
+                                               "reports that no equilibrium continues the branch, "
+                                               "but the states of another solver are proved";
     }
     if (found.outcome != Outcome::converged) return cell;
     const std::string end = ended(solvers, run);
     if (found.placements.size() < run.points)
-        cell.verdict = Verdict::wrong, cell.why = "converged, and points are missing";
+        cell.verdict = Verdict::wrong, cell.why = "converged, but points are missing";
     else if (trial.variant.known == Construction::no_equilibrium)
         cell.verdict = Verdict::wrong,
-        cell.why = "converged where by construction nothing is in equilibrium";
+        cell.why = "converged although by construction no equilibrium exists";
     else if (!end.empty())
-        cell.verdict = Verdict::wrong, cell.why = "converged where both references say: " + end;
+        cell.verdict = Verdict::wrong, cell.why = "converged where both references report: " + end;
     else if (base != nullptr)
         judge_retold(solvers[s], found, run, base->found[s], *base, *trial.variant.transforms,
                      cell);
@@ -674,7 +675,7 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
 }
 
 // Truth of a transformed scene, taken from the unchanged scene where it is known only there.
-void lend(const WayRun& base, const Transform& how, WayRun& run) {
+void lend(const SideRun& base, const Transform& how, SideRun& run) {
     const Match both = match(run.places, base.places);
     if (both.here.size() != run.places.size()) return;
     for (std::size_t k = 0; k < std::min(run.known.size(), base.known.size()); ++k)
@@ -701,7 +702,7 @@ const char* name(Knowledge knowledge) {
         case Knowledge::construction: return "construction";
         case Knowledge::proved: return "proof";
         case Knowledge::references: return "references";
-        case Knowledge::transforms: return "the scene itself";
+        case Knowledge::transforms: return "the unchanged scene";
     }
     return "";
 }
@@ -791,15 +792,15 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
         if (trial.variant.transforms)
             for (std::size_t b = 0; b < trials.size(); ++b)
                 if (trials[b].scene == trial.scene && trials[b].sweep == as_it_is) base = &runs[b];
-        for (std::size_t w = 0; w < runs[t].ways.size(); ++w) {
-            WayRun& way = runs[t].ways[w];
-            const WayRun* same =
-                base != nullptr && w < base->ways.size() ? &base->ways[w] : nullptr;
-            if (same != nullptr) lend(*same, *trial.variant.transforms, way);
+        for (std::size_t w = 0; w < runs[t].sides.size(); ++w) {
+            SideRun& side = runs[t].sides[w];
+            const SideRun* same =
+                base != nullptr && w < base->sides.size() ? &base->sides[w] : nullptr;
+            if (same != nullptr) lend(*same, *trial.variant.transforms, side);
             for (std::size_t s = 0; s < who.size(); ++s) {
-                const bool asked = way.found[s].threw || !way.found[s].placements.empty() ||
-                                   way.found[s].outcome != Outcome::converged;
-                if (asked) survival.cells.push_back(judge(trial, who, s, way, same));
+                const bool requested = side.found[s].threw || !side.found[s].placements.empty() ||
+                                       side.found[s].outcome != Outcome::converged;
+                if (requested) survival.cells.push_back(judge(trial, who, s, side, same));
             }
         }
     }

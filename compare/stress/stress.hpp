@@ -60,8 +60,8 @@ struct Variant {
         no_equilibrium,
         nothing_moves
     } known = Construction::nothing;
-    std::vector<std::string> asked = {};  // solvers to run beside the references; empty: all
-    std::string skipped = {};             // reason why no solver runs
+    std::vector<std::string> requested = {};  // solvers to run beside the references; empty: all
+    std::string skipped = {};                 // reason why no solver runs
     // arithmetic of the solvers; the truth is known from the default arithmetic
     Arithmetic arithmetic = Arithmetic::nearest;
 };
@@ -120,7 +120,7 @@ enum class Verdict {
 const char* name(Verdict verdict);
 
 struct StressCell {
-    std::string scene, sweep, variant, way, solver;
+    std::string scene, sweep, variant, side, solver;
     Outcome outcome = Outcome::converged;
     std::string detail;  // message of the solver
     Verdict verdict = Verdict::unjudged;

@@ -106,7 +106,7 @@ std::vector<Variant> steps(const Scene& scene) {
         for (const auto& method : recursive::methods)
             if (has_steps(method) && (steps == 1 || method.name == "published" ||
                                       method.name == "balanced" || method.name == "chord"))
-                variant.asked.emplace_back(method.name);
+                variant.requested.emplace_back(method.name);
         variants.push_back(std::move(variant));
     }
     return variants;
@@ -115,8 +115,8 @@ std::vector<Variant> steps(const Scene& scene) {
 // The same numbers read in other units.
 std::vector<Variant> units(const Scene& scene) {
     std::vector<Variant> variants;
-    for (const auto& [label, factor] : {std::pair{"its millimetres taken for metres", 1e3},
-                                        {"its metres taken for millimetres", 1e-3}})
+    for (const auto& [label, factor] : {std::pair{"its millimetres read as metres", 1e3},
+                                        {"its metres read as millimetres", 1e-3}})
         variants.push_back({.label = label,
                             .scene = scaled(first_branch(scene), factor, factor * factor),
                             .transforms = Transform{.length = factor}});
@@ -153,7 +153,7 @@ std::vector<Variant> arithmetic(const Scene& original) {
         variants.push_back({.label = name(how),
                             .scene = scene,
                             .transforms = Transform{},
-                            .skipped = exists(how) ? "" : "this processor does not have it",
+                            .skipped = exists(how) ? "" : "not available on this processor",
                             .arithmetic = how});
     variants.push_back(
         {.label = "an ulp off", .scene = an_ulp_off(scene), .transforms = Transform{}});
@@ -164,7 +164,7 @@ std::vector<Variant> arithmetic(const Scene& original) {
 
 const std::vector<Sweep>& sweeps() {
     static const std::vector<Sweep> all{{std::string(as_it_is), itself},
-                                        {"told otherwise", told_otherwise},
+                                        {"transforms", told_otherwise},
                                         {"units", units},
                                         {"far away", far_away},
                                         {"stiffness", stiffness},

@@ -29,19 +29,18 @@ std::string component(const char* what, Eigen::Index k) {
 }  // namespace
 
 Table characteristic_table(const Comparison& comparison) {
-    Table table{
-        "characteristics",
-        {words("output"),
-         words("unit"),
-         {"value", "",
-          "at a = 0 of the first branch, by the equilibrium leg; none where it is undefined"},
-         {"references apart", "", "second reference less equilibrium leg"},
-         {"recursion", "", "by the matrix that the recursion factorises there"},
-         {"off", "", "recursion less equilibrium leg"},
-         {"off %", "%", "of the value"},
-         words("undefined", "what it means where there is no value"),
-         words("definition")},
-        {}};
+    Table table{"characteristics",
+                {words("output"),
+                 words("unit"),
+                 {"value", "",
+                  "at a = 0 of the first branch, by the equilibrium leg; none if it is undefined"},
+                 {"references apart", "", "second reference less equilibrium leg"},
+                 {"recursion", "", "by the matrix that the recursion factorises there"},
+                 {"off", "", "recursion less equilibrium leg"},
+                 {"off %", "%", "of the value"},
+                 words("undefined", "reason for a missing value"),
+                 words("definition")},
+                {}};
     if (comparison.branches.empty()) return table;
     const BranchComparison& branch = comparison.branches.front();
     const auto run = [&](Leg leg) -> const LegRun& {
@@ -71,14 +70,14 @@ Table compliance_table(const Model& model, const Comparison& comparison) {
          words("leg"),
          words("point",
                "where forces act and displacements are read: wheel centre or contact patch"),
-         words("wheel", "that answers"),
+         words("wheel", "whose displacement is given"),
          words("answer",
                "displacement of the point in mm, rotation of the wheel in deg, ground axes"),
-         words("loaded wheel", "on which forces and moments act, all jacks and tyres taken away")},
+         words("loaded wheel", "on which forces and moments act, all jacks and tyres removed")},
         {}};
     for (Eigen::Index k = 0; k < 6; ++k)
         table.columns.push_back({component(k < 3 ? "force" : "moment", k), "",
-                                 k < 3 ? "answer per kN" : "answer per 100 N·m"});
+                                 k < 3 ? "response per kN" : "response per 100 N·m"});
     table.columns.push_back({"reciprocity", "",
                              "|C - Cᵀ| / |C| of the whole matrix at the wheel centres, rotations "
                              "counted by the tyre's radius"});

@@ -54,7 +54,8 @@ Table settled_table(const std::vector<Channel>& channels, const std::vector<Sett
                  words("output"),
                  words("unit"),
                  {"displacement", "",
-                  "value at a = 0, settled under what is held, less its value as drawn"}},
+                  "value at a = 0, settled under the static loads and held quantities, less its "
+                  "value at the design position"}},
                 {}};
     for (const auto& s : settled)
         for (std::size_t c = 0; c < channels.size(); ++c)
@@ -91,7 +92,7 @@ Table deviation_table(const Comparison& comparison) {
                  words("output"),
                  words("unit"),
                  {"range", "", "of the equilibrium leg"},
-                 {"deviation", "", "recursion less equilibrium leg where that is largest"},
+                 {"deviation", "", "largest difference, recursion less equilibrium leg"},
                  {"where", "", "value of the parameter or abscissa there"},
                  words("where unit"),
                  {"end", "", "deviation at the last compared point"},
@@ -131,17 +132,18 @@ Table deviation_table(const Comparison& comparison) {
 }
 
 Table agreement_table(const Comparison& comparison) {
-    Table table{"agreement",
-                {words("branch"),
-                 {"positions", "mm", "by which the references may be apart"},
-                 {"angles", "deg", "likewise"},
-                 {"forces", "N", "likewise"},
-                 {"moments", "N·m", "likewise"},
-                 {"balance", "N", "that a reference's states may leave in the other's equations"},
-                 {"constraints", "mm", "likewise"},
-                 {"objections", "", "how many"},
-                 words("worst", "in words")},
-                {}};
+    Table table{
+        "agreement",
+        {words("branch"),
+         {"positions", "mm", "allowed difference of the references"},
+         {"angles", "deg", "likewise"},
+         {"forces", "N", "likewise"},
+         {"moments", "N·m", "likewise"},
+         {"balance", "N", "allowed residual of a reference's states in the other's equations"},
+         {"constraints", "mm", "likewise"},
+         {"objections", "", "how many"},
+         words("worst", "in words")},
+        {}};
     for (const auto& b : comparison.branches)
         table.rows.push_back({b.branch, b.bounds.length, b.bounds.angle, b.bounds.force,
                               b.bounds.moment, b.bounds.residual_force, b.bounds.residual_length,
@@ -189,20 +191,20 @@ Table rate_table(const std::vector<RateError>& errors) {
 }
 
 Table formulation_table(const FormulationStudy& study, const Comparison& comparison) {
-    Table table{
-        "formulations",
-        {words("branch"),
-         words("output"),
-         words("unit"),
-         {"spread", "", "largest less smallest value over the formulations, where that is most"},
-         {"at", "", "parameter there"},
-         words("parameter unit"),
-         words("smallest by", "the formulation that gives the smallest value there"),
-         words("largest by", "likewise"),
-         {"references apart", "", "at most, at equal parameter"},
-         {"deviation", "",
-          "of the recursion from the equilibrium leg at equal parameter, at most"}},
-        {}};
+    Table table{"formulations",
+                {words("branch"),
+                 words("output"),
+                 words("unit"),
+                 {"spread", "",
+                  "largest less smallest value over the formulations, maximum over the branch"},
+                 {"at", "", "parameter there"},
+                 words("parameter unit"),
+                 words("smallest by", "the formulation that gives the smallest value there"),
+                 words("largest by", "likewise"),
+                 {"references apart", "", "at most, at equal parameter"},
+                 {"deviation", "",
+                  "of the recursion from the equilibrium leg at equal parameter, at most"}},
+                {}};
     const auto in = [&](const Reading& reading, const std::string& channel) {
         const int c = find_channel(comparison.channels, channel);
         return c < 0 || reading.channels.empty()
@@ -233,7 +235,7 @@ Table study_table(const Study& study) {
                  {"order"},
                  {"order error", "", "its standard error"},
                  words("as formal", "the order agrees with the method's"),
-                 {"limit", "", "own, of infinitely many steps, at the end"},
+                 {"limit", "", "own limit for infinitely many steps, at the end"},
                  {"band", "", "uncertainty of the limit"},
                  {"finest step error", "", "largest over the branch with the most steps"},
                  {"gap", "", "own limit less reference at the end"},
@@ -243,7 +245,7 @@ Table study_table(const Study& study) {
                  {"references apart"},
                  {"range", "", "of the reference over the branch"},
                  {"gap share", "%", "gap at the end, of the range"},
-                 {"constraint order", "", "at which |Φ| of eq. (31) falls at the end"},
+                 {"constraint order", "", "order at which |Φ| of eq. (31) decreases at the end"},
                  {"constraint order error", "", "its standard error"},
                  words("not studied", "why")},
                 {}};
@@ -335,11 +337,11 @@ Table gap_table(const std::vector<Channel>& main,
                  words("reading"),
                  words("output"),
                  words("unit"),
-                 {"whole", "", "gap of the recursion in which nothing follows the bodies"},
+                 {"whole", "", "gap of the recursion in which forces do not follow the bodies"},
                  {"lever", "", "contribution of the lever of the stored force"},
                  {"axis", "", "contribution of its axis and law"},
                  {"load", "", "contribution of the lever of the load"},
-                 {"rest", "", "what is left when all three follow: 0 within the band"},
+                 {"rest", "", "remaining gap when all three follow: 0 within the band"},
                  {"band"},
                  {"lever share", "%", "of the whole"},
                  {"axis share", "%", "likewise"},
@@ -394,15 +396,15 @@ Table order_table(const std::vector<BranchOrders>& orders) {
                  {"evaluations"},
                  {"error", "mm", "from the equilibrium leg, largest over all points"},
                  {"angle error", "deg", "likewise"},
-                 {"residual", "N", "or N·m: most that an expansion leaves in the balance"},
+                 {"residual", "N", "or N·m: largest residual of an expansion in the balance"},
                  {"error at ends", "m", "largest at the end of an expansion, as it estimates it"},
                  {"first reach", "", "of the first expansion, share of the branch"},
                  {"references apart", "mm"},
                  {"references' angles apart", "deg"},
                  {"singularity", "",
                   "distance of the nearest, seen from the start, in lengths of the branch"},
-                 {"its angle", "rad", "off the way ahead"},
-                 {"its misfit", "", "how well the coefficients show it"},
+                 {"its angle", "rad", "direction"},
+                 {"its misfit", "", "relative residual of the fit to the coefficients"},
                  words("not compared", "why")},
                 {}};
     for (const auto& branch : orders)
@@ -453,7 +455,7 @@ Table floor_table(const PrecisionStudy& study) {
                 {words("method"),
                  words("arithmetic"),
                  {"least constraint error", "m", "or rad: |Φ| over the steps"},
-                 {"steps that lower it", "", "no finer ones bring it below a third"},
+                 {"steps that lower it", "", "no larger number of steps reduces it below a third"},
                  words("constraint remark"),
                  {"least error", "mm"},
                  {"steps that lower the error", "", "likewise"},
@@ -480,8 +482,8 @@ Table trade_table(const Trade& trade) {
         "trade",
         {words("leg"),
          words("method"),
-         {"steps", "", "per branch; none where the method chooses"},
-         {"told", "m", "where it chooses"},
+         {"steps", "", "per branch; none if the method chooses them"},
+         {"told", "m", "if the method chooses its steps"},
          words("outcome"),
          {"error", "mm"},
          {"angle error", "deg"},
@@ -493,7 +495,7 @@ Table trade_table(const Trade& trade) {
          {"time", "s", "median over the rounds"},
          {"time ratio", "", "to the equilibrium leg"},
          words("front",
-               "no other is as good for s: fewer solves, f: fewer factorisations + "
+               "no other is as accurate with s: fewer solves, f: fewer factorisations + "
                "evaluations, t: less time"),
          words("not ranked", "why"),
          words("recommended"),

@@ -33,16 +33,12 @@ const std::vector<ShownColumn> certify_columns{{"solver"},
 
 std::string what_is_proved(const compare::CertifyStudy& study) {
     return fmt::format(
-        "Proved: by interval arithmetic, that the model's equations of balance and constraint, "
-        "with the "
-        "numbers stored "
-        "for it taken as exact, have a solution within {} of the solver's point, and no other as "
-        "near as "
-        "\"alone within\" with idle motions and the sharing of redundant joints as there. "
-        "Excluded: that "
-        "they have none there. A proved curve has no gap between the points. Not "
-        "proved: that "
-        "the equations are the suspension's, or its numbers right.",
+        "Proved: interval arithmetic shows that the model's equations of balance and constraint, "
+        "with its stored numbers taken as exact, have a solution within {} of the solver's point, "
+        "and no other within the distance \"alone within\" for the same positions of idle motions "
+        "and the same load sharing of redundant joints. Excluded: they have no solution there. A "
+        "proved curve is continuous between the points. Not proved: that the equations describe "
+        "the suspension, or that its numbers are right.",
         claim(study.tolerance));
 }
 
@@ -50,7 +46,7 @@ std::string sentence(const compare::CertifyStudy& study) {
     const int points = study.points(), proved = study.proved();
     if (study.excluded()) {
         int excluded = 0;
-        for (const auto& way : study.ways) excluded += way.tally.excluded;
+        for (const auto& side : study.sides) excluded += side.tally.excluded;
         return fmt::format(
             "Wrong: {} of {} points are provably no equilibrium to {}; {} are proved to be.",
             excluded, points, claim(study.tolerance), proved);
@@ -61,7 +57,7 @@ std::string sentence(const compare::CertifyStudy& study) {
     if (points == 0) return "Not proved: no point was found.";
     if (proved == points)
         return fmt::format(
-            "Not all is proved: {} that were found {} to {}, and some was not found, or not "
+            "Not all is proved: {} that were found {} to {}, but some were not found or not "
             "judged.",
             points == 1 ? "the one point" : fmt::format("all {} points", points),
             points == 1 ? "is an equilibrium" : "are equilibria", claim(study.tolerance));
@@ -79,31 +75,32 @@ std::string certify_text(const compare::CertifyStudy& study) {
         fmt::format_to(out, "branch '{}'\n{}", branch,
                        text(rows, nonempty_columns(rows, certify_columns)));
         bool said = false;
-        for (const auto& way : study.ways) {
-            if (way.branch != branch) continue;
-            const char* unit = symbol(way.unit);
-            if (way.curve && way.curve->answer == compare::Answer::proved)
-                fmt::format_to(
-                    out, "  one curve of equilibria is proved from {:.10g} to {:.10g} {}{}\n",
-                    in_unit(way.unit) * way.curve->from + 0.0, in_unit(way.unit) * way.curve->to,
-                    unit, way.curve->corners > 0 ? ", over corners of laws" : "");
-            if (way.limit && way.limit->answer == compare::Answer::proved)
+        for (const auto& side : study.sides) {
+            if (side.branch != branch) continue;
+            const char* unit = symbol(side.unit);
+            if (side.curve && side.curve->answer == compare::Answer::proved)
+                fmt::format_to(out,
+                               "  one curve of equilibria is proved from {:.10g} to {:.10g} {}{}\n",
+                               in_unit(side.unit) * side.curve->from + 0.0,
+                               in_unit(side.unit) * side.curve->to, unit,
+                               side.curve->corners > 0 ? ", over corners of laws" : "");
+            if (side.limit && side.limit->answer == compare::Answer::proved)
                 fmt::format_to(out, "  a limit point is proved, between {:.16g} and {:.16g} {}\n",
-                               in_unit(way.unit) * way.limit->from,
-                               in_unit(way.unit) * way.limit->to, unit);
+                               in_unit(side.unit) * side.limit->from,
+                               in_unit(side.unit) * side.limit->to, unit);
             for (const std::string& what :
-                 {way.detail, way.tally.not_proved,
-                  way.curve && way.curve->answer != compare::Answer::proved
-                      ? "the curve: " + way.curve->detail
+                 {side.detail, side.tally.not_proved,
+                  side.curve && side.curve->answer != compare::Answer::proved
+                      ? "the curve: " + side.curve->detail
                       : std::string(),
-                  way.limit && way.limit->answer != compare::Answer::proved
-                      ? "the limit point: " + way.limit->detail
+                  side.limit && side.limit->answer != compare::Answer::proved
+                      ? "the limit point: " + side.limit->detail
                       : std::string()})
-                if (!what.empty()) fmt::format_to(out, "  {}: {}\n", way.solver, what);
+                if (!what.empty()) fmt::format_to(out, "  {}: {}\n", side.solver, what);
             // The theorems of the other solvers' points hold about the same motions.
-            if (!way.tally.theorem.empty() && !said)
-                fmt::format_to(out, "  {}\n", way.tally.theorem);
-            said = said || !way.tally.theorem.empty();
+            if (!side.tally.theorem.empty() && !said)
+                fmt::format_to(out, "  {}\n", side.tally.theorem);
+            said = said || !side.tally.theorem.empty();
         }
         all += '\n';
     }

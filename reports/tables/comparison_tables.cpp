@@ -200,9 +200,9 @@ std::string not_asked(const compare::BranchComparison& branch) {
     const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
     const compare::Bounds& b = branch.bounds;
     return fmt::format(
-        "{}; {}\n  the energy leg is a witness: the equilibrium leg's states leave {:.2g} N, "
-        "{:.2g} N·m, {:.2g} mm in its equations, at most {:.2g} N, {:.2g} N·m, {:.2g} mm are "
-        "allowed\n",
+        "{}; {}\n  the energy leg judges the states: the equilibrium leg's states have residuals "
+        "of {:.2g} N, {:.2g} N·m, {:.2g} mm in its equations, at most {:.2g} N, {:.2g} N·m, {:.2g} "
+        "mm are allowed\n",
         who, branch.not_asked, left.force, left.moment, 1e3 * left.length, b.residual_force,
         b.residual_moment, b.residual_length);
 }
@@ -236,7 +236,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\nbranch '{}': {:g} to {:g} {}", branch.branch, unit * definition.from,
                        unit * definition.to, symbol(branch.unit));
         if (branch.every > 1)
-            fmt::format_to(out, " in {} steps, compared after each {} of a way", branch.steps,
+            fmt::format_to(out, " in {} steps, compared after each {} of a side", branch.steps,
                            branch.every);
         else if (!steps.empty())
             fmt::format_to(out, " in {} steps", steps.size() - 1);

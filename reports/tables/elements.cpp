@@ -36,7 +36,7 @@ bool is_free(const std::array<double, 4>& piece) {
 std::string range_words(const Curve& curve, const Scale& s) {
     return fmt::format("curve from {:.4g} to {:.4g} {}, {}", curve.knots.front() / s.length,
                        curve.knots.back() / s.length, s.length_name,
-                       curve.known_outside ? "straight beyond" : "not known beyond");
+                       curve.known_outside ? "straight beyond" : "undefined beyond");
 }
 
 // A spring without force on one side makes contact at a clearance, measured from its free length.
@@ -119,7 +119,7 @@ std::string formulation_words(const Formulation& f) {
     add(f.frame == Formulation::Frame::middle, "frame in the middle");
     add(f.angles == Formulation::Angles::cardan, "Cardan angles");
     add(f.angles == Formulation::Angles::projected, "projected angles");
-    add(!f.conjugate, "forces straight along its axes (no energy)");
+    add(!f.conjugate, "forces along its axes, not conjugate (no energy)");
     add(!f.offset_moment, "without the moment of the offset (no energy)");
     return text;
 }
@@ -143,7 +143,7 @@ bool is_beam(const Elastic& elastic) {
 std::string bushing_words(const Written& written, const Elastic& elastic, const SpatialLaw& law) {
     const Resisted axes = resisted(law);
     if (elastic.active_only_where_driven && axes.all == std::vector<std::size_t>{2})
-        return fmt::format("tyre, {}, stands on the branches that drive its road",
+        return fmt::format("tyre, {}, active on the branches that drive its road",
                            law_words(law, 2, lengths));
     if (axes.all == std::vector<std::size_t>{5})
         return "torsion spring, " + law_words(law, 5, angles);
@@ -158,7 +158,7 @@ std::string bushing_words(const Written& written, const Elastic& elastic, const 
     bool elsewhere = false;
     each_member(elastic.kind,
                 [&](Deformation<const Vector6> e) { elsewhere = !e.value.isZero(0); });
-    if (elsewhere) text += ", undeformed elsewhere than drawn";
+    if (elsewhere) text += ", with an undeformed position other than the design position";
     return text;
 }
 

@@ -28,11 +28,11 @@ compare::Table equilibria_table(const AllEquilibria& all) {
         "equilibria",
         {{"number"},
          words("stability", "by the sign of the least stiffness"),
-         {"away", "mm", "from that of the branch, or from where the branch ends"},
+         {"away", "mm", "from that of the branch, or from the end of the branch"},
          {"turned", "deg", "likewise"},
          words("proof"),
-         {"within", "mm", "the true equilibrium is as near as this, by proof"},
-         {"alone within", "mm", "no other equilibrium is as near as this, by proof"},
+         {"within", "mm", "proved distance to the true equilibrium, at most"},
+         {"alone within", "mm", "proved: no other equilibrium within this distance"},
          words("what it means")},
         {}};
     double number = 0;
@@ -51,9 +51,9 @@ std::string equilibria_text(const AllEquilibria& all) {
                    all.a * compare::in_unit(all.unit), compare::symbol(all.unit), all.list.size(),
                    all.list.size() == 1 ? "equilibrium" : "equilibria", all.stable(),
                    all.list.empty() ? "none was found"
-                   : all.proved     ? "each is proved, and no two are one"
+                   : all.proved     ? "each is proved, and all are distinct"
                                     : "not all of this is proved");
-    fmt::format_to(out, "the branch on its way there: {}{}{}\n\n", elastocheck::name(all.outcome),
+    fmt::format_to(out, "the branch up to there: {}{}{}\n\n", elastocheck::name(all.outcome),
                    all.detail.empty() ? "" : ": ", all.detail);
     text += reports::text(equilibria_table(all), {{"number", Digits::whole},
                                                   {"stability"},
@@ -66,10 +66,9 @@ std::string equilibria_text(const AllEquilibria& all) {
     for (const auto& one : all.list)
         if (one.proof.answer != reference::certificate::Answer::proved)
             fmt::format_to(out, "{}: {}\n", name(one.proof.answer), one.proof.detail);
-    fmt::format_to(out, "\n{} starts, deflated; that there are no others is not said\n",
-                   all.starts);
+    fmt::format_to(out, "\n{} starts with deflation; completeness is not proved\n", all.starts);
     if (all.other_way_round > 0)
-        fmt::format_to(out, "left out: {} with a joint put together the other way round\n",
+        fmt::format_to(out, "left out: {} with a joint assembled in reverse\n",
                        all.other_way_round);
     if (all.turned_over > 0)
         fmt::format_to(out, "left out: {} with a body turned over\n", all.turned_over);

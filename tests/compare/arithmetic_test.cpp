@@ -42,7 +42,7 @@ std::vector<Trial> asked(const std::string& name) {
 }
 
 std::string told(const StressCell& cell) {
-    return fmt::format("{}, {}, {}, {}: {} {} {}", cell.scene, cell.variant, cell.way, cell.solver,
+    return fmt::format("{}, {}, {}, {}: {} {} {}", cell.scene, cell.variant, cell.side, cell.solver,
                        name(cell.verdict), cell.why, cell.detail);
 }
 
@@ -126,7 +126,8 @@ TEST(Arithmetic, DigitsAreLostThatWereRightAndDiffer) {
     const Survival survival = stress(asked("pendulum"));
     const auto as_drawn = [&](const StressCell& cell) {
         return *std::ranges::find_if(survival.cells, [&](const StressCell& other) {
-            return other.sweep == as_it_is && other.way == cell.way && other.solver == cell.solver;
+            return other.sweep == as_it_is && other.side == cell.side &&
+                   other.solver == cell.solver;
         });
     };
     int asked = 0;

@@ -21,16 +21,16 @@ TEST(Certify, EveryWayOfEveryBranchIsProvedByEachReference) {
     const Model model = compile(support::scene("mcpherson"));
     for (const Leg leg : {Leg::equilibrium, Leg::energy, Leg::series}) {
         const CertifyStudy study = certify(model, by(leg));
-        std::size_t ways = 0;
-        for (const Branch& branch : model.branches) ways += sides_of(model, branch).size();
-        ASSERT_EQ(study.ways.size(), ways);
+        std::size_t sides = 0;
+        for (const Branch& branch : model.branches) sides += sides_of(model, branch).size();
+        ASSERT_EQ(study.sides.size(), sides);
         EXPECT_TRUE(study.conclusive());
-        for (const CertifiedWay& way : study.ways) {
-            EXPECT_GE(way.tally.points, 5) << way.branch;
-            EXPECT_EQ(way.tally.proved, way.tally.points)
-                << way.branch << ": " << way.tally.not_proved;
-            EXPECT_LE(way.tally.error.length, 1e-9) << way.branch;
-            EXPECT_GT(way.tally.unique.length, way.tally.error.length) << way.branch;
+        for (const CertifiedSide& side : study.sides) {
+            EXPECT_GE(side.tally.points, 5) << side.branch;
+            EXPECT_EQ(side.tally.proved, side.tally.points)
+                << side.branch << ": " << side.tally.not_proved;
+            EXPECT_LE(side.tally.error.length, 1e-9) << side.branch;
+            EXPECT_GT(side.tally.unique.length, side.tally.error.length) << side.branch;
         }
     }
 }
@@ -46,21 +46,21 @@ TEST(Certify, NothingProvedIsNotConclusive) { EXPECT_FALSE(CertifyStudy{}.conclu
 
 TEST(Certify, OneOpenPointIsNotConclusiveAndIsNamed) {
     CertifyStudy study;
-    CertifiedWay& way = study.ways.emplace_back();
-    way.unit = Unit::newton;
+    CertifiedSide& side = study.sides.emplace_back();
+    side.unit = Unit::newton;
     Certificate proved;
     proved.answer = Answer::proved;
     proved.error = {1e-12, 1e-12, 1e-9, 1e-9};
     proved.unique = {1e-4, 1e-4, 1, 1};
-    add(way.tally, 0, way.unit, proved);
+    add(side.tally, 0, side.unit, proved);
     EXPECT_TRUE(study.conclusive());
     Certificate open;
     open.detail = "the box is too wide";
-    add(way.tally, 120, way.unit, open);
+    add(side.tally, 120, side.unit, open);
     EXPECT_FALSE(study.conclusive());
     EXPECT_FALSE(study.excluded());
-    EXPECT_EQ(way.tally.not_proved, "open at 120 N: the box is too wide");
-    EXPECT_EQ(way.tally.error.length, 1e-12);  // of the proved points only
+    EXPECT_EQ(side.tally.not_proved, "open at 120 N: the box is too wide");
+    EXPECT_EQ(side.tally.error.length, 1e-12);  // of the proved points only
 }
 
 TEST(Certify, AReferenceThatIsProvablyWrongObjects) {

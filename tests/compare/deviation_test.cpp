@@ -159,7 +159,7 @@ TEST(Abscissa, SaysWhichChannelTurnsBackWhereOrDoesNotMove) {
     const Curve still = made(1, [](double) { return 7.0; });
     EXPECT_EQ(abscissa(outputs, 1, still, still).why_not, "y does not move");
     EXPECT_EQ(abscissa(outputs, 0, a, made(-1, [](double x) { return x; })).why_not,
-              "travel goes opposite ways");
+              "travel has opposite directions on the two curves");
     Curve nowhere = a;
     nowhere.values[6][0] = nan;
     EXPECT_EQ(abscissa(outputs, 0, a, nowhere).why_not, "travel is not a number at 1.5 N");

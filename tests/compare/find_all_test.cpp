@@ -150,7 +150,7 @@ TEST(FindAll, PastTheLimitThereIsOneAndTheBranchDoesNotLeadThere) {
     EXPECT_TRUE(all.list[0].stable);
     EXPECT_FALSE(all.list[0].on_branch);
     EXPECT_NEAR(all.list[0].state.poses[0].r.z(), heights(-1500)[0], 1e-9);
-    EXPECT_NE(all.list[0].meaning.find("from where the branch ends"), std::string::npos);
+    EXPECT_NE(all.list[0].meaning.find("from the end of the branch"), std::string::npos);
 }
 
 // Flat arch with compressed springs: no branch starts, and distances are from the design position,
@@ -166,7 +166,7 @@ TEST(FindAll, WhereNoBranchBeginsDistancesAreFromTheDrawing) {
     EXPECT_EQ(all.stable(), 2);
     for (const auto& one : all.list) {
         EXPECT_NEAR(one.length, one.stable ? std::sqrt(0.31 * 0.31 - 0.3 * 0.3) : 0, 1e-9);
-        EXPECT_NE(one.meaning.find("from the drawing, from which no branch begins"),
+        EXPECT_NE(one.meaning.find("from the design position, from which no branch begins"),
                   one.meaning.npos);
     }
 }

@@ -41,7 +41,7 @@ TEST(Extrapolation, ALimitPointIsAnnouncedBeforeItIsMet) {
             ASSERT_TRUE(gone.has_value()) << name(leg);
             EXPECT_NEAR(*gone, -211.5166, 0.1 * (211.5166 + to)) << name(leg) << " from " << to;
             EXPECT_TRUE(stiffness_message(path.points, ParameterUnit::newton)
-                            .starts_with("at this rate the stiffness is gone near -2"))
+                            .starts_with("by extrapolation the stiffness vanishes near -2"))
                 << stiffness_message(path.points, ParameterUnit::newton);
         }
 }
@@ -81,11 +81,12 @@ TEST(Extrapolation, OfABranchIsToldWayByWay) {
     BranchErrorBounds error_bound;
     for (const double to : {-211., 150.})
         for (const auto& point : accounted(model, to, Leg::series).points) add(error_bound, point);
-    EXPECT_EQ(error_bound.ways.size(), 2u);
+    EXPECT_EQ(error_bound.sides.size(), 2u);
     const auto lines = messages(error_bound, ParameterUnit::newton);
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_TRUE(lines[0].starts_with("at this rate the stiffness is gone near -211.")) << lines[0];
-    EXPECT_NE(lines[0].find(", announced from -"), std::string::npos) << lines[0];
+    EXPECT_TRUE(lines[0].starts_with("by extrapolation the stiffness vanishes near -211."))
+        << lines[0];
+    EXPECT_NE(lines[0].find(", predicted from -"), std::string::npos) << lines[0];
 }
 
 // A comparison reports the prediction of the equilibrium leg for any recursion method, and the
@@ -103,8 +104,8 @@ TEST(Extrapolation, IsToldByWhoeverCompares) {
         const auto& runs = all.branches[0].runs;
         const LegRun& equilibrium = runs[1];
         ASSERT_EQ(equilibrium.messages.size(), 1u) << method;
-        EXPECT_TRUE(
-            equilibrium.messages[0].starts_with("at this rate the stiffness is gone near -211."))
+        EXPECT_TRUE(equilibrium.messages[0].starts_with(
+            "by extrapolation the stiffness vanishes near -211."))
             << equilibrium.messages[0];
         const LegRun alone = run(model, model.branches[0], Leg::equilibrium);
         EXPECT_TRUE(alone.messages.empty());
@@ -137,14 +138,11 @@ TEST(Extrapolation, APromiseIsSaidNotToBeKeptWhereABoundLiesAboveIt) {
     EXPECT_EQ(text(), "");
     points[2].bound.length *= 2;
     EXPECT_TRUE(
-        text().starts_with("promises 0.01 mm and 0.001 deg, which 1 of 3 points do not keep "
-                           "by their own account: "
-                           "within 0.02 mm and 0.001 deg at 2000 N"))
+        text().starts_with("promises 0.01 mm and 0.001 deg, which the error bounds of 1 of 3 "
+                           "points exceed: 0.02 mm and 0.001 deg at 2000 N"))
         << text();
     points[1].bound = {};
-    EXPECT_TRUE(
-        text().ends_with("; of 1 of 3 points no account can be given: nothing is promised of them"))
-        << text();
+    EXPECT_TRUE(text().ends_with("; 1 of 3 points have no error bound")) << text();
 }
 
 TEST(Extrapolation, NothingIsAnnouncedOfAStiffnessThatStaysOrThatNobodyTold) {

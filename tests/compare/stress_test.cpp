@@ -25,7 +25,7 @@ Scene small(const std::string& name, int steps = 10) {
 }
 
 std::string told(const StressCell& cell) {
-    return fmt::format("{}, {}, {}, {}: {} {} {}", cell.scene, cell.variant, cell.way, cell.solver,
+    return fmt::format("{}, {}, {}, {}: {} {} {}", cell.scene, cell.variant, cell.side, cell.solver,
                        name(cell.verdict), cell.why, cell.detail);
 }
 

@@ -129,10 +129,10 @@ TEST(Trim, SceneWithoutOneIsAsItWas) {
 TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {
     Scene scene = block();
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")}, {height()}};
-    EXPECT_TRUE(
-        contains(complaint(scene), "2 adjusted until 1 conditions hold; as many are needed"));
+    EXPECT_TRUE(contains(complaint(scene),
+                         "2 adjusted quantities for 1 conditions; their numbers must be equal"));
     scene.trim = Trim{};
-    EXPECT_TRUE(contains(complaint(scene), "as many are needed"));
+    EXPECT_TRUE(contains(complaint(scene), "their numbers must be equal"));
 }
 
 TEST(Trim, AdjustmentThatMovesNothingIsNamed) {
@@ -148,7 +148,7 @@ TEST(Trim, AdjustmentsThatDoTheSameAreNamed) {
                       {height(), {"top.z again", ProbeCoordinate{0, 2}, 0.01}}};
     const std::string said = complaint(scene);
     EXPECT_TRUE(contains(said,
-                         "ambiguous: top.z and top.z again move only together, whatever "
+                         "ambiguous: top.z and top.z again change only together, whatever "
                          "springs.coil.preload and springs.second.preload do"))
         << said;
 }
@@ -158,7 +158,7 @@ TEST(Trim, ConditionThatNothingMovesIsNamed) {
     scene.trim = Trim{{preload(scene, "coil"), preload(scene, "second")},
                       {height(), {"top.x", ProbeCoordinate{0, 0}, std::nullopt}}};
     const std::string said = complaint(scene);
-    EXPECT_TRUE(contains(said, "no adjustment moves 'top.x'")) << said;
+    EXPECT_TRUE(contains(said, "no adjustment changes 'top.x'")) << said;
 }
 
 TEST(Trim, WhatHoldsByChanceIsStillAskedWhetherItIsDetermined) {

@@ -56,7 +56,7 @@ std::string judged(std::uint64_t seed, const Scene& scene) {
     for (const auto& cell : compare::stress({&trial, 1}, {.threads = 1}).cells)
         lines +=
             line(seed, cell.solver, compare::name(cell.verdict), elastocheck::name(cell.outcome),
-                 fmt::format("{}: {}{}{}", cell.way, cell.why, cell.why.empty() ? "" : "; ",
+                 fmt::format("{}: {}{}{}", cell.side, cell.why, cell.why.empty() ? "" : "; ",
                              cell.detail),
                  cell.reactions);
     return lines;

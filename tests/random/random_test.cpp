@@ -39,7 +39,7 @@ TEST(RandomScene, IsReadUnlessWhatItDrivesMovesNothing) {
             ++read;
         } catch (const SceneError& error) {
             const std::string what = error.what();
-            EXPECT_NE(what.find("moves nothing that an output depends on"), what.npos)
+            EXPECT_NE(what.find("changes nothing that an output depends on"), what.npos)
                 << seed << ": " << what;
         }
     }
@@ -70,7 +70,7 @@ TEST(RandomScene, OfTheDrivenFamilyMovesALengthAJackOrAnotherJoint) {
             wheels += text.find("drive: {wheel.") != text.npos;
         } catch (const SceneError& error) {
             const std::string what = error.what();
-            EXPECT_NE(what.find("moves nothing that an output depends on"), what.npos)
+            EXPECT_NE(what.find("changes nothing that an output depends on"), what.npos)
                 << seed << ": " << what;
         }
     }
@@ -152,7 +152,7 @@ TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
             ++asked;
             judged += cell.verdict == Verdict::right;
             EXPECT_NE(cell.verdict, Verdict::wrong)
-                << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " "
+                << seed << ", " << cell.side << ", " << cell.solver << ": " << cell.why << " "
                 << cell.detail;
         }
     }
@@ -180,7 +180,7 @@ TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
             {.label = "as it is", .scene = parse_scene(random_scene(seed), "random.yaml")}};
         for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells)
             EXPECT_TRUE(cell.verdict != Verdict::wrong && cell.verdict != Verdict::elsewhere)
-                << seed << ", " << cell.way << ", " << cell.solver << ": " << cell.why << " "
+                << seed << ", " << cell.side << ", " << cell.solver << ": " << cell.why << " "
                 << cell.detail;
     }
 }

@@ -23,7 +23,7 @@ TEST(CertifyCommand, ProvesTheReferencesAndSaysWhatThatMeans) {
     EXPECT_TRUE(contains(said.out, "energy")) << said.out;
     EXPECT_TRUE(contains(said.out, "series")) << said.out;
     EXPECT_TRUE(contains(said.out, "one curve of equilibria is proved from 0 to ")) << said.out;
-    EXPECT_TRUE(contains(said.out, "Not proved: that the equations are the suspension's"))
+    EXPECT_TRUE(contains(said.out, "Not proved: that the equations describe the suspension"))
         << said.out;
     EXPECT_TRUE(contains(said.out, "Proved: all ")) << said.out;
 }

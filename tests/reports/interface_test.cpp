@@ -173,13 +173,13 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
 TEST(Numbers, AreReadWholeWithAPointAndInTheirRange) {
     const std::string asks = "equilibria " + scenes + "/two_spring_arch.yaml --at ";
     for (const auto& [words, says] :
-         {std::pair<std::string, const char*>{"x", "--at: 'x' is no number\n"},
-          {"-120,5", "'-120,5' is no number\n"},
-          {"nan", "'nan' is no number\n"},
-          {"-inf", "'-inf' is no number\n"},
-          {"1e999", "'1e999' is no number\n"},
-          {"++1", "'++1' is no number\n"},
-          {"-120 --turned 181", "--turned: '181' is no number from 0 to 180\n"}}) {
+         {std::pair<std::string, const char*>{"x", "--at: 'x' is not a number\n"},
+          {"-120,5", "'-120,5' is not a number\n"},
+          {"nan", "'nan' is not a number\n"},
+          {"-inf", "'-inf' is not a number\n"},
+          {"1e999", "'1e999' is not a number\n"},
+          {"++1", "'++1' is not a number\n"},
+          {"-120 --turned 181", "--turned: '181' is not a number from 0 to 180\n"}}) {
         const auto said = elastocheck_says(asks + words);
         EXPECT_EQ(said.code, 2) << words;
         EXPECT_TRUE(contains(said.err, says)) << words << ": " << said.err;

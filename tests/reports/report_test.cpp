@@ -295,7 +295,7 @@ TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
             support::says(command + " report --from " + folder.write("deep.json", deep) + " -o " +
                           (folder.path / "out").string());
         EXPECT_EQ(said.code, 2);
-        EXPECT_TRUE(contains(said.err, "deep.json: nested more than 64 deep")) << said.err;
+        EXPECT_TRUE(contains(said.err, "deep.json: nested more than 64 levels deep")) << said.err;
     }
 }
 

@@ -65,10 +65,10 @@ TEST(SolveCommand, SaysWhatThePointsAnnounce) {
     for (const char* asked : {" --method series", " --method adaptive", " --account"}) {
         const Said said = elastocheck_says(arch + asked);
         EXPECT_TRUE(contains(said.err, "the stiffness is gone near -2") &&
-                    contains(said.err, " N, announced from -"))
+                    contains(said.err, " N, predicted from -"))
             << asked << said.err;
     }
-    EXPECT_FALSE(contains(elastocheck_says(arch).err, "announced"));
+    EXPECT_FALSE(contains(elastocheck_says(arch).err, "predicted"));
 }
 
 TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {

@@ -125,8 +125,8 @@ TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {
     EXPECT_GT(survival.judged(), 300);
     for (const auto& cell : survival.cells)
         EXPECT_TRUE(cell.verdict != compare::Verdict::wrong)
-            << fmt::format("{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.way, cell.solver,
-                           cell.why, cell.detail);
+            << fmt::format("{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.side,
+                           cell.solver, cell.why, cell.detail);
     if (HasFailure()) std::cout << stress_text(survival);
 }
 

@@ -246,7 +246,7 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     EXPECT_EQ(document["recommendation"]["position"], trade.recommendation->point);
 
     const auto none = compare::trade(model, {.tolerance = {1e-15}, .most_steps = 10, .rounds = 0});
-    EXPECT_TRUE(contains(trade_text(model, none), "nothing here reaches it"));
+    EXPECT_TRUE(contains(trade_text(model, none), "no method reaches it"));
     EXPECT_FALSE(contains(trade_text(model, none), "ratio\n")) << "no time was taken";
     EXPECT_TRUE(trade_json(none)["recommendation"].is_null());
 }

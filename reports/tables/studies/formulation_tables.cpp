@@ -34,10 +34,8 @@ std::string formulation_text(const compare::FormulationStudy& study,
     }
     for (const auto& why : study.inconclusive) fmt::format_to(out, "  inconclusive: {}\n", why);
     if (study.conclusive())
-        fmt::format_to(out,
-                       "\nThe tool you compare with may differ from this one by the spread, with "
-                       "the same numbers in "
-                       "it, and both be right.\n");
+        fmt::format_to(
+            out, "\nA correct tool with the same input may differ from this one by the spread.\n");
     return all;
 }
 

@@ -58,7 +58,7 @@ Rows rows_of(const Survival& survival) {
 }
 
 std::string where(const compare::StressCell& cell) {
-    return fmt::format("{}, {}, {}: {}", cell.scene, cell.variant, cell.way, cell.solver);
+    return fmt::format("{}, {}, {}: {}", cell.scene, cell.variant, cell.side, cell.solver);
 }
 
 std::string worst_of(const compare::LostDigits& lost) {
@@ -93,7 +93,7 @@ std::string lost_text(const compare::LostDigits& lost) {
         }
         text += '\n';
     }
-    text += "Digits of sixteen lost to other arithmetic, the most of all ways, by";
+    text += "Digits of sixteen lost to other arithmetic, maximum over all branch sides, by";
     for (const auto& group : lost.groups)
         fmt::format_to(out, " {}", group == lost.groups.front() ? group : "· " + group);
     fmt::format_to(out, "\nThe most, {}; of digits that were right, {}\n", worst_of(lost),
@@ -125,7 +125,7 @@ compare::Table cell_table(const Survival& survival) {
          words("solver"),
          words("outcome"),
          words("verdict"),
-         words("known by", "what the true state is"),
+         words("known by", "source of the true state"),
          {"digits", "", "-log10 of the error over the range"},
          {"lost", "", "correct digits of the untransformed scene that are lost"},
          {"apart", "mm", "distance from the result of the untransformed scene"},
@@ -137,7 +137,7 @@ compare::Table cell_table(const Survival& survival) {
          words("detail", "message of the solver")},
         {}};
     for (const auto& c : survival.cells)
-        table.rows.push_back({c.scene, c.sweep, c.variant, c.way, c.solver, name(c.outcome),
+        table.rows.push_back({c.scene, c.sweep, c.variant, c.side, c.solver, name(c.outcome),
                               name(c.verdict), name(c.knowledge), c.digits, c.lost, 1e3 * c.apart,
                               1e3 * c.error, finite_or_nan(1e3 * c.claim), 1e3 * c.range, c.why,
                               c.detail});
@@ -217,7 +217,7 @@ json stress_json(const Survival& survival) {
         if (c.verdict == Verdict::wrong)
             wrong.push_back({{"scene", c.scene},
                              {"variant", c.variant},
-                             {"way", c.way},
+                             {"way", c.side},
                              {"solver", c.solver},
                              {"why", c.why}});
     return {{"solvers", survival.solvers},
