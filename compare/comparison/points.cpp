@@ -22,6 +22,7 @@ bool apart(const Branch& a, const Branch& b) {
 
 std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& comparison,
                                        std::vector<PointColumn> columns) {
+    if (std::ranges::none_of(columns, &PointColumn::change)) return columns;
     const auto drawn = evaluate(model, comparison.channels, design_state(model));
     for (auto& column : columns) {
         if (column.change)

@@ -23,6 +23,7 @@
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/document/candidate.hpp"
+#include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
@@ -82,10 +83,27 @@ json recommended(const Model& model, const compare::Trade& trade) {
     return result;
 }
 
-LoadCases load_cases(const Request& request) {
-    LoadCases cases{request.branch_column, {}};
-    for (const auto& text : request.cases) cases.names.push_back(parse_load_case(text));
-    return cases;
+// Names of the measured file's columns and branches.
+ColumnMap map_of_measured(const Request& request) {
+    ColumnMap map;
+    if (!request.candidate.map.empty())
+        map = read_column_map(read_whole(request.candidate.map, largest_baseline),
+                              request.candidate.map);
+    if (request.branch_column != Request{}.branch_column)
+        map.columns.push_back({.theirs = request.branch_column, .output = "branch", .unit = {}});
+    for (const auto& text : request.cases) map.branches.push_back(parse_load_case(text));
+    return map;
+}
+
+// Returns why the measurement could not be compared; empty if it was.
+std::string add_measured(json& document, const Request& request) {
+    add_measurement(document, read_whole(request.measured, largest_measurement), request.measured,
+                    map_of_measured(request));
+    for (const auto& column : document["measured"]["left_out"])
+        print_error("{}: column left out: {}\n", request.measured, column.get<std::string>());
+    return compared_with_measurement(document) > 0
+               ? ""
+               : fmt::format("no point of {} is within the range of the legs", request.measured);
 }
 
 json solve_scene(const std::string& file, const Request& request) {
@@ -106,13 +124,9 @@ json solve_scene(const std::string& file, const Request& request) {
     if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
         add_formulations(document, compare::formulation_study(scene, 0, 1, report_progress),
                          comparison);
-    if (!request.measured.empty()) {
-        add_measurement(document, read_whole(request.measured, largest_measurement),
-                        request.measured, model, comparison, load_cases(request));
-        if (compared_with_measurement(document) == 0)
-            reasons.push_back(
-                fmt::format("no point of {} is within the range of the legs", request.measured));
-    }
+    if (!request.measured.empty())
+        if (const std::string why = add_measured(document, request); !why.empty())
+            reasons.push_back(why);
 
     compare::StudyOptions study_options;
     study_options.methods.clear();
@@ -159,6 +173,21 @@ json solve_scene(const std::string& file, const Request& request) {
         judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
     return document;
+}
+
+// A measurement over the curves of a result that is not solved again.
+void overlay(json& result, const Request& request) {
+    if (result["scenes"].size() != 1)
+        throw std::invalid_argument("report: --measured: the result has several scenes");
+    json& scene = result["scenes"][0];
+    const std::string why = add_measured(scene, request);
+    if (!why.empty() && scene.contains("verdict")) {
+        scene["verdict"]["conclusive"] = false;
+        scene["verdict"]["reasons"].push_back(why);
+        if (scene.contains("judgement"))
+            scene["judgement"]["verdict"] = name(compare::Grade::not_judged);
+    }
+    result = json::parse(result.dump());
 }
 
 json read_alarms(const std::string& file) {
@@ -231,11 +260,16 @@ int report(const Request& request, const std::string& reproduce) {
     if (request.from.empty() == request.scenes.empty())
         throw std::invalid_argument(
             "report: needs scene files or --from a result.json, one of the two");
-    if (!request.measured.empty() && request.scenes.size() != 1)
+    if (!request.measured.empty() && request.from.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
+    if (!request.measured.empty() && request.candidate.wanted() && !request.candidate.map.empty())
+        throw std::invalid_argument(
+            "report: --map: is of --candidate or of --measured; give one of them");
     if (request.candidate.wanted() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --candidate belongs to one scene; give one");
-    check(request.candidate, request.settings);
+    CandidateRequest asked = request.candidate;
+    if (!request.measured.empty()) asked.map.clear();  // it is of the measurement
+    check(asked, request.settings);
     const auto start = std::chrono::steady_clock::now();
     // Invalid requests are rejected before the work.
     if (request.open && request.archive)
@@ -246,7 +280,7 @@ int report(const Request& request, const std::string& reproduce) {
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
-    (void)load_cases(request);
+    (void)map_of_measured(request);
     if (request.measured.empty() &&
         (request.branch_column != Request{}.branch_column || !request.cases.empty()))
         throw std::invalid_argument("report: --branch-column and --case: only with --measured");
@@ -261,6 +295,7 @@ int report(const Request& request, const std::string& reproduce) {
     json result;
     if (!request.from.empty()) {
         result = parse_result(read_whole(file), file);
+        if (!request.measured.empty()) overlay(result, request);
     } else {
         file = "result.json";
         result = document(reproduce, provenance());

@@ -18,6 +18,7 @@
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/json/json.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -44,6 +45,9 @@ constexpr std::array written{Written{"mm", Unit::mm, 1},
                              Written{"deg", Unit::deg, 1},
                              Written{"rad", Unit::deg, degrees_per_radian},
                              Written{"mrad", Unit::deg, 1e-3 * degrees_per_radian},
+                             Written{"arcmin", Unit::deg, 1.0 / 60},
+                             Written{"'", Unit::deg, 1.0 / 60},
+                             Written{"′", Unit::deg, 1.0 / 60},
                              Written{"N", Unit::newton, 1},
                              Written{"kN", Unit::newton, 1e3},
                              Written{"N·m", Unit::newton_metre, 1},
@@ -149,6 +153,17 @@ std::vector<std::string> known_columns(const compare::Comparison& all) {
     return names;
 }
 
+// " (did you mean 'toe_deg'?)", or nothing.
+std::string nearest(const std::string& name, const compare::Comparison& all) {
+    std::vector<std::string> names;
+    for (const auto& channel : all.channels) {
+        const std::string unit = compare::symbol(channel.unit);
+        names.push_back(channel.name + (name.ends_with("]") ? " [" + unit + "]" : "_" + unit));
+    }
+    const std::string help = reader::did_you_mean(name, names, "allowed");
+    return help.starts_with(", ") ? " (" + help.substr(2, help.find('?') - 1) + ")" : "";
+}
+
 Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
                const compare::Comparison& all) {
     const auto wrong = [&](const char* field, const std::string& what) {
@@ -216,11 +231,10 @@ struct Table {
     std::set<std::string, std::less<>> legs;
 };
 
-Table read_table(std::string_view csv, const std::string& file, const Model& model,
-                 const compare::Comparison& all, const ColumnMap& map, bool strict,
-                 std::vector<std::string>& notes) {
+Table read_table(std::string_view csv, const std::string& file, const compare::Comparison& all,
+                 const ColumnMap& map, const std::vector<compare::Channel>* also_known,
+                 std::vector<std::string>& left_out) {
     Table table;
-    std::vector<std::string> passed_over;
     const auto head = [&](const Cells& cells, int line) {
         const auto known = known_columns(all);
         for (const auto cell : cells) {
@@ -243,13 +257,12 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
             if (!meaning) meaning = output_of(name, all);
             if (!meaning) {
                 const auto own = name.substr(0, name.find(" ["));
-                const bool of_element =
-                    compare::find_channel(compare::element_channels(model), own) >= 0;
-                if (strict || (map.file.empty() && !of_element))
+                if (also_known != nullptr && map.file.empty() &&
+                    compare::find_channel(*also_known, own) < 0)
                     fail_at(file, line,
                             fmt::format("unknown column {}{}", reader::quote(name),
                                         reader::did_you_mean(name, known, "allowed")));
-                passed_over.push_back(name);
+                left_out.push_back(for_terminal(name) + nearest(name, all));
                 meaning = Meaning{.kind = MeaningKind::nothing, .name = name, .unit = {}};
             }
             table.columns.push_back(*meaning);
@@ -276,10 +289,10 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
                 case MeaningKind::nothing: break;
                 case MeaningKind::parameter:
                 case MeaningKind::output:
-                    table.values[c].push_back(
-                        (strict ? number_in : number_or_none)(cells[c], file, line, meaning.name) *
-                            meaning.factor +
-                        meaning.offset);
+                    table.values[c].push_back((also_known == nullptr ? number_in : number_or_none)(
+                                                  cells[c], file, line, meaning.name) *
+                                                  meaning.factor +
+                                              meaning.offset);
                     if (std::isinf(table.values[c].back())) table.values[c].back() = INFINITY;
                     break;
             }
@@ -287,8 +300,6 @@ Table read_table(std::string_view csv, const std::string& file, const Model& mod
     });
     if (table.legs.size() > 1)
         fail_at(file, 1, fmt::format("leg: {} of them; a candidate is one", table.legs.size()));
-    if (!passed_over.empty())
-        notes.push_back("columns that are not compared: " + reader::listed(passed_over));
     return table;
 }
 
@@ -298,10 +309,11 @@ bool is_travel(const compare::Channel& channel) {
     return channel.name == "travel" || channel.name.ends_with(".travel");
 }
 
-PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
-                       const compare::Comparison& all, const ColumnMap& map, bool strict) {
+PointTable read_points(std::string_view csv, const std::string& file,
+                       const compare::Comparison& all, const ColumnMap& map,
+                       const std::vector<compare::Channel>* also_known) {
     PointTable result;
-    const Table table = read_table(csv, file, model, all, map, strict, result.notes);
+    const Table table = read_table(csv, file, all, map, also_known, result.left_out);
     auto& points = result.points;
     points.branch = table.branch;
     result.count = table.lines.size();
@@ -650,9 +662,12 @@ compare::Candidate read_candidate(std::string_view content, const std::string& f
                 "bodies that are not solved for, and are passed over: " +
                 reader::listed({bodies.passed_over.begin(), bodies.passed_over.end()}));
     } else {
-        auto table = read_points(content, file, model, comparison, map, false);
+        const auto elements = compare::element_channels(model);
+        auto table = read_points(content, file, comparison, map, &elements);
         candidate.points = std::move(table.points);
-        candidate.notes = std::move(table.notes);
+        if (!table.left_out.empty())
+            candidate.notes.push_back("columns that are not compared: " +
+                                      reader::listed(table.left_out));
     }
     candidate.name = std::move(name);
     return candidate;

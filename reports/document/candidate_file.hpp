@@ -36,13 +36,15 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file);
 struct PointTable {
     compare::Points points;
     std::vector<std::string> parameters;  // names of the columns with a branch parameter
-    std::vector<std::string> notes;       // for the reader, such as ignored columns
+    std::vector<std::string> left_out;    // columns that are not compared
     std::size_t count = 0;                // of points
 };
-// `strict`: an unknown column and a cell that is not a finite number are errors. Throws SheetError
-// "file:line: ...".
-PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
-                       const compare::Comparison& comparison, const ColumnMap& map, bool strict);
+// Of a candidate: `also_known` are channels that it may give and that are not compared; an unknown
+// column is an error unless there is a map. Of a measurement (null): every unknown column is left
+// out, and a cell that is not a finite number is an error. Throws SheetError "file:line: ...".
+PointTable read_points(std::string_view csv, const std::string& file,
+                       const compare::Comparison& comparison, const ColumnMap& map,
+                       const std::vector<compare::Channel>* also_known);
 
 // Whether a channel is the travel of a wheel, which gives the place of a point.
 bool is_travel(const compare::Channel& channel);

@@ -304,7 +304,11 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         if (branch.every > 1) one["steps"] = branch.steps;
         branches.push_back(std::move(one));
     }
-    scene_document["channels"] = channels_json(comparison.channels);
+    json channels = channels_json(comparison.channels);
+    const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
+    for (std::size_t c = 0; c < drawn.size(); ++c)
+        if (comparison.channels[c].kinematic()) channels[c]["drawn"] = drawn[c];
+    scene_document["channels"] = channels;
     scene_document["branches"] = branches;
     scene_document["findings"] = findings_json(comparison);
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));

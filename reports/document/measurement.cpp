@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "compare/candidate/measured.hpp"
-#include "reports/document/candidate_file.hpp"
+#include "compare/outputs/not_a_number.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "reports/files/provenance.hpp"
+#include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -14,14 +17,54 @@ namespace {
 using json = nlohmann::ordered_json;
 using compare::Leg;
 
+// The curves of a solved scene as they stand in its document. Of the model only its branches.
+struct SolvedCurves {
+    Model model;
+    compare::Comparison comparison;
+    std::vector<double> drawn;  // outputs in the design position; NaN where the document has none
+};
+
+SolvedCurves curves_of(const JsonCursor& scene) {
+    SolvedCurves solved;
+    auto& channels = solved.comparison.channels;
+    for (const auto& channel : scene["channels"].items()) {
+        const auto unit = compare::find_unit(channel["unit"].text());
+        if (!unit) channel["unit"].fail("is not known");
+        channels.push_back({.name = channel["name"].text(), .unit = *unit, .reads = {}});
+        if (!channel["kinematic"].truth()) channels.back().reads = compare::Effort{};
+        const auto drawn = channel.find("drawn");
+        solved.drawn.push_back(drawn ? drawn->number() : compare::nan);
+    }
+    for (const auto& branch : scene["branches"].items()) {
+        Branch& of_model = solved.model.branches.emplace_back();
+        compare::BranchComparison& one = solved.comparison.branches.emplace_back();
+        of_model.name = one.branch = branch["name"].text();
+        of_model.from = branch["from"].number(), of_model.to = branch["to"].number();
+        const auto unit = compare::find_unit(branch["unit"].text());
+        if (!unit) branch["unit"].fail("is not known");
+        one.unit = *unit;
+        for (const auto& leg : branch["legs"].items()) {
+            compare::Curve curve{.unit = *unit, .a = leg["curve"]["a"].numbers(), .values = {}};
+            curve.values.assign(curve.a.size(), std::vector<double>(channels.size()));
+            for (std::size_t c = 0; c < channels.size(); ++c) {
+                const JsonCursor field = leg["curve"]["values"][channels[c].name];
+                const auto values = field.numbers();
+                if (values.size() != curve.a.size()) field.fail("not as many numbers as points");
+                for (std::size_t k = 0; k < values.size(); ++k) curve.values[k][c] = values[k];
+            }
+            one.runs.emplace_back().curve = std::move(curve);
+        }
+        if (one.runs.size() < compare::legs.size())
+            branch["legs"].fail("a measurement is compared with three legs");
+    }
+    return solved;
+}
+
 // The points of a measurement: outputs that are positions or angles, travel as abscissa only.
-PointTable read(std::string_view csv, const std::string& file, const Model& model,
-                const compare::Comparison& all, const LoadCases& cases) {
-    ColumnMap map;
-    map.branches = cases.names;
-    if (cases.column != LoadCases{}.column)
-        map.columns.push_back({.theirs = cases.column, .output = "branch", .unit = {}});
-    PointTable table = read_points(csv, file, model, all, map, true);
+PointTable read(std::string_view csv, const std::string& file, const SolvedCurves& solved,
+                const ColumnMap& map) {
+    const auto& all = solved.comparison;
+    PointTable table = read_points(csv, file, all, map, nullptr);
     auto& columns = table.points.columns;
     const auto channel = [&](const compare::PointColumn& column) -> const compare::Channel& {
         return all.channels[column.channel];
@@ -29,29 +72,48 @@ PointTable read(std::string_view csv, const std::string& file, const Model& mode
     if (std::ranges::count_if(columns, [&](const auto& c) { return is_travel(channel(c)); }) > 1)
         fail_at(file, 1, "two columns of travel; allowed: one");
     std::erase_if(columns, [&](const auto& c) { return is_travel(channel(c)); });
-    if (columns.empty()) fail_at(file, 1, "no output among the columns");
-    for (const auto& column : columns)
-        if (!channel(column).kinematic())
-            fail_at(
-                file, 1,
-                fmt::format("{}: only positions and angles can be measured", channel(column).name));
+    std::erase_if(columns, [&](const auto& c) {
+        if (channel(c).kinematic()) return false;
+        table.left_out.push_back(channel(c).name + ": no position or angle");
+        return true;
+    });
+    if (columns.empty())
+        fail_at(
+            file, 1,
+            "no output among the columns" +
+                (table.left_out.empty() ? "" : "; left out: " + reader::listed(table.left_out)));
+    for (auto& column : columns) {
+        if (!column.change) continue;
+        const double drawn = solved.drawn[column.channel];
+        if (!std::isfinite(drawn))
+            fail_at(file, 1,
+                    fmt::format("{}: the result does not say its design position; solve again",
+                                channel(column).name));
+        for (double& value : column.values) value += drawn;
+        column.change = false;
+    }
     return table;
 }
 
 }  // namespace
 
 void add_measurement(json& scene_document, std::string_view csv, const std::string& file,
-                     const Model& model, const compare::Comparison& all, const LoadCases& cases) {
-    for (const auto& [theirs, ours] : cases.names)
-        if (std::ranges::find(all.branches, ours, &compare::BranchComparison::branch) ==
-            all.branches.end())
+                     const ColumnMap& map) {
+    const std::string result = "result.json";
+    const SolvedCurves solved = curves_of({&scene_document, "", &result});
+    const compare::Comparison& all = solved.comparison;
+    std::vector<std::string> branches;
+    for (const auto& branch : all.branches) branches.push_back(branch.branch);
+    for (const auto& [theirs, ours] : map.branches)
+        if (std::ranges::find(branches, ours) == branches.end())
             fail_at(file, 0,
-                    fmt::format("--case {}={}: the scene has no branch '{}'", theirs, ours, ours));
-    const PointTable table = read(csv, file, model, all, cases);
+                    fmt::format("'{}={}': the scene has no branch '{}'{}", theirs, ours, ours,
+                                reader::did_you_mean(ours, branches, "allowed")));
+    const PointTable table = read(csv, file, solved, map);
     const compare::Points& measured = table.points;
     compare::MeasuredComparison found;
     try {
-        found = compare::compare_measured(model, all, measured);
+        found = compare::compare_measured(solved.model, all, measured);
     } catch (const std::invalid_argument& error) {
         fail_at(file, 1, error.what());
     }
@@ -83,11 +145,14 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
         const std::string by = reading.by_parameter ? word : all.channels[*measured.abscissa].name;
         readings.push_back({{"reading", "at equal " + by}, {"channels", rows}});
     }
-    scene_document["measured"] = {
-        {"file", file},           {"hash", input_hash(csv)},
-        {"points", table.count},  {"columns", columns},
-        {"branch", found.branch}, {"branch_given", !measured.branch.empty()},
-        {"readings", readings}};
+    scene_document["measured"] = {{"file", file},
+                                  {"hash", input_hash(csv)},
+                                  {"points", table.count},
+                                  {"left_out", table.left_out},
+                                  {"columns", columns},
+                                  {"branch", found.branch},
+                                  {"branch_given", !measured.branch.empty()},
+                                  {"readings", readings}};
     if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
     if (measured.abscissa)
         scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;

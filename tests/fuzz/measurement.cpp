@@ -9,52 +9,54 @@
 namespace elastocheck::fuzz {
 namespace {
 
-struct Suspension {
-    Model model;
-    compare::Comparison comparison;
-};
+using json = nlohmann::ordered_json;
 
 // Curves as legs would have them: something that rises, from one end of each branch to the other.
-Suspension suspension() {
-    Suspension made{compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml")), {}};
-    auto& all = made.comparison;
-    all.channels = compare::channels(made.model);
-    const auto drawn = evaluate(made.model, all.channels, compare::design_state(made.model));
-    for (const auto& branch : made.model.branches) {
-        compare::BranchComparison one;
-        one.branch = branch.name;
-        one.unit = compare::unit_of(branch.unit);
-        for (const auto leg : compare::legs) {
-            compare::LegRun run;
-            run.leg = leg;
-            run.curve.unit = one.unit;
-            constexpr int points = 5;
-            for (int k = 0; k <= points; ++k) {
-                const double a = branch.from + (branch.to - branch.from) * k / points;
-                auto values = drawn;
-                for (double& value : values) value += 10.0 * k;
-                append(run.curve, a, std::move(values));
-            }
-            one.runs.push_back(std::move(run));
+json suspension() {
+    const Model model = compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml"));
+    const auto channels = compare::channels(model);
+    const auto drawn = evaluate(model, channels, compare::design_state(model));
+    json scene;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        scene["channels"].push_back({{"name", channels[c].name},
+                                     {"unit", symbol(channels[c].unit)},
+                                     {"kinematic", channels[c].kinematic()},
+                                     {"drawn", drawn[c]}});
+    for (const auto& branch : model.branches) {
+        const auto unit = compare::unit_of(branch.unit);
+        json curve;
+        for (int k = 0; k <= 5; ++k) {
+            curve["a"].push_back(in_unit(unit) * (branch.from + (branch.to - branch.from) * k / 5));
+            for (std::size_t c = 0; c < channels.size(); ++c)
+                curve["values"][channels[c].name].push_back(drawn[c] + 10.0 * k);
         }
-        all.branches.push_back(std::move(one));
+        scene["branches"].push_back({{"name", branch.name},
+                                     {"from", curve["a"].front()},
+                                     {"to", curve["a"].back()},
+                                     {"unit", symbol(unit)},
+                                     {"legs", json(3, {{"curve", curve}})}});
     }
-    return made;
+    return scene;
 }
 
 }  // namespace
 
-// The file's names of branches are those of --case, as a rig has them.
+// The file's names of branches are those of a map, as a rig has them.
 void measurement(std::string_view input) {
-    static const Suspension suspension = fuzz::suspension();
-    static const reports::LoadCases cases{"case", {{"Ride", "travel"}, {"Lat Force=", "lateral"}}};
-    for (const auto& how : {reports::LoadCases{}, cases}) try {
-            nlohmann::ordered_json scene = nlohmann::ordered_json::object();
-            add_measurement(scene, input, "fuzz.csv", suspension.model, suspension.comparison, how);
-            expect_plain("the document", scene.dump());
+    static const json suspension = fuzz::suspension();
+    static const reports::ColumnMap cases = [] {
+        reports::ColumnMap map;
+        map.columns = {{.theirs = "case", .output = "branch", .unit = {}}};
+        map.branches = {{"Ride", "travel"}, {"Lat Force=", "lateral"}};
+        return map;
+    }();
+    for (const auto& how : {reports::ColumnMap{}, cases}) try {
+            json scene = suspension;
+            add_measurement(scene, input, "fuzz.csv", how);
+            expect_plain("the document", scene["measured"].dump());
             if (reports::compared_with_measurement(scene) < 0)
                 throw Fault("fewer than none compared");
-            const auto written = nlohmann::ordered_json::parse(scene.dump());
+            const json written = {{"measured", json::parse(scene["measured"].dump())}};
             const std::string file = "result.json";
             (void)reports::measured_section({&written, "", &file});
         } catch (const reports::MeasurementError& error) {

@@ -404,6 +404,33 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     EXPECT_TRUE(contains(said.out, answer["scenes"][0]["answer"].get<std::string>()));
 }
 
+TEST(ReportCommand, LaysMeasuredPointsOverAResultWithoutSolving) {
+    const Report report;
+    report.folder.write("rig.csv", "Fz [kN],X,time\n1,-99.5,0\n-2,-101,1\n");
+    report.folder.write("map.yaml",
+                        "columns:\n  \"Fz [kN]\": {output: parameter, unit: kN}\n"
+                        "  X: {output: centre_x, sign: -1, offset: 0.5}\n");
+    const std::string measured = "--measured " + (report.folder.path / "rig.csv").string(),
+                      map = " --map " + (report.folder.path / "map.yaml").string();
+    Said said = report.draws(measured + map);
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(contains(said.err, "rig.csv: column left out: time")) << said.err;
+    const json result = json::parse(text_of(report.folder.path / "out/result.json"));
+    const json& points = result["scenes"][0]["measured"];
+    EXPECT_EQ(points["columns"]["centre_x"], (json{100.0, 101.5}));
+    EXPECT_EQ(points["branch"], (json{"pull", "push"}));
+    EXPECT_EQ(points["readings"][0]["channels"][0]["compared"], 2);
+    EXPECT_TRUE(contains(text_of(report.folder.path / "out/report.html"),
+                         "Comparison with the measurement"));
+    // nothing within range: could not be judged, as where the scene is solved
+    report.folder.write("rig.csv", "Fz [kN],X\n1e6,0\n");
+    said = report.draws(measured + map);
+    EXPECT_EQ(said.code, 3) << said.err;
+    EXPECT_TRUE(contains(said.err, "is within the range of the legs")) << said.err;
+    EXPECT_EQ(report.draws(map).code, 2) << "a map of nothing";
+    EXPECT_EQ(report.draws(measured + map + " --candidate x.csv").code, 2) << "a map of two";
+}
+
 TEST(ReportCommand, MarksASceneByItsJudgement) {
     const Report report;
     for (const char* verdict : {"pass", "fail", "not judged"}) {

@@ -5,14 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "elastocheck/compile.hpp"
+#include "reports/document/document.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/files/provenance.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/measured.hpp"
 #include "tests/reports/result.hpp"
+#include "tests/support/command.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -21,32 +24,41 @@ namespace {
 using json = nlohmann::ordered_json;
 
 struct Solved {
-    Model model = compile(support::scene("chrono_mcpherson"));
+    Scene scene;
+    Model model = compile(scene);
     compare::Comparison comparison;
-    Solved() {
+    json document = json::object();
+
+    Solved(Scene scene_, int steps, const char* method = "published") : scene(std::move(scene_)) {
         compare::Options options;
-        options.recursion.steps = 40;
+        options.recursion.method = recursive::find_method(method).value();
+        options.recursion.steps = steps;
         comparison = compare::compare(model, options);
+        add_comparison(document, scene, model, comparison);
+    }
+    json measured(const std::string& csv, const ColumnMap& map = {}) const {
+        json with = document;
+        add_measurement(with, csv, "kc.csv", map);
+        return with["measured"];
+    }
+    std::string refusal(const std::string& csv, const ColumnMap& map = {}) const {
+        try {
+            (void)measured(csv, map);
+        } catch (const MeasurementError& error) {
+            return error.what();
+        }
+        return "read";
     }
 };
 const Solved& solved() {
-    static const Solved once;
+    static const Solved once(support::scene("chrono_mcpherson"), 40);
     return once;
 }
-
-json measured(const std::string& csv) {
-    json scene = json::object();
-    add_measurement(scene, csv, "kc.csv", solved().model, solved().comparison);
-    return scene["measured"];
+json measured(const std::string& csv, const ColumnMap& map = {}) {
+    return solved().measured(csv, map);
 }
-
-std::string refusal(const std::string& csv) {
-    try {
-        (void)measured(csv);
-    } catch (const MeasurementError& error) {
-        return error.what();
-    }
-    return "read";
+std::string refusal(const std::string& csv, const ColumnMap& map = {}) {
+    return solved().refusal(csv, map);
 }
 
 TEST(Measurement, OfMorePointsThanAreReadIsRefused) {
@@ -137,8 +149,7 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
     for (const auto& [csv, why] :
          {Case{"", "kc.csv: empty; the first line names the columns"},
           Case{"travel_mm,toe_deg\n", "kc.csv: no point in it"},
-          Case{"travel_mm,tow_deg\n1,2\n", "kc.csv:1: unknown column 'tow_deg'"},
-          Case{"travel_mm,toe_kg\n1,2\n", "kc.csv:1: unknown column 'toe_kg'"},
+          Case{"travel_mm,tow_deg\n1,2\n", "kc.csv:1: no output among the columns"},
           Case{"toe_deg\n1\n",
                "kc.csv:1: no column gives the parameter or travel of a point; allowed: parameter, "
                "load_N, travel_mm"},
@@ -152,6 +163,90 @@ TEST(Measurement, WhatIsWrongIsRefusedWithItsPlace) {
           Case{"branch,travel_mm,toe_deg\njonce,1,2\n",
                "kc.csv:2: branch: the scene has no branch 'jonce', did you mean 'jounce'?"}})
         EXPECT_TRUE(refusal(csv).starts_with(why)) << refusal(csv) << "\nexpected: " << why;
+}
+
+// What a rig writes besides is listed, with the nearest name, and the rest is compared.
+TEST(Measurement, ColumnsThatNobodyKnowsAreLeftOutAndListed) {
+    const json plain = measured("travel_mm,toe_deg\n50,-1.8\n");
+    json m =
+        measured("time [s],travel_mm,toe_deg,tow_deg,strut.force_z_N,toe_kg\n0,50,-1.8,x,3e3,\n");
+    EXPECT_EQ(m["left_out"].size(), 4u) << m["left_out"];
+    EXPECT_EQ(m["left_out"][0], "time [s]");
+    EXPECT_TRUE(m["left_out"][1].get<std::string>().starts_with("tow_deg (did you mean 'toe"))
+        << m["left_out"][1];
+    EXPECT_EQ(m["readings"], plain["readings"]);
+    EXPECT_EQ(plain["left_out"], json::array());
+    EXPECT_TRUE(support::contains(refusal("travel_mm,tow_deg\n1,2\n"), "left out: tow_deg"));
+    EXPECT_TRUE(support::contains(refusal("travel_mm,wheel_rate\n1,2\n"),
+                                  "wheel_rate: no position or angle"));
+}
+
+// The map of `judge`: name, unit, sign, offset.
+TEST(Measurement, AMapSaysNameUnitSignAndOffsetAndAnglesMayBeArcMinutes) {
+    const json plain =
+        measured("travel_mm,toe_deg,camber_change_deg\n-50,1.5,0.25\n50,-1.75,-0.5\n");
+    const ColumnMap map = read_column_map(R"(columns:
+  Case: {output: branch}
+  Hub z: {output: travel, unit: cm, sign: -1}
+  Toe_L: {output: toe, unit: arcmin, sign: -1, offset: 0.5}
+  Gamma: {output: camber, unit: rad, change: true}
+branches: {Up: jounce, Down: rebound}
+)",
+                                          "map.yaml");
+    const json mapped = measured(
+        fmt::format("Case,Hub z,Toe_L,Gamma,Fx\nDown,5,-60,{:.17g},1\nUp,-5,135,{:.17g},1\n",
+                    0.25 / 180 * std::numbers::pi, -0.5 / 180 * std::numbers::pi),
+        map);
+    EXPECT_EQ(mapped["left_out"], json{"Fx"});
+    EXPECT_EQ(mapped["branch"], plain["branch"]);
+    for (const char* column : {"travel", "toe", "camber"})
+        for (const int k : {0, 1})
+            EXPECT_NEAR(mapped["columns"][column][k].get<double>(),
+                        plain["columns"][column][k].get<double>(), 1e-12)
+                << column;
+    for (const char* heading : {"toe_arcmin", "toe [arcmin]", "toe [']", "toe_′"})
+        EXPECT_NEAR(measured(fmt::format("travel_mm,{}\n50,-105\n", heading))["columns"]["toe"][0]
+                        .get<double>(),
+                    -1.75, 1e-12)
+            << heading;
+}
+
+// A result is overlaid without solving: the document alone has what it takes.
+TEST(Measurement, OfAResultThatIsReadAgainIsTheSame) {
+    const char* csv = "load_N,toe_deg,camber_change_deg\n1500,-1,0.1\n-1500,1,\n";
+    json read = json::parse(solved().document.dump());  // NaN is null
+    add_measurement(read, csv, "kc.csv");
+    EXPECT_EQ(read["measured"].dump(), measured(csv).dump());
+    for (auto& channel : read["channels"]) channel.erase("drawn");
+    try {
+        add_measurement(read, csv, "kc.csv");
+        ADD_FAILURE() << "a change from an unknown position";
+    } catch (const MeasurementError& error) {
+        EXPECT_TRUE(support::contains(error.what(), "solve again")) << error.what();
+    }
+    json none = {{"name", "x"}};
+    EXPECT_THROW(add_measurement(none, csv, "kc.csv"), ResultError);
+}
+
+// Between 20 and 60 mm of camber nothing was measured in between, of toe something was.
+TEST(Measurement, NothingIsReadBetweenAPointAndOneThatWasNotMeasured) {
+    json result = sample_result();
+    result["scenes"][0]["measured"] = json::parse(
+        measured("branch,travel_mm,toe_deg,camber_deg\njounce,20,-0.7,0.1\njounce,40,-1.4,\n"
+                 "jounce,60,-2,0.3\n")
+            .dump());
+    const std::string file = "result.json";
+    const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};
+    const Sweep sweep = sweeps_of(scene).front();
+    const auto toe = measured_for(scene, sweep, sweep.branches[0], "toe", false),
+               camber = measured_for(scene, sweep, sweep.branches[0], "camber", false);
+    ASSERT_TRUE(toe && camber);
+    for (const double x : {25.0, 40.0, 55.0}) {
+        EXPECT_TRUE(std::isfinite(value_between(*toe, x))) << x;
+        EXPECT_TRUE(std::isnan(value_between(*camber, x))) << x;
+    }
+    EXPECT_NEAR(value_between(*camber, 20), 0.1, 1e-12) << "the point itself was measured";
+    EXPECT_NEAR(value_between(*camber, 60), 0.3, 1e-12);
 }
 
 TEST(Measurement, AByteOrderMarkIsNoPartOfTheFirstName) {
@@ -218,90 +313,47 @@ TEST(Measurement, TravelCountsFromTheDesignPosition) {
     Scene heavy = support::scene("chrono_mcpherson");
     heavy.static_loads = {std::get<Load>(heavy.branches[0].drivers.at(0).what)};
     std::get<DeadForce>(heavy.static_loads.at(0).kind).f *= 500;
-    const Model model = compile(heavy);
-    compare::Options options;
-    options.recursion.method = recursive::find_method("series").value();
-    options.recursion.steps = 20;
-    const auto comparison = compare::compare(model, options);
+    const Solved settled(heavy, 20, "series");
+    const auto& [scene, model, comparison, document] = settled;
     const auto& curve = comparison.branches[0].runs[1].curve;
     const auto drawn = compare::evaluate(model, compare::design_state(model));
     const double rest = curve.values[0][2] - drawn[2];  // wheel_centre_z
     ASSERT_GT(std::abs(rest), 1);                       // [mm]: it does settle
-    json scene = json::object();
-    add_measurement(scene,
-                    fmt::format("branch,travel_mm,wheel_centre_y_mm\njounce,{:.17g},{:.17g}\n",
-                                curve.values[10][2] - drawn[2], curve.values[10][1]),
-                    "kc.csv", model, comparison);
-    const json& row = scene["measured"]["readings"][0]["channels"][0];
+    const json m =
+        settled.measured(fmt::format("branch,travel_mm,wheel_centre_y_mm\njounce,{:.17g},{:.17g}\n",
+                                     curve.values[10][2] - drawn[2], curve.values[10][1]));
+    const json& row = m["readings"][0]["channels"][0];
     EXPECT_EQ(row["compared"], 1);
     EXPECT_LE(std::abs(row["equilibrium"]["signed_max"].get<double>()), 1e-9);
 }
 
-// Newtons do not place a point on a branch in millimetres.
-TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
-    const Model model = compile(support::scene("chrono_mcpherson_travel"));
-    compare::Options options;
-    options.recursion.steps = 8;
-    const auto comparison = compare::compare(model, options);
-    json scene = json::object();
-    std::string said = "read";
-    try {
-        add_measurement(scene, "load_N,toe_deg\n100,1\n", "kc.csv", model, comparison);
-    } catch (const MeasurementError& error) {
-        said = error.what();
-    }
-    EXPECT_EQ(said,
-              "kc.csv:2: load_N: 'N' is not a unit of the parameter of branch 'travel'; allowed: "
-              "mm, cm, m, in");
-    try {
-        add_measurement(scene, "branch,load_N,toe_deg\ntravel,100,1\n", "kc.csv", model,
-                        comparison);
-    } catch (const MeasurementError& error) {
-        said = error.what();
-    }
-    EXPECT_EQ(said,
-              "kc.csv:2: load_N: 'N' is not a unit of the parameter of branch 'travel'; allowed: "
-              "mm, cm, m, in");
-    add_measurement(scene, "branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n", "kc.csv",
-                    model, comparison);
+// As from a test rig: one file, several load cases with their own parameters and names.
+const Solved& rig() {
+    static const Solved once(support::scene("chrono_mcpherson_travel"), 8);
+    return once;
+}
+ColumnMap cases(std::vector<std::pair<std::string, std::string>> names) {
+    ColumnMap map;
+    map.columns = {{.theirs = "case", .output = "branch", .unit = {}}};
+    map.branches = std::move(names);
+    return map;
 }
 
-// As from a test rig: one file, several load cases with their own parameters and names.
-struct Rig {
-    Model model = [] {
-        Scene scene = support::scene("chrono_mcpherson_travel");
-        return compile(scene);
-    }();
-    compare::Comparison comparison = [this] {
-        compare::Options options;
-        options.recursion.steps = 8;
-        return compare::compare(model, options);
-    }();
-    json add(const std::string& csv, const LoadCases& cases) const {
-        json scene = {{"name", "x"}};
-        add_measurement(scene, csv, "kc.csv", model, comparison, cases);
-        return scene["measured"];
-    }
-    std::string refusal(const std::string& csv, const LoadCases& cases) const {
-        try {
-            (void)add(csv, cases);
-        } catch (const MeasurementError& error) {
-            return error.what();
-        }
-        return "read";
-    }
-};
-const Rig& rig() {
-    static const Rig rig;
-    return rig;
+// Newtons do not place a point on a branch in millimetres.
+TEST(Measurement, AParameterBelongsToBranchesOfItsUnit) {
+    for (const char* csv : {"load_N,toe_deg\n100,1\n", "branch,load_N,toe_deg\ntravel,100,1\n"})
+        EXPECT_EQ(rig().refusal(csv),
+                  "kc.csv:2: load_N: 'N' is not a unit of the parameter of branch 'travel'; "
+                  "allowed: mm, cm, m, in");
+    EXPECT_EQ(rig().refusal("branch,parameter_mm,toe_deg\ntravel,-20,1\nbraking,20,2\n"), "read");
 }
 
 TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
-    const LoadCases cases{"case", {{"Bounce", "travel"}, {"Ride load", "load"}}};
-    const json m = rig().add(
+    const ColumnMap map = cases({{"Bounce", "travel"}, {"Ride load", "load"}});
+    const json m = rig().measured(
         "case,parameter_mm,load_N,toe_deg\nBounce,-20,,0.1\nBounce,20,,-0.2\nRide "
         "load,,500,0.3\nbraking,20,,2\n",
-        cases);
+        map);
     EXPECT_EQ(m["branch"], (json{"travel", "travel", "load", "braking"}));
     EXPECT_EQ(m["parameter"], (json{-20.0, 20.0, 500.0, 20.0}));
     EXPECT_EQ(m["readings"][0]["channels"][0]["compared"], 4);
@@ -315,9 +367,12 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
                     "kc.csv:1: there is no column 'case' (--branch-column)"},
           std::pair{"case,parameter_mm,load_N,toe_deg\nBounce,,500,1\n",
                     "kc.csv:2: load_N: 'N' is not a unit of the parameter of branch 'travel'"}})
-        EXPECT_TRUE(rig().refusal(csv, cases).starts_with(why)) << rig().refusal(csv, cases);
-    EXPECT_EQ(rig().refusal("case,parameter_mm,toe_deg\nB,-20,1\n", {"case", {{"B", "travle"}}}),
-              "kc.csv: --case B=travle: the scene has no branch 'travle'");
+        EXPECT_TRUE(rig().refusal(csv, map).starts_with(why)) << rig().refusal(csv, map);
+    EXPECT_TRUE(
+        rig()
+            .refusal("case,parameter_mm,toe_deg\nB,-20,1\n", cases({{"B", "travle"}}))
+            .starts_with("kc.csv: 'B=travle': the scene has no branch 'travle', did you mean "
+                         "'travel'?"));
     EXPECT_TRUE(rig()
                     .refusal("parameter_mm,load_N,toe_deg\n-20,1,1\n", {})
                     .starts_with("kc.csv:2: load_N: 'N' is not a unit"));
@@ -333,9 +388,10 @@ TEST(Measurement, PointsAreDrawnOverWhatTheirFigureGoesOver) {
     json result = sample_result("chrono_mcpherson_travel");
     result["scenes"][0]["measured"] = json::parse(
         rig()
-            .add("branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
-                 "3\nload,,700,0.4\n",
-                 {})
+            .measured(
+                "branch,travel_mm,load_N,toe_deg\ntravel,-20,,0.1\ntravel,20,,-0.2\nload,,500,0."
+                "3\nload,,700,0.4\n",
+                {})
             .dump());
     const std::string file = "result.json";
     const JsonCursor scene{&result["scenes"][0], "scenes[0]", &file};

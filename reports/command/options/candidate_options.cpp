@@ -60,7 +60,7 @@ void add_candidate_options(std::vector<Option>& options, CandidateRequest& reque
     options.push_back({"--candidate-timeout", RealNumber{&request.timeout, 0.001, 86400},
                        "seconds after which the command is killed (default: 60)"});
     options.push_back({"--map", Text{&request.map, a_file("*.yaml")},
-                       "YAML file with the candidate's column names, units, signs and offsets"});
+                       "YAML file with the table's column names, units, signs and offsets"});
 }
 
 void check(const CandidateRequest& request, const Settings& settings) {

@@ -91,6 +91,8 @@ double value_between(const Series& measured, double x) {
     std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]); });
     std::ranges::stable_sort(rows, {},
                              [](const auto& row) { return row[0]; });  // NaN cannot be sorted
+    for (const auto& row : rows)
+        if (row[0] == x && std::isfinite(row[1])) return row[1];
     for (std::size_t k = 1; k < rows.size(); ++k) {
         const auto &a = rows[k - 1], &b = rows[k];
         if (a[0] <= x && x <= b[0] && a[0] < b[0] && std::isfinite(a[1]) && std::isfinite(b[1]))
@@ -112,6 +114,8 @@ std::optional<Section> measured_section(const JsonCursor& scene) {
                      {"file", (*measured)["file"].text()},
                      {"hash", (*measured)["hash"].text()},
                      {"points", (*measured)["points"].whole()}};
+    if (const auto left_out = measured->find("left_out"); left_out && !left_out->texts().empty())
+        section.words["left_out"] = enumerated(left_out->texts());
     for (const auto& reading : (*measured)["readings"].items()) {
         Table table{
             .caption = fmt::format("Deviation from the measurement, {}", reading["reading"].text()),
