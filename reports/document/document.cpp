@@ -8,6 +8,7 @@
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "reports/document/drawing.hpp"
+#include "reports/document/wheels.hpp"
 #include "reports/tables/elements.hpp"
 #include "reports/tables/render.hpp"
 
@@ -300,7 +301,12 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"energy_not_asked", branch.not_asked},
              {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
-             {"inconclusive", branch.inconclusive.texts()}});
+             {"inconclusive", branch.inconclusive.texts()},
+             {"case", load_case(model, model.branches[b])},
+             {"efforts", efforts_json(model.branches[b], comparison.channels)},
+             {"wheel_loads",
+              wheel_loads_json(model, model.branches[b], comparison.channels,
+                               branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve)}});
         if (branch.every > 1) one["steps"] = branch.steps;
         branches.push_back(std::move(one));
     }
@@ -316,6 +322,9 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         scene_document["characteristics"] = {
             {"design", table_json(compare::characteristic_table(comparison))},
             {"compliance", table_json(compare::compliance_table(model, comparison))}};
+    if (!model.wheels.empty() && !comparison.branches.empty())
+        scene_document["wheels"] = wheels_json(model, comparison);
+    scene_document["elements"] = elements_json(model);
     scene_document["forces"] = table_json(force_table(element_values(model, comparison)));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }

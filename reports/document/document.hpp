@@ -30,8 +30,8 @@ nlohmann::ordered_json document(const std::string& reproduce, const Provenance& 
 nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input,
                                       const Model& model, const recursive::Diagnosis& diagnosis);
 
-// "channels" and "branches": every point of every leg, deviations, certificates; "findings",
-// "rate_errors": key figures; "forces": of elements and links at the ends of the branches;
+// "channels" and "branches": every point of every leg, deviations, certificates, what the branch does
+// to the wheels; "findings", "rate_errors": key figures; "wheels": static alignment; "forces": of elements and links at the ends of the branches;
 // "drawing": hardpoints at the design position and along the branches.
 void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison);

@@ -16,6 +16,13 @@ std::string ChannelInfo::label() const { return as_words(name); }
 
 std::string ChannelInfo::heading() const { return fmt::format("{} [{}]", label(), unit); }
 
+std::string ChannelInfo::owner() const {
+    const auto dot = name.rfind('.');
+    return dot == std::string::npos ? "" : name.substr(0, dot);
+}
+
+std::string ChannelInfo::quantity() const { return name.substr(name.rfind('.') + 1); }
+
 std::vector<ChannelInfo> channels_of(const JsonCursor& scene) {
     std::vector<ChannelInfo> all;
     for (const auto& c : scene["channels"].items())
@@ -29,6 +36,10 @@ std::vector<ChannelInfo> main_channels_of(const JsonCursor& scene) {
     auto all = channels_of(scene);
     std::erase_if(all, [](const ChannelInfo& c) { return !c.main; });
     return all;
+}
+
+std::vector<double> LegCurve::channel(const std::string& name) const {
+    return values.value->is_object() ? values[name].numbers() : std::vector<double>{};
 }
 
 std::size_t LegCurve::start() const {
@@ -53,11 +64,21 @@ LegCurve curve_of(const JsonCursor& branch, std::string_view leg) {
         }
         return found;
     }
-    legs.fail(fmt::format("no leg '{}'", leg));
+    return {std::string(leg), {}, {}, legs};
 }
 
 std::string Sweep::parameter() const {
-    return fmt::format("{} [{}]", compare::parameter_word(unit), unit);
+    std::string word = compare::parameter_word(unit);
+    if (lifts() && word != "load") {
+        word = "travel";
+    } else if (word != "load") {
+        std::vector<std::string> moved;
+        for (const auto& joint : branches.front()["drivers"]["moved"].texts())
+            moved.push_back(
+                as_words(joint.ends_with(".drive") ? joint.substr(0, joint.rfind('.')) : joint));
+        if (!moved.empty()) word = enumerated(moved);
+    }
+    return fmt::format("{} [{}]", word, unit);
 }
 
 std::string Sweep::at_equal_parameter() const { return compare::parameter_reading(unit); }
@@ -66,7 +87,12 @@ std::string Sweep::at_equal_abscissa() const {
 }
 
 Sweep sweep_of(const JsonCursor& scene, const JsonCursor& branch) {
-    return {branch["name"].text(), branch["unit"].text(), abscissa_of(scene, branch), {branch}};
+    const auto kind = branch.find("case");
+    return {branch["name"].text(),
+            branch["unit"].text(),
+            abscissa_of(scene, branch),
+            {branch},
+            kind ? kind->text() : "other"};
 }
 
 std::string abscissa_of(const JsonCursor& scene, const JsonCursor& branch) {
@@ -113,28 +139,95 @@ std::vector<Sweep> sweeps_of(const JsonCursor& scene) {
         const std::string name = branch["name"].text(),
                           abscissa = over_abscissa(branch) ? abscissa_of(scene, branch) : "";
         if (twin == nullptr) {
-            sweeps.push_back({name, branch["unit"].text(), abscissa, {branch}});
+            sweeps.push_back(sweep_of(scene, branch));
+            sweeps.back().abscissa = abscissa;
         } else {
             twin->name += " and " + name;
             if (twin->abscissa != abscissa) twin->abscissa.clear();
             twin->branches.push_back(branch);
         }
     }
-    if (const auto rates = scene.find("rate_errors"))
-        for (const auto& rate : rates->items())
-            for (auto& sweep : sweeps)
-                for (const auto& branch : sweep.branches)
-                    if (branch["name"].text() == rate["branch"].text()) sweep.lifts = true;
     return sweeps;
 }
 
 std::optional<Sweep> leading_sweep(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    auto sweeps = sweeps_of(scene);
+    const auto sweeps = sweeps_of(scene);
     if (sweeps.empty()) return std::nullopt;
-    for (auto& sweep : sweeps)
-        if (sweep.lifts) return std::move(sweep);
-    return std::move(sweeps.front());
+    auto leading = std::ranges::find(sweeps, "heave", &Sweep::kind);
+    if (leading == sweeps.end()) leading = std::ranges::find_if(sweeps, &Sweep::lifts);
+    return leading == sweeps.end() ? sweeps.front() : *leading;
+}
+
+bool leads(const JsonCursor& scene, const std::string& side) {
+    const auto sweep = leading_sweep(scene);
+    return sweep && std::ranges::any_of(sweep->branches, [&](const JsonCursor& branch) {
+               const std::string name = branch["name"].text();
+               return side == name || side.starts_with(name + " to ");
+           });
+}
+
+SweepCurve sweep_curve(const Sweep& sweep) {
+    SweepCurve all;
+    all.branches = sweep.branches;
+    for (const auto& branch : sweep.branches) {
+        all.curves.push_back(curve_of(branch, "equilibrium"));
+        const auto& a = all.curves.back().a;
+        for (std::size_t k = 0; k < a.size(); ++k)
+            if (all.curves.size() == 1 || a[k] != 0)
+                all.order.emplace_back(all.curves.size() - 1, k);
+    }
+    const auto at = [&](const auto& place) { return all.curves[place.first].a[place.second]; };
+    std::ranges::stable_sort(all.order, {}, at);
+    for (const auto& place : all.order) all.a.push_back(at(place));
+    for (std::size_t k = 0; k < all.a.size(); ++k)
+        if (std::abs(all.a[k]) < std::abs(all.a[all.start])) all.start = k;
+    return all;
+}
+
+namespace {
+
+// `values(k)`: of the k-th branch, as many as it has points; or none.
+template <class Values>
+std::vector<double> joined(const SweepCurve& curve, Values&& values) {
+    std::vector<std::vector<double>> each;
+    for (std::size_t k = 0; k < curve.curves.size(); ++k) {
+        each.push_back(values(k));
+        if (each.back().size() != curve.curves[k].a.size()) return {};
+    }
+    std::vector<double> all;
+    for (const auto& [branch, point] : curve.order) all.push_back(each[branch][point]);
+    return all;
+}
+
+}  // namespace
+
+std::vector<double> SweepCurve::channel(const std::string& name) const {
+    return joined(*this, [&](std::size_t k) {
+        const JsonCursor& values = curves[k].values;
+        const auto found = values.value->is_object() ? values.find(name) : std::nullopt;
+        return found ? found->numbers() : std::vector<double>{};
+    });
+}
+
+std::vector<double> SweepCurve::wheel_load(const std::string& wheel) const {
+    return joined(*this, [&](std::size_t k) {
+        const auto loads = branches[k].find("wheel_loads");
+        const auto mine = loads ? loads->find(wheel) : std::nullopt;
+        return mine ? mine->numbers() : std::vector<double>{};
+    });
+}
+
+std::string WheelInfo::channel(std::string_view quantity) const {
+    return name.empty() ? std::string(quantity) : fmt::format("{}.{}", name, quantity);
+}
+
+std::vector<WheelInfo> wheels_of(const JsonCursor& scene) {
+    std::vector<WheelInfo> wheels;
+    if (const auto part = scene.find("wheels"))
+        for (const auto& wheel : (*part)["names"].items())
+            wheels.push_back({wheel["name"].text(), wheel["side"].text() == "left" ? 1 : -1});
+    return wheels;
 }
 
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {

@@ -14,6 +14,7 @@ namespace elastocheck::reports {
 struct Column {
     std::string name;    // with its unit
     bool words = false;  // text, left-aligned
+    bool note = false;   // explains the row; below it on a narrow screen
 };
 
 struct Table {
@@ -47,6 +48,8 @@ struct Series {
     // x, y; bars: x, y, x low, x high, y low, y high; face: corners of one area. An empty row is a
     // gap
     std::vector<std::vector<double>> rows{};
+    // entries of the figure's legend that switch it; without a legend of the figure, its own title
+    std::vector<std::size_t> keys{};
 };
 
 struct Band {
@@ -78,6 +81,7 @@ struct Figure {
     double y_low = std::numeric_limits<double>::quiet_NaN(), y_high = y_low;  // NaN: from the data
     double height = 1;  // relative to the default height
     std::vector<Series> series{};
+    std::vector<Series> legend{};  // instead of the titles of the series
     std::vector<Band> bands{};
     std::vector<std::pair<double, std::string>> y_ticks{};  // instead of numbers
     // a drawing without axes; the fields of axes are unused then
@@ -94,10 +98,12 @@ struct FigureGroup {
 
 enum class Mark { none, pass, fail, open };  // verdict mark of a section
 
+enum class Part { first, behaviour, methods, evidence };  // of the page
+
 struct Section {
     std::string id;  // also the name of its text template
     std::string title;
-    std::string part{};  // of the page; heading above the first section of each part
+    Part part = Part::first;
     Mark mark = Mark::none;
     nlohmann::ordered_json words = nlohmann::ordered_json::object();  // data of the template
     std::vector<FigureGroup> figures{};

@@ -249,7 +249,7 @@ struct Entry {
 // Legend entries on lines of this width.
 std::vector<Entry> legend(const Figure& figure, double lines_width) {
     std::vector<Entry> entries;
-    for (const auto& series : figure.series)
+    for (const auto& series : figure.legend.empty() ? figure.series : figure.legend)
         if (!series.title.empty()) entries.push_back({.series = &series, .text = series.title});
     for (const auto& band : figure.bands) entries.push_back({.band = &band, .text = band.label});
     double x = 0;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
 #include "models/kinds.hpp"
@@ -39,26 +41,35 @@ std::string range_words(const Curve& curve, const Scale& s) {
                        curve.known_outside ? "straight beyond" : "undefined beyond");
 }
 
-// A spring without force on one side makes contact at a clearance, measured from its free length.
+// Where a curve without force on one side makes contact, and its law beyond.
+struct Contact {
+    double touches;  // ℓ - ℓ₀ [m]
+    bool longer;     // it makes contact as it grows longer
+    std::array<double, 4> law;
+};
+std::optional<Contact> contact_of(const Curve& u) {
+    const bool open_short = is_free(u.pieces.front()), open_long = is_free(u.pieces.back());
+    if (open_short == open_long) return std::nullopt;
+    std::size_t n = 0;  // end of the force-free side
+    while (n < u.knots.size() &&
+           is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
+        ++n;
+    return open_short ? Contact{u.knots[n - 1], true, u.pieces[n]}
+                      : Contact{u.knots[u.knots.size() - n], false, u.pieces[u.knots.size() - n]};
+}
+
 std::string spring_words(const ScalarLaw& law) {
     return std::visit(
         overloaded{
             [](const LinearRate& u) { return "axial spring, " + rate_words(u.k, lengths); },
             [](const Curve& u) {
-                const bool open_short = is_free(u.pieces.front()),
-                           open_long = is_free(u.pieces.back());
-                if (open_short == open_long) return "axial spring, " + range_words(u, lengths);
-                // End of the force-free side.
-                std::size_t n = 0;
-                while (n < u.knots.size() &&
-                       is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
-                    ++n;
-                const double touches = open_short ? u.knots[n - 1] : u.knots[u.knots.size() - n];
-                const auto& piece = open_short ? u.pieces[n] : u.pieces[u.knots.size() - n];
+                const auto contact = contact_of(u);
+                if (!contact) return "axial spring, " + range_words(u, lengths);
+                const auto& [touches, longer, piece] = *contact;
                 const bool straight = piece[2] == 0 && piece[3] == 0;
                 return fmt::format(
                     "stop, touches when {:.4g} mm {}, {}", 1e3 * std::abs(touches),
-                    open_short ? "longer" : "shorter",
+                    longer ? "longer" : "shorter",
                     straight ? rate_words(std::abs(piece[1]), lengths) : range_words(u, lengths));
             }},
         law);
@@ -173,6 +184,12 @@ std::pair<std::string, int> stem(const std::string& name) {
 }
 
 }  // namespace
+
+std::optional<double> clearance_of(const ScalarLaw& law) {
+    const auto* curve = std::get_if<Curve>(&law);
+    const auto contact = curve != nullptr ? contact_of(*curve) : std::nullopt;
+    return contact ? std::optional(std::abs(contact->touches)) : std::nullopt;
+}
 
 std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
     const auto body = [&](BodyId b) {

@@ -1,6 +1,7 @@
 // Description of the elastic elements of a model: kind, connected bodies, non-default properties.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,9 @@ struct ElementLine {
 // that is active only where driven a tyre, one with its frame in the middle a beam. Formulations
 // are those of the scene.
 std::vector<ElementLine> elements(const Scene& scene, const Model& model);
+
+
+// Clearance [m] of a stop, of which the law has no force on one side; none of another law.
+std::optional<double> clearance_of(const ScalarLaw& law);
 
 }  // namespace elastocheck::reports

@@ -42,6 +42,14 @@ std::string signed_number(double value, int digits) {
     return fmt::format("{}{}", std::isfinite(value) && value > 0 ? "+" : "", number(value, digits));
 }
 
+std::string short_number(double value) {
+    int digits = 1;
+    while (digits < 4 && std::stod(fmt::format("{:.{}e}", value, digits - 1)) !=
+                             std::stod(fmt::format("{:.3e}", value)))
+        ++digits;
+    return std::isfinite(value) ? number(value, digits) : dash;
+}
+
 std::string deviation_number(double value) {
     return std::abs(value) < 1e-9 ? "0" : signed_number(value);
 }

@@ -11,6 +11,9 @@ namespace elastocheck::reports {
 std::string number(double value, int digits = 3);
 std::string signed_number(double value, int digits = 3);  // with a plus
 
+// Up to four significant digits, as few as needed: "−80", "21.33".
+std::string short_number(double value);
+
 // 0 for values below 1e-9 of a mm, deg, N or N·m, which are rounding.
 std::string deviation_number(double value);
 

@@ -390,8 +390,8 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     EXPECT_EQ(said.code, 0) << said.err;
     const auto lines = parts_of(said.out, '\n');
     ASSERT_GE(lines.size(), 2u);
-    EXPECT_TRUE(std::regex_search(lines[lines.size() - 2],
-                                  std::regex("single_bushing\\.yaml: (pass|fail|judged)$")))
+    EXPECT_TRUE(
+        std::regex_search(lines[lines.size() - 2], std::regex("single_bushing\\.yaml: judged$")))
         << said.out;
     EXPECT_TRUE(
         lines.back().starts_with("The page: " + (report.folder.path / "out/report.html").string()))
@@ -431,17 +431,19 @@ TEST(ReportCommand, LaysMeasuredPointsOverAResultWithoutSolving) {
     EXPECT_EQ(report.draws(measured + map + " --candidate x.csv").code, 2) << "a map of two";
 }
 
-TEST(ReportCommand, MarksASceneByItsJudgement) {
+// Pass and fail are of a candidate. Nobody asked about the published recursion.
+TEST(ReportCommand, JudgesOnlyWhatItWasAskedToJudge) {
     const Report report;
     for (const char* verdict : {"pass", "fail", "not judged"}) {
         json document = json::parse(text_of(report.document));
-        document["scenes"][0]["judgement"]["verdict"] = verdict;
+        document["scenes"][0]["judgement"] = {
+            {"verdict", verdict}, {"method", "published"}, {"tolerance", {{"mm", 0.01}}}};
         report.folder.write("in/result.json", document.dump());
         const Said said = report.draws("");
         EXPECT_EQ(said.code, 0) << said.err;
-        EXPECT_TRUE(
-            contains(said.out, std::string("single_bushing.yaml: ") + verdict + "\nThe page: "))
-            << said.out;
+        EXPECT_TRUE(contains(said.out, "single_bushing.yaml: judged\nThe page: ")) << said.out;
+        const std::string page = text_of(report.folder.path / "out/report.html");
+        EXPECT_FALSE(contains(page, "class=\"mark")) << verdict;
     }
 }
 

@@ -7,6 +7,7 @@
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/trim.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
@@ -19,6 +20,36 @@ namespace elastocheck::reports {
 
 using json = nlohmann::ordered_json;
 
+namespace {
+
+json compared(const Scene& scene, const Model& model, const compare::Comparison& comparison,
+              const std::string& name) {
+    json part = scene_document(scene, "input", model, recursive::diagnose(model));
+    part["source"] = name + ".yaml";
+    add_comparison(part, scene, model, comparison);
+    return part;
+}
+
+json document_of(json part, const std::string& name) {
+    json result = document("elastocheck report " + name + ".yaml -o out", provenance());
+    result["scenes"].push_back(std::move(part));
+    return json::parse(result.dump());
+}
+
+}  // namespace
+
+const json& compared_result(const std::string& name) {
+    static std::map<std::string, json> made;
+    if (const auto found = made.find(name); found != made.end()) return found->second;
+    const auto trimmed = compare::trim(support::scene(name));
+    const Model model = compile(trimmed.scene);
+    const auto comparison = compare::compare(model);
+    json part = compared(trimmed.scene, model, comparison, name);
+    if (trimmed.record) add_trim(part, *trimmed.record);
+    add_verdict(part, comparison.compared, reasons_of(comparison));
+    return made[name] = document_of(std::move(part), name);
+}
+
 const json& sample_result(const std::string& name) {
     static std::map<std::string, json> made;
     if (const auto found = made.find(name); found != made.end()) return found->second;
@@ -27,9 +58,7 @@ const json& sample_result(const std::string& name) {
     compare::Options options;
     options.recursion.steps = 20;
     const auto comparison = compare::compare(model, options);
-    json part = scene_document(scene, "input", model, recursive::diagnose(model));
-    part["source"] = name + ".yaml";
-    add_comparison(part, scene, model, comparison);
+    json part = compared(scene, model, comparison, name);
     compare::StudyOptions study_options;
     study_options.steps = {10, 20, 40, 80, 160};
     const auto study = compare::study(model, study_options);
@@ -42,9 +71,7 @@ const json& sample_result(const std::string& name) {
     add_verdict(part, comparison.compared, reasons_of(comparison));
     part["judgement"] =
         judgement_json(compare::assess(model, comparison, compare::default_tolerance, false));
-    json result = document("elastocheck report " + name + ".yaml -o out", provenance());
-    result["scenes"].push_back(part);
-    return made[name] = json::parse(result.dump());
+    return made[name] = document_of(std::move(part), name);
 }
 
 }  // namespace elastocheck::reports

@@ -9,4 +9,7 @@ namespace elastocheck::reports {
 // As read from result.json: NaN is null. Made once per scene.
 const nlohmann::ordered_json& sample_result(const std::string& scene = "chrono_mcpherson");
 
+// Without the studies and the judgement: trimmed and compared alone.
+const nlohmann::ordered_json& compared_result(const std::string& scene);
+
 }  // namespace elastocheck::reports

@@ -15,6 +15,7 @@
 #include "reports/files/templates.hpp"
 #include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
+#include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/plot.hpp"
 #include "reports/page/sections.hpp"
@@ -34,12 +35,13 @@ using json = nlohmann::ordered_json;
 json table_json(const Table& table) {
     json columns = json::array(), rows = json::array();
     for (const auto& column : table.columns)
-        columns.push_back({{"name", column.name}, {"words", column.words}});
+        columns.push_back({{"name", column.name}, {"words", column.words}, {"note", column.note}});
     for (const auto& row : table.rows) {
         json cells = json::array();
         for (std::size_t c = 0; c < row.size(); ++c)
             cells.push_back({{"text", row[c]},
                              {"words", c < table.columns.size() && table.columns[c].words},
+                             {"note", c < table.columns.size() && table.columns[c].note},
                              {"head", c == 0}});
         rows.push_back({{"cells", cells}});
     }
@@ -112,12 +114,15 @@ struct Page {
         for (const auto& table : section.tables) tables.push_back(table_json(table));
         json groups = single;
         for (const auto& entry : several) groups.push_back(entry);
-        json tiles = section.words.contains("tiles") ? section.words["tiles"] : json::array();
-        json all = paragraphs(section);
+        const json all = paragraphs(section);
+        const bool judged =
+            section.mark == Mark::pass || section.mark == Mark::fail || section.id == "candidate";
         return {{"id", unique(fmt::format("{}-{}", part.id, section.id))},
                 {"title", section.title},
-                {"first", section.mark != Mark::none},
-                {"mark", section.mark == Mark::pass ? json{{"class", "pass"}, {"text", "pass"}}
+                {"first", section.part == Part::first},
+                {"glance", section.id == "first"},
+                {"mark", !judged                      ? json(nullptr)
+                         : section.mark == Mark::pass ? json{{"class", "pass"}, {"text", "pass"}}
                          : section.mark == Mark::fail
                              ? json{{"class", "fail"}, {"text", "fail"}}
                              : json{{"class", "open"}, {"text", "not judged"}}},
@@ -125,55 +130,76 @@ struct Page {
                 {"lead", all.empty() ? json("") : all[0]},
                 {"rest", all.size() > 1 ? json(std::vector<json>(all.begin() + 1, all.end()))
                                         : json::array()},
-                {"has_tiles", !tiles.empty()},
-                {"tiles", tiles},
                 {"has_figures", !groups.empty()},
                 {"groups", groups},
+                {"has_tables", !tables.empty()},
                 {"tables", tables}};
     }
 
+    // The parts of the page in order, each with its sections.
     json scene(const ScenePart& part) {
-        json sections = json::array();
+        struct Heading {
+            Part part;
+            const char* title;
+        };
+        constexpr Heading headings[] = {{Part::first, ""},
+                                        {Part::behaviour, "Part 1: Kinematics and compliance"},
+                                        {Part::methods, ""},
+                                        {Part::evidence, "Part 2: Evidence"}};
+        json parts = json::array();
         std::size_t plot = 0;
-        std::string before;
-        for (const auto& one : part.sections) {
-            sections.push_back(section(one, part, plot));
-            sections.back()["part"] =
-                one.part != before && !one.part.empty()
-                    ? json{{"title", one.part}, {"id", unique(part.id + "-" + slug(one.part))}}
-                    : json(nullptr);
-            sections.back()["depth"] = one.part.empty() ? "###" : "####";
-            sections.back()["deep"] = !one.part.empty();
-            before = one.part;
+        for (const auto& [which, title] : headings) {
+            json sections = json::array();
+            for (const auto& one : part.sections)
+                if (one.part == which) {
+                    sections.push_back(section(one, part, plot));
+                    sections.back()["deep"] = *title != '\0';
+                    sections.back()["depth"] = *title != '\0' ? "####" : "###";
+                }
+            if (sections.empty()) continue;
+            const bool named = *title != '\0';
+            parts.push_back({{"title", title},
+                             {"named", named},
+                             {"id", named ? unique(part.id + "-" + slug(title)) : std::string()},
+                             {"folded", which == Part::evidence},
+                             {"sections", sections}});
         }
         return {{"id", part.id},
                 {"name", part.scene["name"].text()},
                 {"conclusive", part.scene["verdict"]["conclusive"].truth()},
-                {"sections", sections}};
+                {"parts", parts}};
     }
 };
 
-// Summary of several scenes: deviation and verdict of each.
+// Summary of several scenes: whether the references agree, the cheapest method that is good enough,
+// and how far the published one is off.
 Table summary(const std::list<ScenePart>& parts) {
-    Table table{
-        .caption =
-            "Summary: largest deviations of the linear recursion as published, and the verdict",
-        .columns = {{"scene", true},
-                    {"verdict", true},
-                    {"position, at equal load or drive"},
-                    {"position, at equal travel"},
-                    {"angle, at equal load or drive"},
-                    {"angle, at equal travel"},
-                    {"wheel rate"},
-                    {"force, moment or rate, of its extent"},
-                    {"cheapest method within the tolerance", true}}};
+    Table table{.caption =
+                    "Summary: how far the references agree, the cheapest fast method within "
+                    "the tolerance, and the largest errors of the published recursion",
+                .columns = {{"scene", true},
+                            {"references apart [mm]"},
+                            {"cheapest method within the tolerance", true},
+                            {"its work, of the full solution"},
+                            {"published: position, at equal load or drive"},
+                            {"position, at equal travel"},
+                            {"angle, at equal load or drive"},
+                            {"angle, at equal travel"},
+                            {"wheel rate"},
+                            {"force, moment or rate, of its extent"}}};
     for (const auto& part : parts) {
         std::vector<std::string> row{part.scene["name"].text()};
+        const auto findings = part.scene.find("findings");
+        const auto apart = findings ? findings->find("references_apart") : std::nullopt;
+        const auto mm = apart ? apart->find("mm") : std::nullopt;
+        row.push_back(!part.scene["verdict"]["conclusive"].truth() ? "not judged"
+                      : mm ? number((*mm)["max"].number(), 2)
+                           : "–");
+        const auto rows = method_rows(part.scene);
+        const auto chosen = std::ranges::find_if(rows, &MethodRow::chosen);
+        row.push_back(chosen == rows.end() ? "–" : chosen->method + ", " + chosen->setting);
+        row.push_back(chosen == rows.end() ? "–" : percent(chosen->cost));
         const auto judgement = part.scene.find("judgement");
-        const std::string found = judgement && part.scene["verdict"]["conclusive"].truth()
-                                      ? (*judgement)["verdict"].text()
-                                      : "not judged";
-        row.push_back(found == "fail" ? "FAIL" : found);
         for (const char* key : {"position", "position_across", "angle", "angle_across"}) {
             const auto worst = judgement ? judgement->find(key) : std::nullopt;
             row.push_back(!worst ? "–"
@@ -189,9 +215,6 @@ Table summary(const std::list<ScenePart>& parts) {
             if (const auto worst = judgement ? judgement->find(key) : std::nullopt)
                 other = std::max(other, (*worst)["share"].number());
         row.push_back(other < 0 ? "–" : percent(other));
-        const auto trade = part.scene.find("trade");
-        const auto chosen = trade ? trade->find("recommendation") : std::nullopt;
-        row.push_back(chosen ? configuration(*chosen) : "–");
         table.rows.push_back(row);
     }
     return table;
@@ -347,21 +370,20 @@ struct Texts {
     std::vector<Answer> answers{};
 };
 
-// `sections` as in Page::scene.
-Answer answer(const JsonCursor& scene, const json& sections) {
+Answer answer(const JsonCursor& scene) {
     const JsonCursor verdict = scene["verdict"];
     Answer made{.name = scene["name"].text(),
                 .source = scene["source"].text(),
-                .sentence = {},
+                .sentence = trust_sentence(scene),
                 .mark = {},
                 .conclusive = verdict["conclusive"].truth(),
                 .reasons = verdict["reasons"].texts()};
-    for (const auto& section : sections)
-        if (section["first"]) made.sentence = section["lead"];
-    const auto judgement = scene.find("judgement");
-    made.mark = judgement         ? (*judgement)["verdict"].text()
-                : made.conclusive ? "judged"
-                                  : "not judged";
+    if (const std::string methods = method_sentence(scene); !methods.empty())
+        made.sentence += " " + methods;
+    made.mark = made.conclusive ? "judged" : "not judged";
+    if (const auto candidates = scene.find("candidates"))
+        for (const auto& candidate : candidates->items())
+            if (made.mark != "fail") made.mark = candidate["verdict"].text();
     return made;
 }
 
@@ -393,8 +415,7 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                       {"result.json", result.dump(1) + "\n"},
                       {"curves.csv", curves_csv(result, file)},
                       {"forces.csv", forces_csv(result, file)}};
-    for (auto text = scenes.begin(); const auto& part : draft.parts)
-        made.answers.push_back(answer(part.scene, (*text++)["sections"]));
+    for (const auto& part : draft.parts) made.answers.push_back(answer(part.scene));
     return made;
 }
 

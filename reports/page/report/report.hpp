@@ -28,8 +28,9 @@ struct ReportOptions {
 // Answer of the report for a scene in one sentence, with its source.
 struct Answer {
     std::string name, source;
-    std::string sentence;  // the first paragraph of its verdict
-    // "pass", "fail", "not judged" where the document has a tolerance; else "judged" or "not
+    std::string
+        sentence;  // how far the numbers can be trusted, and which fast method is good enough
+    // "pass", "fail", "not judged" of the candidates where there are any; else "judged" or "not
     // judged"
     std::string mark;
     bool conclusive = false;           // it could be judged

@@ -11,7 +11,7 @@ std::optional<Section> arithmetic_section(const JsonCursor& scene) {
     const auto study = scene.find("precision");
     if (!study) return std::nullopt;
     const std::string branch = (*study)["branch"].text();
-    Section section{.id = "arithmetic", .title = "Round-off"};
+    Section section{.id = "arithmetic", .title = "Round-off", .part = Part::evidence};
     section.words = {{"branch", branch}, {"reasons", (*study)["inconclusive"].texts()}};
     section.tables.push_back(
         page_table(fmt::format("Smallest errors over the number of steps, and the number of steps "

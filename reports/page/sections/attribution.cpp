@@ -73,10 +73,13 @@ std::optional<FigureGroup> group(const std::string& name, const std::string& rea
 std::optional<Section> attribution_section(const JsonCursor& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
-    Section section{.id = "attribution", .title = "Contributions to the formulation gap"};
+    Section section{.id = "attribution",
+                    .title = "Contributions to the formulation gap",
+                    .part = Part::evidence};
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto gaps = read_table((*study)["gap"], compare::gap_table({}, {}));
     if (gaps.rows.empty()) return std::nullopt;
+    bool any = false;
     for (const auto& branch : distinct(gaps, "branch")) {
         const auto found = where(gaps, "branch", branch);
         const std::string reading = distinct(found, "reading").front();
@@ -84,10 +87,16 @@ std::optional<Section> attribution_section(const JsonCursor& scene) {
         if (const auto& why = words(shares, 0, "not attributed"); !why.empty())
             section.words["notes"].push_back({{"branch", branch}, {"why", why}});
         else if (auto made = group(branch, reading, shares,
-                                   where(where(outputs, "branch", branch), "reading", reading)))
-            section.figures.push_back(std::move(*made));
+                                   where(where(outputs, "branch", branch), "reading", reading))) {
+            any = true;
+            made->table.folded = true;
+            if (leads(scene, branch))
+                section.figures.push_back(std::move(*made));
+            else
+                section.tables.push_back(std::move(made->table));
+        }
     }
-    section.words["empty"] = section.figures.empty();
+    section.words["empty"] = !any;
     return section;
 }
 

@@ -110,13 +110,16 @@ std::optional<FigureGroup> group(const std::string& branch, const compare::Table
 std::optional<Section> convergence_section(const JsonCursor& scene) {
     const auto study = scene.find("convergence");
     if (!study) return std::nullopt;
-    Section section{.id = "convergence", .title = "Convergence with the number of steps"};
+    Section section{.id = "convergence",
+                    .title = "Convergence with the number of steps",
+                    .part = Part::evidence};
     section.words["reasons"] = (*study)["reasons"].texts();
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto steps = read_table((*study)["step_errors"], compare::step_table({}));
     for (const auto& branch : distinct(outputs, "branch")) {
         const auto levels = where(where(steps, "branch", branch), "method", "published");
-        if (auto made = group(branch, levels)) section.figures.push_back(std::move(*made));
+        if (leads(scene, branch))
+            if (auto made = group(branch, levels)) section.figures.push_back(std::move(*made));
         const auto found = where(outputs, "branch", branch);
         const auto readings = distinct(found, "reading");
         const auto published = where(found, "method", "published");

@@ -238,12 +238,17 @@ Table deviations(const JsonCursor& scene, const JsonCursor& branch) {
 
 std::optional<Section> deviation_section(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    Section section{.id = "deviation", .title = "Deviation over the branch"};
+    Section section{
+        .id = "deviation", .title = "Deviation over the branch", .part = Part::evidence};
     for (const auto& sweep : sweeps_of(scene))
         for (const char* unit : {"mm", "deg"})
-            if (auto made = group(scene, sweep, unit)) section.figures.push_back(std::move(*made));
+            if (sweep.branches.front().find("profiles"))
+                if (auto made = group(scene, sweep, unit))
+                    section.figures.push_back(std::move(*made));
     for (const auto& branch : scene["branches"].items()) {
+        if (!branch.find("deviation")) continue;
         section.tables.push_back(deviations(scene, branch));
+        section.tables.back().folded = true;
         const std::string why = branch["deviation"]["at_equal_abscissa"]["not_compared"].text();
         if (!why.empty())
             section.words["notes"].push_back(
@@ -251,6 +256,7 @@ std::optional<Section> deviation_section(const JsonCursor& scene) {
                  {"reading", sweep_of(scene, branch).at_equal_abscissa()},
                  {"why", why}});
     }
+    if (section.figures.empty() && section.tables.empty()) return std::nullopt;
     return section;
 }
 

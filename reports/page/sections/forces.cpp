@@ -1,4 +1,4 @@
-// Section: forces of bushings, springs and links in their own axes.
+// Section: largest forces of bushings, springs and links in their own axes; a beam is one element.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,41 +30,27 @@ std::string deformation_of(std::string output) {
     return {};
 }
 
-// Row with the largest value of each output, and the largest force of each element.
-struct Largest {
-    std::vector<std::size_t> rows;             // one per output, in the order of the table
-    std::map<std::string, double> of_element;  // [N] or [N·m]
+// Beams of segments, and clearances of stops [mm].
+struct Elements {
+    std::map<std::string, std::string> beam_of;
+    std::map<std::string, double> clearance;
 };
-Largest largest_of(const compare::Table& forces) {
-    Largest result;
-    std::map<std::string, std::size_t> place;  // index in `rows`
-    for (std::size_t r = 0; r < forces.rows.size(); ++r) {
-        const std::string& unit = words(forces, r, "unit");
-        const double size = std::abs(number(forces, r, "value"));
-        if ((unit != "N" && unit != "N·m") || !(size > nothing)) continue;
-        double& most = result.of_element[words(forces, r, "element")];
-        most = std::max(most, size);
-        const auto [known, is_new] = place.emplace(words(forces, r, "output"), result.rows.size());
-        if (is_new)
-            result.rows.push_back(r);
-        else if (std::size_t& row = result.rows[known->second];
-                 size > std::abs(number(forces, row, "value")))
-            row = r;
-    }
-    return result;
+Elements elements_of(const JsonCursor& scene) {
+    Elements elements;
+    if (const auto list = scene.find("elements"))
+        for (const auto& element : list->items()) {
+            const std::string name = element["name"].text(), kind = element["kind"].text();
+            if (kind == "beam") elements.beam_of[name] = element["beam"].text();
+            if (kind == "stop") elements.clearance[name] = element["clearance_mm"].number();
+        }
+    return elements;
 }
 
-// Smallest displayed force; 0 if all are displayed.
-double threshold(const std::map<std::string, double>& of_element) {
-    if (of_element.size() <= most_elements) return 0;
-    std::vector<double> sizes;
-    for (const auto& [name, size] : of_element) sizes.push_back(size);
-    std::ranges::sort(sizes, std::ranges::greater{});
-    return sizes[most_elements - 1];
-}
-
-// Key: branch, end, output.
-using Deformations = std::map<std::tuple<std::string, double, std::string>, std::size_t>;
+// Rows of the largest force and the largest moment of an element; none where it has neither.
+struct Largest {
+    std::string element;
+    std::optional<std::size_t> force, moment;
+};
 
 }  // namespace
 
@@ -72,42 +58,70 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
     const auto field = scene.find("forces");
     if (!field) return std::nullopt;
     const compare::Table forces = read_table(*field, compare::force_table({}));
-    const Largest largest = largest_of(forces);
-    if (largest.rows.empty()) return std::nullopt;
-    Deformations at;
-    for (std::size_t r = 0; r < forces.rows.size(); ++r)
+    const Elements elements = elements_of(scene);
+    const auto size = [&](std::size_t r) { return std::abs(number(forces, r, "value")); };
+    std::vector<Largest> largest;
+    std::map<std::tuple<std::string, double, std::string>, std::size_t> at;  // branch, end, output
+    for (std::size_t r = 0; r < forces.rows.size(); ++r) {
         at[{words(forces, r, "branch"), number(forces, r, "end"), words(forces, r, "output")}] = r;
-    const double least = threshold(largest.of_element);
-
-    Section section{.id = "forces", .title = "Forces in bushings, springs and links"};
-    Table table{.caption = "Largest force of each element at the ends of the branches",
-                .columns = {{"element and axis", true},
-                            {"largest"},
-                            {"unit", true},
+        const std::string& unit = words(forces, r, "unit");
+        if ((unit != "N" && unit != "N·m") || !(size(r) > nothing)) continue;
+        std::string name = words(forces, r, "element");
+        if (const auto beam = elements.beam_of.find(name); beam != elements.beam_of.end())
+            name = beam->second;
+        auto known = std::ranges::find(largest, name, &Largest::element);
+        if (known == largest.end()) known = largest.insert(largest.end(), Largest{name, {}, {}});
+        auto& row = unit == "N" ? known->force : known->moment;
+        if (!row || size(r) > size(*row)) row = r;
+    }
+    if (largest.empty()) return std::nullopt;
+    std::ranges::stable_sort(largest, std::ranges::greater{},
+                             [&](const Largest& l) { return l.force ? size(*l.force) : 0; });
+    Section section{
+        .id = "forces", .title = "Forces in bushings, springs and links", .part = Part::behaviour};
+    if (largest.size() > most_elements) {
+        section.words["left_out"] = whole_number(static_cast<long>(largest.size() - most_elements));
+        largest.resize(most_elements);
+    }
+    Table table{.caption = "Largest force and moment of each element at the ends of the branches",
+                .columns = {{"element", true},
+                            {"largest force [N]"},
                             {"where", true},
                             {"deformed by"},
-                            {"unit", true},
-                            {"error of the recursion"},
-                            {"share"}}};
-    for (const std::size_t r : largest.rows) {
-        if (!(largest.of_element.at(words(forces, r, "element")) >= least)) continue;
-        const std::string& output = words(forces, r, "output");
+                            {"largest moment [N·m]"},
+                            {"where", true},
+                            {"deformed by"}}};
+    const auto cells = [&](std::optional<std::size_t> r) -> std::vector<std::string> {
+        if (!r) return {"", "", ""};
+        const std::string &output = words(forces, *r, "output"),
+                          &element = words(forces, *r, "element");
+        const std::string deformation = deformation_of(output);
         const auto deformed =
-            at.find({words(forces, r, "branch"), number(forces, r, "end"), deformation_of(output)});
-        const bool known = deformed != at.end();
-        table.rows.push_back(
-            {output, number(number(forces, r, "value")), words(forces, r, "unit"),
-             fmt::format("{}, {} {}", words(forces, r, "branch"), number(number(forces, r, "end")),
-                         words(forces, r, "end unit")),
-             known ? number(number(forces, deformed->second, "value")) : "",
-             known ? words(forces, deformed->second, "unit") : "",
-             deviation_number(number(forces, r, "error")),
-             percent(std::abs(number(forces, r, "share")) / 100)});
+            at.find({words(forces, *r, "branch"), number(forces, *r, "end"), deformation});
+        std::string by;
+        if (deformed != at.end()) {
+            double value = number(forces, deformed->second, "value");
+            const auto stop = elements.clearance.find(element);
+            if (stop != elements.clearance.end())
+                value = std::max(0.0, std::abs(value) - stop->second);
+            by = quantity(value, words(forces, deformed->second, "unit"));
+        }
+        const char axis = output.back();
+        return {
+            number(number(forces, *r, "value")),
+            fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
+                        words(forces, *r, "branch"), number(number(forces, *r, "end")),
+                        words(forces, *r, "end unit")),
+            by};
+    };
+    for (const auto& l : largest) {
+        std::vector<std::string> row{l.element};
+        for (const auto r : {l.force, l.moment}) {
+            const auto three = cells(r);
+            row.insert(row.end(), three.begin(), three.end());
+        }
+        table.rows.push_back(std::move(row));
     }
-    const auto shown =
-        std::ranges::count_if(largest.of_element, [&](const auto& e) { return e.second >= least; });
-    if (const auto rest = largest.of_element.size() - static_cast<std::size_t>(shown); rest > 0)
-        section.words["left_out"] = whole_number(static_cast<long>(rest));
     section.tables.push_back(std::move(table));
     return section;
 }

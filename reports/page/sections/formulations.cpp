@@ -15,7 +15,8 @@ std::optional<Section> formulations_section(const JsonCursor& scene) {
     const auto study = scene.find("formulations");
     if (!study) return std::nullopt;
     Section section{.id = "formulations",
-                    .title = "Differences between bushing formulations of tools"};
+                    .title = "Differences between bushing formulations of tools",
+                    .part = Part::evidence};
     const compare::Table spread =
         read_table((*study)["spread"], compare::formulation_table({}, {}));
     Table table{
@@ -28,7 +29,8 @@ std::optional<Section> formulations_section(const JsonCursor& scene) {
                     {"smallest by", true},
                     {"largest by", true},
                     {"difference of the references"},
-                    {"published deviation"}}};
+                    {"published deviation"}},
+        .folded = true};
     double most = 1e-9;  // [mm]: smaller spreads are rounding
     for (std::size_t r = 0; r < spread.rows.size(); ++r) {
         const double value = reports::number(spread, r, "spread");

@@ -59,14 +59,20 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
 std::optional<Section> orders_section(const JsonCursor& scene) {
     const auto orders = scene.find("orders");
     if (!orders) return std::nullopt;
-    Section section{.id = "orders", .title = "Series method: the branch as power series"};
+    Section section{.id = "orders",
+                    .title = "Series method: the branch as power series",
+                    .part = Part::evidence};
     auto& nearest = section.words["nearest"] = nlohmann::ordered_json::array();
     const auto table = read_table(*orders, compare::order_table({}));
     for (const auto& branch : distinct(table, "branch")) {
         const auto levels = where(table, "branch", branch);
-        section.figures.push_back(group(branch, levels));
+        if (auto made = group(branch, levels); leads(scene, branch))
+            section.figures.push_back(std::move(made));
+        else
+            section.tables.push_back(std::move(made.table));
         const std::size_t last = levels.rows.size() - 1;
-        if (const double radius = number(levels, last, "singularity"); std::isfinite(radius))
+        if (const double radius = number(levels, last, "singularity");
+            std::isfinite(radius) && leads(scene, branch))
             nearest.push_back(
                 {{"branch", branch},
                  {"radius", number(radius, 3)},

@@ -12,7 +12,9 @@ namespace elastocheck::reports {
 
 std::optional<Section> references_section(const JsonCursor& scene) {
     if (!scene.find("branches")) return std::nullopt;
-    Section section{.id = "references", .title = "Agreement and certification of the references"};
+    Section section{.id = "references",
+                    .title = "Agreement and certification of the references",
+                    .part = Part::evidence};
     Table agreement{
         .caption =
             "Difference between the solutions by energy and by equilibrium, worst over the branch",
@@ -57,13 +59,16 @@ std::optional<Section> references_section(const JsonCursor& scene) {
     bool theorem_printed = false;  // the theorem has been printed
     for (const auto& branch : scene["branches"].items()) {
         const std::string name = branch["name"].text();
-        const JsonCursor apart = branch["reference_uncertainty"]["at_equal_parameter"];
+        const auto uncertainty = branch.find("reference_uncertainty");
         std::vector<std::string> row{name};
         int compared = 0;
         for (const char* unit : {"mm", "deg", "N", "N·m"}) {
             double worst = -1;
             for (const auto& channel : channels) {
-                const auto d = apart["channels"].find(channel.name);
+                const auto d =
+                    uncertainty
+                        ? (*uncertainty)["at_equal_parameter"]["channels"].find(channel.name)
+                        : std::nullopt;
                 // A length that is not a position, such as a swing arm length near infinity, has
                 // its own scale.
                 const bool place = channel.unit == "mm" || channel.unit == "deg";

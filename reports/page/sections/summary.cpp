@@ -1,10 +1,13 @@
-// Section: first screen with the suspension, the verdict and key figures.
+// Section: first screen with the suspension, how far the numbers can be trusted, the static alignment
+// and the key figures.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "compare/tables/table.hpp"
+#include "reports/document/wheels.hpp"
+#include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/suspension.hpp"
@@ -14,195 +17,88 @@
 namespace elastocheck::reports {
 namespace {
 
-using json = nlohmann::ordered_json;
+// Without rounding: no finer than a thousandth of a mm or deg, no more than four digits.
+std::string static_number(double value) { return std::abs(value) < 5e-5 ? "0" : number(value, 4); }
 
-// "A", or "A / B" for two ends.
-std::string both(const std::vector<std::string>& values) {
-    std::string text;
-    for (const auto& value : values) text += (text.empty() ? "" : "\u00a0/\u00a0") + value;
-    return text;
-}
-
-// Up to three significant digits, no finer than a thousandth.
-std::string key_number(double value) {
-    if (std::abs(value) < 5e-4) return "0";
-    return signed_number(value, std::abs(value) < 0.0995 ? 2 : 3);
-}
-
-// As entered: "−80", "+3000".
-std::string end_number(double a) {
-    return (a > 0 ? "+" : a < 0 ? "−" : "") + fmt::format("{:.4g}", std::abs(a));
-}
-
-// One end of the sweep, by the equilibrium leg.
-struct End {
-    JsonCursor branch;
-    LegCurve curve;
-    std::size_t at = 0;
-    double a = 0;  // of the parameter
-};
-
-std::vector<End> ends_of(const Sweep& sweep) {
-    std::vector<End> ends;
-    for (const auto& branch : sweep.branches) {
-        const LegCurve curve = curve_of(branch, "equilibrium");
-        if (curve.a.empty()) continue;
-        for (const std::size_t at : {std::size_t{0}, curve.a.size() - 1})
-            if (at != curve.start()) ends.push_back({branch, curve, at, curve.a[at]});
-    }
-    std::ranges::sort(ends, {}, [](const End& end) { return end.a; });
-    return ends;
-}
-
-// "travel −80 / +80 mm", "vertical −2000 / +3000 N"
-std::string range_of(const Sweep& sweep, const std::vector<End>& ends) {
-    std::vector<std::string> values;
-    for (const auto& end : ends) values.push_back(end_number(end.a));
-    return fmt::format("{} {}\u00a0{}", sweep.name, both(values), sweep.unit);
-}
-
-struct Tile {
-    std::string value, label;
-};
-
-// Rates at the ends of the sweep for one wheel; for the other only where they differ.
-void add_rates(std::vector<Tile>& tiles, const JsonCursor& scene, const Sweep& sweep) {
-    for (const bool ride : {false, true}) {
-        std::vector<std::string> wheels;
-        for (const auto& rate : scene["rate_errors"].items())
-            if (std::ranges::find(wheels, rate["wheel"].text()) == wheels.end())
-                wheels.push_back(rate["wheel"].text());
-        std::vector<Tile> mine;
-        for (const auto& wheel : wheels) {
-            std::vector<std::pair<double, std::array<std::string, 3>>> ends;
-            for (const auto& branch : sweep.branches)
-                for (const auto& rate : scene["rate_errors"].items()) {
-                    if (rate["branch"].text() != branch["name"].text() ||
-                        rate["wheel"].text() != wheel)
-                        continue;
-                    const double k = rate[ride ? "ride_rate_N_per_mm" : "wheel_rate_N_per_mm"]
-                                         .number(),
-                                 off = rate[ride ? "ride_off" : "off"].number();
-                    if (!std::isfinite(k)) continue;
-                    ends.push_back({rate["to"].number(),
-                                    {number(k, 3), end_number(rate["to"].number()),
-                                     (off > 0 ? "+" : "") + percent(off)}});
-                }
-            std::ranges::sort(ends, {}, [](const auto& end) { return end.first; });
-            std::vector<std::string> rates, to, offs;
-            for (const auto& [a, text] : ends)
-                rates.push_back(text[0]), to.push_back(text[1]), offs.push_back(text[2]);
-            if (rates.empty()) continue;
-            const Tile tile{
-                both(rates) + "\u00a0N/mm",
-                fmt::format("{}{}, mean from 0 to {}\u00a0{}; the recursion’s is off by {}",
-                            wheel.empty() || wheels.size() == 1 ? "" : wheel + " ",
-                            ride ? "ride rate, with the tyre" : "wheel rate", both(to), sweep.unit,
-                            both(offs))};
-            if (std::ranges::none_of(mine,
-                                     [&](const Tile& other) { return other.value == tile.value; }))
-                mine.push_back(tile);
-        }
-        tiles.insert(tiles.end(), mine.begin(), mine.end());
-    }
-}
-
-// Rates at the design position; the first of equal wheels.
-void add_characteristics(std::vector<Tile>& tiles, const JsonCursor& scene) {
-    const auto found = scene.find("characteristics");
-    if (!found) return;
-    struct Wanted {
-        const char *name, *text;
-    };
-    constexpr Wanted wanted[] = {
-        {"wheel_rate", "wheel rate"},
-        {"roll_centre_height", "roll centre above the road"},
-        {"bump_steer", "bump steer (toe-in in jounce positive)"},
-        {"lateral_force_steer", "lateral force steer (force inwards, toe-in positive)"}};
-    const compare::Table table = read_table((*found)["design"], compare::characteristic_table({}));
-    for (const auto& [name, text] : wanted)
-        for (std::size_t r = 0; r < table.rows.size(); ++r) {
-            const std::string& output = words(table, r, "output");
-            if (output != name && !output.ends_with("." + std::string(name))) continue;
-            const double value = reports::number(table, r, "value"),
-                         off = reports::number(table, r, "off");
-            if (std::isfinite(value))
-                tiles.push_back(
-                    {fmt::format("{}\u00a0{}", number(value, 3), words(table, r, "unit")),
-                     fmt::format(
-                         "{}{}, at the design position{}",
-                         output == name ? "" : output.substr(0, output.find('.')) + " ", text,
-                         std::isfinite(off)
-                             ? fmt::format("; the recursion’s is off by {}", key_number(off))
-                             : "")});
-            break;
-        }
-}
-
-// Changes of outputs at the ends; equal wheels are shown once.
-void add_changes(std::vector<Tile>& tiles, const JsonCursor& scene, const Sweep& sweep) {
-    struct Wanted {
-        const char *name, *text;
-    };
-    constexpr Wanted wanted[] = {
-        {"toe", "toe change (toe-in positive)"},
-        {"camber", "camber change (top outwards positive)"},
-        {"wheel_centre_y", "wheel centre, change of y (to the left positive)"},
-        {"wheel_centre_x", "wheel centre, change of x (forward positive)"}};
-    const auto ends = ends_of(sweep);
-    const auto channels = channels_of(scene);
-    for (const auto& [name, text] : wanted) {
-        std::vector<Tile> mine;
-        for (const auto& channel : channels) {
-            const auto dot = channel.name.rfind('.');
-            if ((dot == std::string::npos ? channel.name : channel.name.substr(dot + 1)) != name)
-                continue;
-            std::vector<std::string> values;
-            for (const auto& end : ends) {
-                const auto curve = end.curve.channel(channel.name);
-                values.push_back(key_number(curve[end.at] - curve[end.curve.start()]));
+// As drawn and as settled, left and right as columns.
+std::optional<Table> alignment(const JsonCursor& scene) {
+    const auto part = scene.find("wheels");
+    if (!part) return std::nullopt;
+    const auto wheels = wheels_of(scene);
+    const compare::Table values = read_table((*part)["static"], static_table());
+    const bool trimmed = scene.find("trim").has_value();
+    Table table{.caption = "Static alignment", .columns = {{"of the wheel", true}}};
+    for (const char* state : {"drawn", "settled"})
+        for (const auto& wheel : wheels)
+            table.columns.push_back({fmt::format(
+                "{}{}{}{}", state, trimmed && state == std::string("settled") ? " after trim" : "",
+                wheel.name.empty() ? "" : ", ", wheel.name)});
+    for (const auto& output : distinct(values, "output")) {
+        const auto rows = where(values, "output", output);
+        if (rows.rows.empty()) continue;
+        std::vector<std::string> row{
+            fmt::format("{} [{}]", as_words(output), words(rows, 0, "unit"))};
+        for (const char* state : {"drawn", "settled"})
+            for (const auto& wheel : wheels) {
+                const auto mine = where(rows, "wheel", wheel.name);
+                row.push_back(mine.rows.empty() ? "–" : static_number(number(mine, 0, state)));
             }
-            if (std::ranges::all_of(values, [](const std::string& v) { return v == "0"; }))
-                continue;
-            const std::string whose =
-                dot == std::string::npos ? "" : channel.name.substr(0, dot) + " ";
-            mine.push_back({fmt::format("{}\u00a0{}", both(values), channel.unit),
-                            fmt::format("{}{}, {}", whose, text, range_of(sweep, ends))});
-        }
-        const bool same =
-            std::ranges::all_of(mine, [&](const Tile& t) { return t.value == mine.front().value; });
-        if (same && mine.size() > 1) {
-            mine.resize(1);
-            mine[0].label = fmt::format("{}, each wheel, {}", text, range_of(sweep, ends));
-        }
-        tiles.insert(tiles.end(), mine.begin(), mine.end());
+        table.rows.push_back(std::move(row));
     }
+    if (table.rows.empty()) return std::nullopt;
+    return table;
+}
+
+// What the trim adjusted.
+std::optional<Table> adjusted(const JsonCursor& scene) {
+    const auto trim = scene.find("trim");
+    if (!trim) return std::nullopt;
+    Table table{.caption = "The trim adjusted",
+                .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
+    for (const auto& a : (*trim)["adjusted"].items())
+        table.rows.push_back(
+            {a["name"].text(),
+             fmt::format("{} {}", signed_number(a["by"].number(), 4), a["unit"].text()),
+             a["makes"].text()});
+    return table;
+}
+
+// Changes of each wheel at both ends of the leading sweep.
+void add_changes(Table& table, const JsonCursor& scene) {
+    const auto sweep = leading_sweep(scene);
+    const auto wheels = wheels_of(scene);
+    if (!sweep || !sweep->lifts() || wheels.empty()) return;
+    const SweepCurve curve = sweep_curve(*sweep);
+    if (curve.a.size() < 2) return;
+    table.caption += fmt::format(", and changes over the branch {}", sweep->name);
+    for (const char* quantity : {"toe", "camber", "track_change"})
+        for (const std::size_t end : {std::size_t{0}, curve.a.size() - 1}) {
+            if (end == curve.start) continue;
+            std::vector<std::string> row{
+                fmt::format("{}{} at {}{}\u00a0{}", as_words(quantity),
+                            quantity == std::string("track_change") ? "" : " change",
+                            curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};
+            for (const auto& wheel : wheels) {
+                const auto values = curve.channel(wheel.channel(quantity));
+                row.push_back(values.empty() ? "–"
+                                             : static_number(values[end] - values[curve.start]));
+            }
+            row.emplace_back(quantity == std::string("track_change") ? "mm" : "deg");
+            if (row.size() == table.columns.size()) table.rows.push_back(std::move(row));
+        }
 }
 
 }  // namespace
 
 std::optional<Section> first_section(const JsonCursor& scene) {
-    Section section{.id = "first", .title = "In one sentence"};
-    json& words = section.words;
-    const auto judgement = scene.find("judgement");
-    const JsonCursor verdict = scene["verdict"];
-    if (judgement && verdict["conclusive"].truth()) {
-        const std::string found = (*judgement)["verdict"].text();
-        words["sentence"] = (*judgement)["sentence"].text();
-        section.mark = found == "pass" ? Mark::pass : found == "fail" ? Mark::fail : Mark::open;
-    } else {
-        words["conclusive"] = verdict["conclusive"].truth();
-        words["reasons"] = verdict["reasons"].texts();
-        section.mark = Mark::open;
-    }
-    std::vector<Tile> tiles;
-    if (const auto sweep = leading_sweep(scene); sweep && !sweep->branches.empty()) {
-        if (sweep->lifts) add_rates(tiles, scene, *sweep);
-        add_changes(tiles, scene, *sweep);
-    }
-    add_characteristics(tiles, scene);
-    for (const auto& tile : tiles)
-        words["tiles"].push_back({{"value", tile.value}, {"label", tile.label}});
+    Section section{.id = "first", .title = "At a glance"};
+    section.words["trust"] = trust_sentence(scene);
+    section.mark = Mark::open;
+    if (auto table = alignment(scene)) section.tables.push_back(std::move(*table));
+    Table key = key_rates(scene);
+    if (!key.columns.empty()) add_changes(key, scene);
+    if (!key.rows.empty()) section.tables.push_back(std::move(key));
+    if (auto table = adjusted(scene)) section.tables.push_back(std::move(*table));
 
     const auto suspension = suspension_of(scene);
     if (!suspension) return section;

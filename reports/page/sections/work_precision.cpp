@@ -81,7 +81,7 @@ Figure figure(const JsonCursor& trade, const compare::Table& points, const char*
 std::optional<Section> price_section(const JsonCursor& scene) {
     const auto trade = scene.find("trade");
     if (!trade) return std::nullopt;
-    Section section{.id = "price", .title = "Cost of accuracy"};
+    Section section{.id = "price", .title = "Cost of accuracy", .part = Part::evidence};
     section.words["points"] = (*trade)["output_points"].whole();
     section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
     section.words["reasons"] = (*trade)["inconclusive"].texts();

@@ -121,38 +121,35 @@ std::optional<Section> candidate_section(const JsonCursor& scene) {
 }
 
 std::vector<Series> candidate_series(const JsonCursor& scene, const Sweep& sweep,
-                                     const std::string& channel, bool change, bool travel) {
+                                     const std::string& by, const std::string& channel) {
     std::vector<Series> list;
     const auto candidates = scene.find("candidates");
     if (!candidates) return list;
     for (const auto& candidate : candidates->items()) {
-        Series series{candidate["name"].text(), Series::Style::rings, green, 4};
+        Series series{.title = candidate["name"].text(),
+                      .style = Series::Style::rings,
+                      .colour = green,
+                      .mark = 4};
         for (const auto& branch : candidate["branches"].items()) {
-            const auto of = std::ranges::find_if(sweep.branches, [&](const JsonCursor& b) {
-                return b["name"].text() == branch["name"].text();
-            });
-            if (of == sweep.branches.end()) continue;
+            if (std::ranges::none_of(sweep.branches, [&](const JsonCursor& b) {
+                    return b["name"].text() == branch["name"].text();
+                }))
+                continue;
             const JsonCursor curve = branch["curve"];
             const auto y = curve["outputs"].find(channel);
             const auto abscissa = branch.find("abscissa");
             const bool over_abscissa = curve["over"].text() == "abscissa";
             std::optional<JsonCursor> x;
-            if (travel == over_abscissa)
+            if (over_abscissa ? abscissa && abscissa->text() == by : by.empty())
                 x = curve["at"];
-            else if (travel && abscissa)
-                x = curve["outputs"].find(abscissa->text());
+            else if (!by.empty())
+                x = curve["outputs"].find(by);
             if (!x || !y) continue;
-            double first = 0;
-            if (change) {
-                const LegCurve reference = curve_of(*of, "equilibrium");
-                if (const auto values = reference.channel(channel); !values.empty())
-                    first = values[reference.start()];
-            }
             const auto xs = x->numbers(), ys = y->numbers();
             if (xs.size() != ys.size()) y->fail("not as many numbers as points");
             for (const auto k : thinned(xs.size(), 21))
                 if (std::isfinite(xs[k]) && std::isfinite(ys[k]))
-                    series.rows.push_back({xs[k], ys[k] - first});
+                    series.rows.push_back({xs[k], ys[k]});
         }
         if (!series.rows.empty()) list.push_back(std::move(series));
     }

@@ -10,9 +10,9 @@
 
 namespace elastocheck::reports {
 
-// Points of every candidate on these branches for one main channel, drawn over its curves; over the
-// abscissa of the sweep if `travel`. A change is relative to the start of the curves.
+// Points of every candidate on these branches for one output, over another one or, if `by` is
+// empty, over the parameter.
 std::vector<Series> candidate_series(const JsonCursor& scene, const Sweep& sweep,
-                                     const std::string& channel, bool change, bool travel);
+                                     const std::string& by, const std::string& channel);
 
 }  // namespace elastocheck::reports

@@ -12,7 +12,9 @@ std::optional<Section> drawing_section(const JsonCursor& scene) {
     const auto suspension = suspension_of(scene);
     if (!suspension) return std::nullopt;
     const std::string noun = noun_of(*suspension);
-    Section section{.id = "drawing", .title = fmt::format("The {} in three views", noun)};
+    Section section{.id = "drawing",
+                    .title = fmt::format("The {} in three views", noun),
+                    .part = Part::behaviour};
     section.words["wheel"] = !suspension->wheels.empty();
     std::vector<std::string> moved;
     for (const auto& position : suspension->moved) moved.push_back(position.title);

@@ -33,78 +33,32 @@ bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep) {
     return points && !travel;
 }
 
-namespace {
-
-std::optional<Series> points_of(const JsonCursor& scene, const std::vector<JsonCursor>& branches,
-                                bool over_travel, const std::string& channel, bool change) {
+std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& sweep,
+                                      const std::string& by, const std::string& channel) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
     const JsonCursor columns = (*measured)["columns"];
-    const auto abscissa = measured->find("abscissa");
-    const auto across =
-        over_travel && abscissa ? columns.find(abscissa->text()) : measured->find("parameter");
-    const auto column = channel.empty() ? measured->find("parameter") : columns.find(channel);
+    const auto across = by.empty() ? measured->find("parameter") : columns.find(by);
+    const auto column = columns.find(channel);
     if (!across || !column) return std::nullopt;
     const auto x = across->numbers(), y = column->numbers();
     const auto of = (*measured)["branch"].texts();
     if (x.size() != y.size() || of.size() != x.size())
         column->fail("not as many numbers as points");
-    Series series{"measured", Series::Style::rings, purple, 5};
+    Series series{.title = "measured", .style = Series::Style::rings, .colour = purple, .mark = 5};
     bool any = false;
-    for (const auto& branch : branches) {
-        const std::string name = branch["name"].text();
-        const LegCurve curve = curve_of(branch, "equilibrium");
-        double first = 0;
-        if (change)
-            if (const auto values = curve.channel(channel); !values.empty())
-                first = values[curve.start()];
-        for (std::size_t k = 0; k < x.size(); ++k)
-            if (of[k] == name && std::isfinite(x[k]))
-                series.rows.push_back({x[k], y[k] - first}), any = any || std::isfinite(y[k]);
-    }
+    for (std::size_t k = 0; k < x.size(); ++k)
+        if (is_of(sweep, of[k]) && std::isfinite(x[k]))
+            series.rows.push_back({x[k], y[k]}), any = any || std::isfinite(y[k]);
     if (!any) return std::nullopt;
     return series;
-}
-
-bool over_travel(const JsonCursor& scene, const Sweep& sweep) {
-    return !sweep.abscissa.empty() && !measured_over_parameter(scene, sweep);
-}
-
-}  // namespace
-
-std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& sweep,
-                                      const std::string& channel, bool change) {
-    return points_of(scene, sweep.branches, over_travel(scene, sweep), channel, change);
-}
-
-std::optional<Series> measured_for(const JsonCursor& scene, const Sweep& sweep,
-                                   const JsonCursor& branch, const std::string& channel,
-                                   bool change) {
-    const auto measured = scene.find("measured");
-    if (!measured || !(*measured)["branch_given"].truth())
-        return measured_series(scene, sweep, channel, change);
-    return points_of(scene, {branch}, over_travel(scene, sweep), channel, change);
-}
-
-double value_between(const Series& measured, double x) {
-    auto rows = measured.rows;
-    std::erase_if(rows, [](const auto& row) { return !std::isfinite(row[0]); });
-    std::ranges::stable_sort(rows, {},
-                             [](const auto& row) { return row[0]; });  // NaN cannot be sorted
-    for (const auto& row : rows)
-        if (row[0] == x && std::isfinite(row[1])) return row[1];
-    for (std::size_t k = 1; k < rows.size(); ++k) {
-        const auto &a = rows[k - 1], &b = rows[k];
-        if (a[0] <= x && x <= b[0] && a[0] < b[0] && std::isfinite(a[1]) && std::isfinite(b[1]))
-            return a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
-    }
-    return NAN;
 }
 
 std::optional<Section> measured_section(const JsonCursor& scene) {
     const auto measured = scene.find("measured");
     if (!measured) return std::nullopt;
-    Section section{.id = "measured", .title = "Comparison with the measurement"};
+    Section section{
+        .id = "measured", .title = "Comparison with the measurement", .part = Part::behaviour};
     bool over_load = false;
     if (scene.find("branches"))
         for (const auto& sweep : sweeps_of(scene))

@@ -14,17 +14,9 @@ namespace elastocheck::reports {
 // the parameter then.
 bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep);
 
-// Points of these branches for a channel (or for the parameter if `channel` is empty), drawn over
-// its curves: a change is relative to the start of the curves. Empty if it was not measured.
+// Points of these branches for a channel, over another channel or, if `by` is empty or was not
+// measured, over the parameter. Empty if it was not measured.
 std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& sweep,
-                                      const std::string& channel, bool change);
-
-// The points of one branch: its own if the measurement names the branches, else all.
-std::optional<Series> measured_for(const JsonCursor& scene, const Sweep& sweep,
-                                   const JsonCursor& branch, const std::string& channel,
-                                   bool change);
-
-// Linear interpolation; NaN outside the points, and beside a point without a value.
-double value_between(const Series& measured, double x);
+                                      const std::string& by, const std::string& channel);
 
 }  // namespace elastocheck::reports

@@ -11,7 +11,7 @@ namespace elastocheck::reports {
 
 std::optional<Section> model_section(const JsonCursor& scene) {
     const JsonCursor model = scene["model"];
-    Section section{.id = "model", .title = "The model as compiled"};
+    Section section{.id = "model", .title = "The model as compiled", .part = Part::evidence};
     section.words = {{"source", scene["source"].text()}, {"hash", scene["input_hash"].text()}};
     Table table{.caption = "The model", .columns = {{"what", true}, {"as compiled", true}}};
     const auto row = [&](const char* what, const std::string& value) {

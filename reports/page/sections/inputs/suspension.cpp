@@ -82,9 +82,9 @@ std::optional<Suspension> suspension_of(const JsonCursor& scene) {
             }))
             continue;
         Suspension::Moved moved;
-        moved.title = fmt::format("{} at {}", sweep->lifts ? "travel" : of->text(),
+        moved.title = fmt::format("{} at {}", sweep->lifts() ? "travel" : of->text(),
                                   quantity(at["a"].number(), at["unit"].text()));
-        if (at["unit"].text() != "mm" || !sweep->lifts)
+        if (at["unit"].text() != "mm" || !sweep->lifts())
             moved.title =
                 fmt::format("{} {}", of->text(), quantity(at["a"].number(), at["unit"].text()));
         moved.points = places_of(at["points_mm"]);

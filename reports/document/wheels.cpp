@@ -1,0 +1,266 @@
+#include "reports/document/wheels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "compare/outputs/curve.hpp"
+#include "models/kinds.hpp"
+#include "models/overloaded.hpp"
+#include "reports/tables/elements.hpp"
+#include "reports/tables/render.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+// The wheel at this point: of several on one body, the one whose centre or patch is nearest.
+std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
+    std::optional<std::size_t> found;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+        const Wheel& wheel = model.wheels[w];
+        if (wheel.body != point.body) continue;
+        const double away = std::min((wheel.centre_local - point.s_local).norm(),
+                                     (wheel.contact_local - point.s_local).norm());
+        if (away < nearest) nearest = away, found = w;
+    }
+    return found;
+}
+
+// The wheel that a joint lifts or holds, if it is a jack.
+std::optional<std::size_t> wheel_on_jack(const Model& model, int joint) {
+    const ModelJoint& j = model.joints[static_cast<std::size_t>(joint)];
+    if (!j.active_only_where_driven || j.j != ground) return std::nullopt;
+    return wheel_at(model, j.at);
+}
+
+// The wheel on this element, if it is a tyre.
+std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
+    const Elastic& e = model.elastics[static_cast<std::size_t>(elastic)];
+    if (!e.active_only_where_driven) return std::nullopt;
+    for (std::size_t w = 0; w < model.wheels.size(); ++w)
+        if (const auto [i, j] = ends(e.kind);
+            i == model.wheels[w].body || j == model.wheels[w].body)
+            return w;
+    return std::nullopt;
+}
+
+// What the parameter does to the wheels.
+struct Effects {
+    std::vector<double> lift;  // per wheel, vertical motion or force per unit of the parameter
+    bool steers = false, across = false, along = false, turns = false, other = false;
+};
+
+void add(Effects& effects, const Model& model, const Load& load, double rate) {
+    std::visit(overloaded{[&](const DeadForce& force) {
+                              const auto wheel = wheel_at(model, force.at);
+                              const Eigen::Vector3d f = force.f.cwiseAbs();
+                              if (!wheel)
+                                  effects.other = true;
+                              else if (f.z() > f.x() && f.z() > f.y())
+                                  effects.lift[*wheel] += rate * force.f.z();
+                              else
+                                  (f.y() > f.x() ? effects.across : effects.along) = true;
+                          },
+                          [&](const DeadMoment&) { effects.turns = true; },
+                          [&](const auto&) { effects.other = true; }},
+               load.kind);
+}
+
+Effects effects_of(const Model& model, const Branch& branch) {
+    Effects effects;
+    effects.lift.assign(model.wheels.size(), 0);
+    for (const auto& driver : branch.drivers) {
+        if (driver.rate == 0) continue;
+        const auto raise = [&](std::optional<std::size_t> wheel, bool& otherwise) {
+            if (wheel)
+                effects.lift[*wheel] += driver.rate;
+            else
+                otherwise = true;
+        };
+        std::visit(overloaded{[&](const Load& load) { add(effects, model, load, driver.rate); },
+                              [&](const Motion& motion) {
+                                  raise(wheel_on_jack(model, motion.joint), effects.steers);
+                              },
+                              [&](const Preload& preload) {
+                                  raise(wheel_on_tyre(model, preload.elastic), effects.other);
+                              },
+                              [&](const FreeLength&) { effects.other = true; }},
+                   driver.what);
+    }
+    return effects;
+}
+
+// Part of the ground's force on a wheel: force + slope · a, and efforts of jacks.
+struct WheelForce {
+    bool known = true;
+    double force = 0, slope = 0;       // [N], [N per unit of a]
+    std::vector<std::size_t> efforts;  // channels
+};
+
+std::vector<WheelForce> wheel_forces(const Model& model, const Branch& branch,
+                                     const std::vector<compare::Channel>& channels) {
+    std::vector<WheelForce> wheels(model.wheels.size());
+    const auto load = [&](const Load& l, double start, double rate) {
+        if (const auto* dead = std::get_if<DeadForce>(&l.kind)) {
+            if (const auto w = wheel_at(model, dead->at)) {
+                wheels[*w].force += start * dead->f.z();
+                wheels[*w].slope += rate * dead->f.z();
+            }
+        } else if (const auto* follower = std::get_if<FollowerForce>(&l.kind)) {
+            if (const auto w = wheel_at(model, follower->at)) wheels[*w].known = false;
+        }
+    };
+    for (const auto& l : model.static_loads) load(l, 1, 0);
+    for (const auto& driver : branch.drivers)
+        std::visit(overloaded{[&](const Load& l) { load(l, driver.start, driver.rate); },
+                              [&](const Motion& motion) {
+                                  const auto w = wheel_on_jack(model, motion.joint);
+                                  for (std::size_t c = 0; w && c < channels.size(); ++c)
+                                      if (const auto* effort =
+                                              std::get_if<compare::Effort>(&channels[c].reads);
+                                          effort != nullptr && effort->joint == motion.joint)
+                                          wheels[*w].efforts.push_back(c);
+                              },
+                              [&](const Preload& preload) {
+                                  if (const auto w = wheel_on_tyre(model, preload.elastic))
+                                      wheels[*w].known = false;
+                              },
+                              [](const FreeLength&) {}},
+                   driver.what);
+    return wheels;
+}
+
+std::vector<double> loads_of(const WheelForce& wheel, const compare::Curve& curve) {
+    std::vector<double> loads;
+    const double unit = compare::in_unit(curve.unit);
+    for (std::size_t k = 0; wheel.known && k < curve.a.size(); ++k) {
+        double sum = wheel.force + wheel.slope * curve.a[k] / unit;
+        for (const auto c : wheel.efforts) sum += curve.values[k][c];
+        loads.push_back(sum);
+    }
+    return loads;
+}
+
+const compare::Curve& truth_of(const compare::BranchComparison& branch) {
+    return branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].curve;
+}
+
+bool holds_a_wheel(const Model& model, const Branch& branch) {
+    return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
+        const auto* motion = std::get_if<Motion>(&driver.what);
+        return motion != nullptr && wheel_on_jack(model, motion->joint);
+    });
+}
+
+}  // namespace
+
+const char* load_case(const Model& model, const Branch& branch) {
+    const Effects e = effects_of(model, branch);
+    const bool lifts = std::ranges::any_of(e.lift, [](double v) { return v != 0; });
+    if (e.other || model.wheels.empty() || lifts + e.steers + e.across + e.along + e.turns != 1)
+        return "other";
+    if (e.steers) return "steering";
+    if (e.across) return "lateral force";
+    if (e.along) return "longitudinal force";
+    if (e.turns) return "moment";
+    const double first = e.lift.front();
+    if (std::ranges::all_of(e.lift, [&](double v) { return v == first; })) return "heave";
+    return e.lift.size() == 2 && e.lift[1] == -first ? "roll" : "travel";
+}
+
+json efforts_json(const Branch& branch, const std::vector<compare::Channel>& channels) {
+    json efforts = json::array();
+    for (const auto& driver : branch.drivers)
+        if (const auto* motion = std::get_if<Motion>(&driver.what);
+            motion != nullptr && driver.rate != 0)
+            for (const auto& channel : channels)
+                if (const auto* effort = std::get_if<compare::Effort>(&channel.reads);
+                    effort != nullptr && effort->joint == motion->joint)
+                    efforts.push_back(channel.name);
+    return efforts;
+}
+
+json wheel_loads_json(const Model& model, const Branch& branch,
+                      const std::vector<compare::Channel>& channels, const compare::Curve& curve) {
+    json loads = json::object();
+    const auto forces = wheel_forces(model, branch, channels);
+    for (std::size_t w = 0; w < forces.size(); ++w)
+        loads[model.wheels[w].name] =
+            forces[w].known ? json(loads_of(forces[w], curve)) : json(nullptr);
+    return loads;
+}
+
+compare::Table static_table() {
+    return {
+        "static alignment",
+        {{.name = "wheel", .words = true},
+         {.name = "output", .words = true},
+         {.name = "unit", .words = true},
+         {.name = "drawn", .description = "in the design position, as the file has it"},
+         {.name = "settled", .description = "in equilibrium, after the trim where there is one"}},
+        {}};
+}
+
+json wheels_json(const Model& model, const compare::Comparison& comparison) {
+    json names = json::array(), vehicle = nullptr;
+    for (const auto& wheel : model.wheels)
+        names.push_back({{"name", wheel.name}, {"side", wheel.side > 0 ? "left" : "right"}});
+    if (model.vehicle)
+        vehicle = {{"wheelbase_mm", 1e3 * model.vehicle->wheelbase},
+                   {"cg_height_mm", 1e3 * model.vehicle->cg_height}};
+    const auto free = std::ranges::find_if_not(
+        model.branches, [&](const Branch& branch) { return holds_a_wheel(model, branch); });
+    const auto on = static_cast<std::size_t>(free - model.branches.begin()) % model.branches.size();
+    const compare::Curve& curve = truth_of(comparison.branches[on]);
+    const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
+    const auto forces = wheel_forces(model, model.branches[on], comparison.channels);
+    compare::Table table = static_table();
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+        const std::string& wheel = model.wheels[w].name;
+        for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
+            const auto& channel = comparison.channels[c];
+            const bool mine =
+                std::visit(overloaded{[&](const compare::Toe& r) { return r.wheel == w; },
+                                      [&](const compare::Camber& r) { return r.wheel == w; },
+                                      [&](const compare::Steering& r) { return r.wheel == w; },
+                                      [](const auto&) { return false; }},
+                           channel.reads);
+            if (mine)
+                table.rows.push_back({wheel,
+                                      channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
+                                      symbol(channel.unit), drawn[c],
+                                      curve.a.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                      : curve.values[curve.start][c]});
+        }
+        if (const auto loads = loads_of(forces[w], curve); !loads.empty())
+            table.rows.push_back({wheel, "wheel_load", "N",
+                                  std::numeric_limits<double>::quiet_NaN(), loads[curve.start]});
+    }
+    return {{"names", names},
+            {"vehicle", vehicle},
+            {"settled_on", model.branches[on].name},
+            {"static", table_json(table)}};
+}
+
+json elements_json(const Model& model) {
+    json list = json::array();
+    for (const auto& elastic : model.elastics) {
+        if (elastic.written_as == WrittenAs::beam)
+            list.push_back({{"name", elastic.name},
+                            {"kind", "beam"},
+                            {"beam", elastic.name.substr(0, elastic.name.rfind('.'))}});
+        else if (elastic.written_as == WrittenAs::stop)
+            if (const auto* law = member<ScalarLaw>(elastic.kind))
+                if (const auto clearance = clearance_of(*law))
+                    list.push_back({{"name", elastic.name},
+                                    {"kind", "stop"},
+                                    {"clearance_mm", 1e3 * *clearance}});
+    }
+    return list;
+}
+
+}  // namespace elastocheck::reports

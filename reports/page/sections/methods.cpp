@@ -1,0 +1,42 @@
+// Section: which of the fast methods is good enough, by error and counted work.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/page/answer.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/text/numbers.hpp"
+
+namespace elastocheck::reports {
+
+std::optional<Section> methods_section(const JsonCursor& scene) {
+    const std::string sentence = method_sentence(scene);
+    if (sentence.empty()) return std::nullopt;
+    Section section{
+        .id = "methods", .title = "Which fast method is good enough?", .part = Part::methods};
+    section.words = {{"sentence", sentence}, {"tolerance", tolerance_of(scene)}};
+    const auto rows = method_rows(scene);
+    if (rows.empty()) return section;
+    Table table{.caption = fmt::format("Fast methods against {}", tolerance_of(scene)),
+                .columns = {{"method", true},
+                            {"steps or tolerance", true},
+                            {"within the tolerance", true},
+                            {"error at equal load or drive [mm]"},
+                            {"[deg]"},
+                            {"error at equal travel [mm]"},
+                            {"[deg]"},
+                            {"work, of the full solution"}}};
+    const auto size = [](double value) { return number(value, 2); };
+    for (const auto& row : rows)
+        table.rows.push_back({row.method, row.setting,
+                              row.chosen   ? "yes, recommended"
+                              : row.within ? "yes"
+                                           : "no",
+                              size(row.mm), size(row.deg), size(row.mm_across),
+                              size(row.deg_across), percent(row.cost)});
+    section.tables.push_back(std::move(table));
+    return section;
+}
+
+}  // namespace elastocheck::reports

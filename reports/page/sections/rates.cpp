@@ -1,0 +1,214 @@
+// Sections: kinematic and compliance rates at the design position; the compliance matrix and the
+// errors of the recursion in the rates.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "compare/tables/table.hpp"
+#include "reports/page/common.hpp"
+#include "reports/page/sections.hpp"
+#include "reports/tables/select.hpp"
+#include "reports/text/numbers.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+// A rate of each wheel, or of a spring, or of the whole scene.
+struct Rate {
+    std::string name, unit, definition;
+    std::vector<std::size_t> rows{};  // of the table, one a wheel in their order; else one
+    bool of_all = false;              // of no wheel or element alone
+};
+
+std::vector<Rate> rates_of(const compare::Table& design, const std::vector<WheelInfo>& wheels) {
+    std::vector<Rate> rates;
+    for (std::size_t r = 0; r < design.rows.size(); ++r) {
+        const ChannelInfo channel{words(design, r, "output"), words(design, r, "unit")};
+        const bool of_wheel =
+            std::ranges::find(wheels, channel.owner(), &WheelInfo::name) != wheels.end();
+        const std::string name = as_words(of_wheel ? channel.quantity() : channel.name);
+        const auto known = of_wheel ? std::ranges::find(rates, name, &Rate::name) : rates.end();
+        if (known != rates.end())
+            known->rows.push_back(r);
+        else
+            rates.push_back(
+                {name, channel.unit, words(design, r, "definition"), {r}, channel.owner().empty()});
+    }
+    return rates;
+}
+
+std::string value_at(const compare::Table& design, std::size_t row) {
+    return words(design, row, "undefined").empty() ? number(number(design, row, "value"), 4)
+                                                   : "none";
+}
+
+double value_of(const compare::Table& design, const WheelInfo& wheel, std::string_view rate) {
+    for (std::size_t r = 0; r < design.rows.size(); ++r)
+        if (words(design, r, "output") == wheel.channel(rate)) return number(design, r, "value");
+    return NAN;
+}
+
+// Roll stiffness of an axle from the rates of its wheels in roll: each wheel moves by half the track
+// per unit of roll, K = k t² / 2. What resists roll and not heave is the anti-roll bar's.
+void add_roll_stiffness(Table& table, const JsonCursor& scene, const compare::Table& design,
+                        const std::vector<WheelInfo>& wheels) {
+    if (wheels.size() != 2) return;
+    const auto sweep = leading_sweep(scene);
+    if (!sweep) return;
+    const SweepCurve curve = sweep_curve(*sweep);
+    const auto track = curve.channel("track");
+    double roll = 0, heave = 0;
+    for (const auto& wheel : wheels) {
+        roll += value_of(design, wheel, "wheel_rate_in_roll") / 2;
+        heave += value_of(design, wheel, "wheel_rate") / 2;
+    }
+    if (track.empty() || !std::isfinite(roll)) return;
+    const double t = track[curve.start];  // [mm]; N/mm · mm² = N·mm per rad
+    const double stiffness = 1e-3 * roll * t * t / 2 * std::numbers::pi / 180;
+    const auto row = [&](const std::string& name, const std::string& value, const std::string& unit,
+                         const std::string& definition) {
+        table.rows.push_back({name, value, value, unit, definition});
+    };
+    row("roll stiffness at the wheels", number(stiffness, 4), "N·m/deg",
+        "moment over roll of the axle against the body, without the tyres: wheel rate in roll · "
+        "track² / 2");
+    if (std::isfinite(heave) && roll > heave)
+        row("of it, anti-roll bar", number(100 * (roll - heave) / roll, 3), "%",
+            "what resists opposed travel and not parallel travel: 1 − wheel rate / wheel rate in "
+            "roll");
+}
+
+Table rates_table(const JsonCursor& scene, const compare::Table& design,
+                  const std::vector<WheelInfo>& wheels) {
+    Table table{.caption = "Rates at the design position", .columns = {{"rate", true}}};
+    if (wheels.size() < 2)
+        table.columns.push_back({"value"});
+    else
+        for (const auto& wheel : wheels) table.columns.push_back({wheel.name});
+    table.columns.push_back({"unit", true});
+    table.columns.push_back({.name = "definition", .words = true, .note = true});
+    const std::size_t width = table.columns.size() - 3;
+    for (const auto& rate : rates_of(design, wheels)) {
+        std::vector<std::string> row{rate.name};
+        for (std::size_t k = 0; k < width; ++k)
+            row.push_back(k < rate.rows.size() ? value_at(design, rate.rows[k])
+                          : rate.of_all        ? row.back()
+                                               : "");
+        row.push_back(rate.unit == "-" ? "" : rate.unit);
+        const std::string& undefined = words(design, rate.rows[0], "undefined");
+        row.push_back(undefined.empty() ? rate.definition
+                                        : fmt::format("{}. Here: {}", rate.definition, undefined));
+        table.rows.push_back(std::move(row));
+    }
+    if (width == 2) add_roll_stiffness(table, scene, design, wheels);
+    return table;
+}
+
+// ---- Evidence
+
+// Compliance matrix of the equilibrium leg at the start of the first branch.
+std::optional<Table> matrix_table(const compare::Table& compliance, std::string_view point) {
+    std::vector<std::size_t> rows;
+    for (std::size_t r = 0; r < compliance.rows.size(); ++r)
+        if (words(compliance, r, "leg") == "equilibrium" &&
+            words(compliance, r, "point") == point &&
+            words(compliance, r, "branch") == words(compliance, 0, "branch") &&
+            number(compliance, r, "a") == 0)
+            rows.push_back(r);
+    if (rows.empty()) return std::nullopt;
+    Table table{.caption = fmt::format("Compliance at the {}: displacement [mm] and rotation [deg] "
+                                       "per kN and per 100 N·m, the wheel free",
+                                       point),
+                .columns = {{"answer", true}},
+                .folded = true};
+    const bool several = std::ranges::any_of(rows, [&](auto r) {
+        return words(compliance, r, "wheel") != words(compliance, rows[0], "wheel");
+    });
+    if (several) table.columns = {{"wheel", true}, {"answer", true}, {"loaded wheel", true}};
+    constexpr const char* causes[] = {"force x",  "force y",  "force z",
+                                      "moment x", "moment y", "moment z"};
+    for (const char* cause : causes) table.columns.push_back({cause});
+    for (const auto r : rows) {
+        std::vector<std::string> row{words(compliance, r, "answer")};
+        if (several)
+            row = {words(compliance, r, "wheel"), row[0], words(compliance, r, "loaded wheel")};
+        for (const char* cause : causes) {
+            const double value = number(compliance, r, cause);
+            row.push_back(std::abs(value) < 1e-9 ? "0" : number(value, 3));
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+// Errors of the recursion in the rates. No share of a value that its error exceeds: it is zero.
+Table errors_table(const compare::Table& design) {
+    Table table{.caption = "Error of the published recursion in the rates at the design position",
+                .columns = {{"rate", true}, {"value"}, {"unit", true}, {"error"}, {"share"}},
+                .folded = true};
+    for (std::size_t r = 0; r < design.rows.size(); ++r) {
+        const double off = number(design, r, "off"), share = number(design, r, "off %") / 100;
+        table.rows.push_back({as_words(words(design, r, "output")), value_at(design, r),
+                              words(design, r, "unit"),
+                              std::isfinite(off) ? deviation_number(off) : "–",
+                              std::abs(share) <= 1 ? percent(share) : "–"});
+    }
+    return table;
+}
+
+std::optional<compare::Table> design_of(const JsonCursor& scene) {
+    const auto found = scene.find("characteristics");
+    if (!found) return std::nullopt;
+    auto table = read_table((*found)["design"], compare::characteristic_table({}));
+    return table.rows.empty() ? std::nullopt : std::optional(std::move(table));
+}
+
+}  // namespace
+
+Table key_rates(const JsonCursor& scene) {
+    Table table{.caption = "Key figures at the design position"};
+    const auto design = design_of(scene);
+    if (!design) return table;
+    const std::set<std::string> wanted{
+        "wheel rate",  "ride rate",  "roll centre height",  "bump steer",
+        "bump camber", "roll steer", "lateral force steer", "braking force steer",
+        "anti dive",   "anti squat", "steer gradient",      "roll stiffness at the wheels"};
+    const Table all = rates_table(scene, *design, wheels_of(scene));
+    table.columns.assign(all.columns.begin(), all.columns.end() - 1);
+    for (const auto& row : all.rows)
+        if (wanted.contains(row[0])) table.rows.emplace_back(row.begin(), row.end() - 1);
+    return table;
+}
+
+std::optional<Section> rates_section(const JsonCursor& scene) {
+    const auto design = design_of(scene);
+    if (!design) return std::nullopt;
+    Section section{.id = "rates", .title = "Rates", .part = Part::behaviour};
+    section.tables.push_back(rates_table(scene, *design, wheels_of(scene)));
+    return section;
+}
+
+std::optional<Section> matrices_section(const JsonCursor& scene) {
+    const auto design = design_of(scene);
+    if (!design) return std::nullopt;
+    Section section{.id = "matrices",
+                    .title = "Compliance matrices, and the recursion’s rates",
+                    .part = Part::evidence};
+    const auto compliance =
+        read_table(scene["characteristics"]["compliance"], compare::compliance_table({}, {}));
+    for (const char* point : {"contact patch", "wheel centre"})
+        if (auto table = matrix_table(compliance, point))
+            section.tables.push_back(std::move(*table));
+    double worst = 0;
+    for (std::size_t r = 0; r < compliance.rows.size(); ++r)
+        if (words(compliance, r, "leg") != "recursive" && number(compliance, r, "a") == 0)
+            worst = std::max(worst, number(compliance, r, "reciprocity"));
+    if (!compliance.rows.empty()) section.words["reciprocity"] = number(worst, 2);
+    section.tables.push_back(errors_table(*design));
+    return section;
+}
+
+}  // namespace elastocheck::reports
