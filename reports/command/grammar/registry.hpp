@@ -7,7 +7,7 @@
 
 namespace elastocheck::reports {
 
-// Without the commands that print the registry itself (main.cpp: completion, man).
+// Without the commands that print the registry itself (program.cpp: completion, man).
 std::vector<Command> registry();
 
 }  // namespace elastocheck::reports
