@@ -97,7 +97,8 @@ TEST(Reactions, AreOffBeyondTheirBoundAndWhereTheyAreNoNumber) {
         return reaction_off(names, found, known, bound, acts);
     };
     EXPECT_EQ(off(0.9e-3, 1.9e-3), "");
-    EXPECT_NE(off(-6.9, 0).find("joint 'rod' is off by 6.9 N"), std::string::npos) << off(-6.9, 0);
+    EXPECT_NE(off(-6.9, 0).find("joint 'rod' deviates by 6.9 N"), std::string::npos)
+        << off(-6.9, 0);
     EXPECT_NE(off(0, 2.1e-3), "");
     const double nan = std::nan("");
     EXPECT_NE(off(nan, 0), "");

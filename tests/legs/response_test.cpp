@@ -78,7 +78,7 @@ TEST_P(LinearResponse, IsTheSlopeWhereForcesHaveNoPotential) {
         const Response response =
             respond(follower, {0, {follower.model.bodies[0].design}, {}, 0}, push);
         EXPECT_EQ(response.outcome, Outcome::not_conservative);
-        EXPECT_TRUE(contains(response.detail, "load 'push' turns with its body"))
+        EXPECT_TRUE(contains(response.detail, "load 'push' rotates with its body"))
             << response.detail;
         EXPECT_TRUE(response.increments.empty());
         return;

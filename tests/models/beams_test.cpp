@@ -329,7 +329,7 @@ TEST(Beam, SaysWhatIsWrong) {
           "a beam needs a length"},
          {"bodies: [ground, tip], through: [root, bend, tip], segments: 5",
           "bodies: [tip, tip], through: [root, bend], segments: 1",
-          "both ends are on beams.bar.bodies: 'tip'; a beam of one segment needs two different "
+          "beams.bar.bodies: both ends are on 'tip'; a beam of one segment needs two different "
           "bodies"},
          {"E: 2", "E: 0", "beams.bar.E: '0' is too small; allowed: above zero"},
          {"J: 13", "J: -1", "beams.bar.J: '-1' is too small; allowed: above zero"},

@@ -407,10 +407,11 @@ TEST(CurveFile, IsARegularFileInTheFolderOfTheScene) {
     EXPECT_EQ(refusal(beside), "read");
     fs::remove(curve);
     fs::create_symlink(elsewhere.path / "coil.csv", curve);
-    EXPECT_NE(refusal(beside).find(
-                  ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that is outside the "
-                  "scene's folder; allowed: a file in it, or in a folder below"),
-              std::string::npos)
+    EXPECT_NE(
+        refusal(beside).find(
+            ":11: springs.coil.curve.file: 'coil.csv' is a symbolic link that leads out of the "
+            "scene's folder; allowed: a file in it, or in a folder below"),
+        std::string::npos)
         << refusal(beside);
     fs::remove(curve);
     const support::Pipe pipe(curve);

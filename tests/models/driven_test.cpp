@@ -250,7 +250,8 @@ TEST(Driven, WhatCannotBeIsRefused) {
          "drive.joints.rack: 'joints.rack' cannot be driven, did you mean 'joints.rod'? " +
              allowed_here},
         {"{drive: joints.square, to: 1, steps: 1}",
-         "drive: 'joints.square' is a perpendicular joint cannot be driven; allowed: the length of "
+         "drive: 'joints.square' is a perpendicular joint, which cannot be driven; allowed: the "
+         "length of "
          "a distance, the offset of an in_plane, the displacement of a translational, the angle of "
          "a revolute or cylindrical joint"},
         {"{drive: travel, load: push, to: 1, steps: 1}",
@@ -337,7 +338,7 @@ TEST(Limits, TooManyPositionsAreRefused) {
     EXPECT_EQ(complaint(chain(20, 500'000)), "none");
     EXPECT_EQ(complaint(chain(20, 500'001)),
               "rig.yaml:48: branches.up.steps: 500001 steps of 20 bodies are too many positions to "
-              "store; allowed:  steps500000");
+              "store; allowed: 500000 steps");
     EXPECT_EQ(complaint(chain(10'000, 1)), "none");
     EXPECT_EQ(complaint(chain(10'001, 1)),
               "rig.yaml:5: bodies: 10001 bodies; allowed: at most 10000");
@@ -381,8 +382,8 @@ TEST(Branch, ThatMovesNothingOfInterestIsRefused) {
               begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
     EXPECT_EQ(complaint(two_parts("{load: [lost, push], to: 1, steps: 1}")), "none");
     EXPECT_EQ(complaint(two_parts("{drive: springs.zero.preload, to: 1, steps: 1}")),
-              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is a spring of rate zero, on "
-              "which it has no effect");
+              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is of a spring of rate zero, "
+              "on which it has no effect");
 }
 
 TEST(Branch, LoadsThatNoneUsesAreNamed) {

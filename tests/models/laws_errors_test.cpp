@@ -34,7 +34,7 @@ std::string stops(const std::string& fields) {
 
 const std::string table = "table: [[-50, -900], [0, 0], [50, 1400]]";
 const std::string one_of_two = "allowed: one of the two";
-const std::string one_axis = "11: bushings.mount.frame: one axis is not enough, as ";
+const std::string one_axis = "11: bushings.mount.frame: one axis is not enough, because ";
 const std::string second = "; give a second one";
 
 const std::vector<Mistake> mistakes{
@@ -263,8 +263,8 @@ TEST(WrongSetting, OfATableSaysSo) {
 TEST(WrongDrive, OfWhatCannotBeDrivenSaysWhy) {
     const std::tuple<std::string, const char*, std::string> cases[] = {
         {curve(table), "springs.coil.preload",
-         "'springs.coil.preload' is the preload of a spring with a curve is not proportional to a "
-         "length; allowed: its free_length"},
+         "'springs.coil.preload' is the preload of a spring with a curve, which is not "
+         "proportional to a length; allowed: its free_length"},
         {bump("clearance: 5, rate: 5"), "springs.coil.bump_stop.free_length",
          "'springs.coil.bump_stop.free_length' cannot be driven, did you mean "
          "'springs.coil.free_length'? allowed: springs.coil.free_length, springs.coil.preload"},

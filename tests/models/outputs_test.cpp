@@ -156,7 +156,7 @@ TEST(Outputs, SayWhatIsWrong) {
           "{bodies: [hub, ground], from: top, to: top}}",
           "dampers.damper.to: the same position as `from`; a damper needs a length"},
          {"{bodies: [hub, ground], from: lower", "{bodies: [hub, hub], from: lower",
-          "both bodies are dampers.damper.bodies: 'hub'; two different bodies are needed"},
+          "dampers.damper.bodies: both bodies are 'hub'; two different bodies are needed"},
          {"[hub, ground], from: lower, to: top}}", "[hub, ground], from: lower, to: top, rate: 3}}",
           "dampers.damper: unknown field 'rate'; allowed: bodies, from, to"},
          {"{damper: {bodies", "{coil: {bodies",

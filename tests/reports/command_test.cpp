@@ -78,7 +78,7 @@ TEST(Command, InspectNamesWhatIsRedundantUnbalancedAndLeftOut) {
     const Said said = elastocheck_says("inspect " + scene);
     EXPECT_EQ(said.code, 0) << said.err;
     for (const char* part :
-         {"joint 'second': 5 of its rows repeat", "body 'idler': it hangs on one other body",
+         {"joint 'second': 5 of its rows repeat", "body 'idler': it is attached to one other body",
           "joint 'hanger': a body that it connects is left out", "out of balance by 40.82 N"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
 }

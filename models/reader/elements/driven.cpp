@@ -51,7 +51,8 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
             result.table[name] = entry;
         } else {
             result.not_driven[name] = fmt::format(
-                "a {} joint cannot be driven; allowed: the length of a distance, the offset of an "
+                "a {} joint, which cannot be driven; allowed: the length of a distance, the offset "
+                "of an "
                 "in_plane, the displacement of a translational, the angle of a revolute or "
                 "cylindrical joint",
                 type_of(joint.kind));
@@ -69,7 +70,7 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
     const double* rate = rate_of(law);
     if (rate != nullptr && *rate == 0) {
         for (const char* field : {".free_length", ".preload"})
-            result.not_driven[name + field] = "a spring of rate zero, on which it has no effect";
+            result.not_driven[name + field] = "of a spring of rate zero, on which it has no effect";
         return;
     }
     add(".free_length", ParameterUnit::metre, units.length, 1);
@@ -77,8 +78,8 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
         add(".preload", ParameterUnit::newton, units.force, 1 / *rate);
     else
         result.not_driven[name + ".preload"] =
-            "the preload of a spring with a curve is not proportional to a length; allowed: its "
-            "free_length";
+            "the preload of a spring with a curve, which is not proportional to a length; allowed: "
+            "its free_length";
 }
 
 // A torsion spring has a preload about its axis only.

@@ -308,13 +308,13 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
         {"two numbers", replaced(linkage, "QG = 10, 20, 30", "QG = 10, 20"),
          "2 numbers, expected 3"},
         {"an argument", replaced(linkage, "K = 12.5", "STIFFNESS = 12.5"),
-         "'STIFFNESS' is no argument"},
-        {"a flag", replaced(linkage, ", REVOLUTE", ", HINGE"), "'HINGE' is no flag"},
+         "'STIFFNESS' is not a known argument"},
+        {"a flag", replaced(linkage, ", REVOLUTE", ", HINGE"), "'HINGE' is not a known flag"},
         {"twice given", replaced(linkage, ", K = 12.5", ", K = 12.5, K = 1"), "K is given twice"},
-        {"two ids", replaced(linkage, ", I = 3", ", I = 3, 4"), "2 ids, where one"},
+        {"two ids", replaced(linkage, ", I = 3", ", I = 3, 4"), "2 ids, expected one"},
         {"no id", replaced(linkage, ", I = 3", ", I = 3.5"), "is not an id"},
         {"two kinds", replaced(linkage, ", REVOLUTE", ", REVOLUTE, SPHERICAL"),
-         "is REVOLUTE and SPHERICAL"},
+         "is both REVOLUTE and SPHERICAL"},
         {"no kind", replaced(linkage, ", REVOLUTE\n", ""), "has no type"},
         {"apart", replaced(linkage, "QP = -10, -20, -30", "QP = -10, -20, 0"),
          "I and J are apart by 30 mm"},
@@ -336,7 +336,7 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
          "is not larger than the value before"},
         {"no id", with("SPRINGDAMPER/, TRANS, I = 4, J = 5, K = 1"), "SPRINGDAMPER/: has no id"},
         {"an id twice", with("SPRINGDAMPER/1, TRANS, I = 4, J = 5, K = 1"),
-         "duplicate id, in line"},
+         "duplicate id, first in line"},
         {"in quotes", replaced(linkage, "K = 12.5", "K = '12.5'"), "is not a number"},
         {"half a table", with("SPLINE/1, X = 1, 2, Y = 1, 2, 3"), "2 X and 3 Y"},
     };
@@ -349,7 +349,8 @@ TEST(Adm, SaysWhatIsWrongAndWhere) {
               std::string::npos);
     EXPECT_NE(refusal(linkage, {"pivot", false, false}).find("is not on a moving part"),
               std::string::npos);
-    EXPECT_NE(refusal(linkage, {}, "model.txt").find("'.txt' is no ending"), std::string::npos);
+    EXPECT_NE(refusal(linkage, {}, "model.txt").find("'.txt' is not a supported file extension"),
+              std::string::npos);
 }
 
 // Nothing is dropped silently: an error with its line, or with --allow-missing a note in the head.
@@ -369,8 +370,8 @@ TEST(Adm, WhatASceneCannotSayIsAnErrorOrTold) {
         {"JOINT/2, SPHERICAL, I = 4, J = 6, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, "
          "MAXIMUM_DEFORMATION = 0.01\n"
          "MARKER/6, PART = 1, QP = 100, 0, 0",
-         "MU_DYN_ROT, MAX_FRIC_ROT, MAXIMUM_DEFORMATION: its friction holds"},
-        {"SPRINGDAMPER/2, TRANS, I = 4, J = 5, K = 3, KT = 4", "KT: given, but not used"},
+         "MU_DYN_ROT, MAX_FRIC_ROT, MAXIMUM_DEFORMATION: its friction also acts at rest"},
+        {"SPRINGDAMPER/2, TRANS, I = 4, J = 5, K = 3, KT = 4", "KT: not used in combination"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = STEP(TIME,0,0,1,5) + STEP(TIME,1,0,2,-5)",
          "changes with time, 0 to 5"},
         {"SFORCE/1, TRANS, I = 4, J = 5, FUNCTION = "
@@ -601,7 +602,7 @@ TEST(Adm, ASplineIsACurveAndIsToldHowFarFromAkimas) {
     const std::string yaml = scene_of(text);
     const auto described = importer::described(importer::import_text(text, "model.adm", {}).notes);
     EXPECT_TRUE(std::ranges::any_of(described, [](const std::string& line) {
-        return line.find("N apart (of 900), at ") != line.npos &&
+        return line.find(" N (of 900), at ") != line.npos &&
                line.find("SPLINE/4 the file has Akima's curve") != line.npos;
     })) << yaml;
     const Scene scene = parse_scene(yaml, "scene");
@@ -730,10 +731,9 @@ TEST(Adm, FrictionOfAJointIsLeftOutByName) {
     const std::string text = replaced(linkage, ", REVOLUTE\n",
                                       ", REVOLUTE, MU_DYN_ROT = 0.1, MAX_FRIC_ROT = 3, "
                                       "MAXIMUM_DEFORMATION = 0.01, INNER_RADIUS = 4\n");
-    EXPECT_NE(
-        refusal(text).find(
-            "MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its friction holds"),
-        std::string::npos);
+    EXPECT_NE(refusal(text).find("MU_DYN_ROT, MAX_FRIC_ROT, INNER_RADIUS, MAXIMUM_DEFORMATION: its "
+                                 "friction also acts at rest"),
+              std::string::npos);
     const auto described =
         importer::described(importer::import_text(text, "model.adm", {"", true, false}).notes);
     EXPECT_TRUE(std::ranges::any_of(described, [](const std::string& line) {

@@ -267,7 +267,7 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
 
     const std::string one_stop = with("\"Minimum Length\": 0.2");
     EXPECT_EQ(chrono_scene(one_stop).find("bump_stop"), std::string::npos);
-    says(one_stop, "Minimum Length: not used: Chrono makes stops where both");
+    says(one_stop, "Minimum Length: not used: Chrono has stops only if both");
 
     // At speed zero -30 N at 0.25 m and 70 N at 0.35 m.
     const std::string map =
@@ -283,7 +283,7 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
     says(double_wishbone("\"Tierod\":\n  {",
                          "\"Tierod\":\n  {\"Bushing Data\": {\"Stiffness Linear\": 7e7, "
                          "\"Stiffness Rotational\": 1},"),
-         "Tierod.Bushing Data: not used: Chrono makes a tie rod without Mass");
+         "Tierod.Bushing Data: not used: a tie rod without Mass");
 }
 
 // ChLinkRSDA: the torque on body 2 about the axis is P - k (angle - free).
@@ -424,7 +424,7 @@ TEST(Chrono, SaysWhatIsWrongAndWhere) {
         {"more", sound + "{}", "text after the end"},
         {"NaN", replaced(sound, "14.705", "NaN"), "expected a value"},
         {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"),
-         "'Vehicle' is no suspension"},
+         "'Vehicle' is not a suspension"},
         {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""),
          "did you mean 'DoubleWishbone'"},
         {"no spring", sample("generic__RigidPinnedAxle.json"), "the template has no spring"},
