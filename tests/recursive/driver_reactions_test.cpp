@@ -143,38 +143,6 @@ TEST(Driver, EveryKindByEveryMethodMeetsTheReactionsOfTheEquilibriumLeg) {
     }
 }
 
-// A body on a joint, a spring and a rod whose driven length is the only driver.
-TEST(Series, ReactionsOfADrivenLengthAreExact) {
-    for (const char* free : {"revolute, bodies: [b, ground], at: o, axis: x",
-                             "planar, bodies: [b, ground], at: o, normal: x"}) {
-        const Model whole = compile(parse_scene(fmt::format(R"(
-elastocheck: 1
-name: rod
-units: {{length: mm, angle: deg, force: N}}
-points: {{o: [0, 0, 0], e: [0, 100, 30], g: [0, 400, 0], s: [0, 120, 0], t: [0, 130, 300]}}
-bodies: {{b: {{origin: o}}}}
-joints:
-  t: {{type: {}}}
-  rod: {{type: distance, bodies: [b, ground], from: e, to: g}}
-bushings: {{k: {{bodies: [ground, b], at: o, rates: [0, 100, 100], rotational_rates: [0, 0, 0]}}}}
-springs: {{s: {{bodies: [b, ground], from: s, to: t, rate: 10, preload: 300}}}}
-branches: {{len: {{drive: joints.rod, to: 20, steps: 4}}}}
-probes: {{tip: {{on: b, at: e}}}}
-)",
-                                                            free),
-                                                "rod.yaml"));
-        const Branch& branch = whole.branches[0];
-        const Model model = on_branch(whole, branch);
-        std::vector<double> points;
-        for (int k = 0; k <= 4; ++k) points.push_back(branch.to * k / 4);
-        const auto truth = reference::equilibrium::solve(model, branch, points);
-        ASSERT_EQ(truth.outcome, Outcome::converged) << truth.detail;
-        const auto path = solve(model, branch, {.method = find_method("series").value()});
-        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        EXPECT_LE(apart(path.points, truth.points).most, 1e-8) << free;
-    }
-}
-
 // Against central differences of states with a slightly shorter and a slightly longer rod.
 TEST(Respond, ToALengthUnderLoadIsTheDerivativeOfItsBranch) {
     const Model whole = driven(kinds[3]);

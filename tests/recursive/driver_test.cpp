@@ -10,6 +10,7 @@
 #include "models/branch.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/singularity/branch_events.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
@@ -197,11 +198,6 @@ TEST(Driver, WhatIsHeldAtTheStartIsSettledBeforeTheBranch) {
 
 // ---- Regression scenes.
 
-Model found(const std::string& name) {
-    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" +
-                              name + ".yaml"));
-}
-
 TEST(Found, WhatEndsOrLosesItsStabilityIsSaidSoWhateverTheSteps) {
     for (const char* name :
          {"adaptive-segfault-arch", "adaptive-segfault-five-links", "arch-past-its-limit",
@@ -215,20 +211,6 @@ TEST(Found, WhatEndsOrLosesItsStabilityIsSaidSoWhateverTheSteps) {
                     << name << " " << method << " " << steps;
             }
         (void)solve(model, model.branches[0]);
-    }
-}
-
-TEST(Found, AdaptiveEndsAtTheLimitPointOfTheArch) {
-    Scene scene = support::scene("two_spring_arch");
-    scene.branches[0].to = -219.0436;
-    const Model model = compile(scene);
-    for (const double tolerance : {1e-4, 1e-5, 1e-7}) {
-        const auto path =
-            solve(model, model.branches[0], {.method = adaptive(tolerance), .steps = 100});
-        EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
-        ASSERT_FALSE(path.points.empty());
-        EXPECT_GT(path.points.back().load, -211.6);
-        EXPECT_LT(path.points.back().load, -208);
     }
 }
 
@@ -443,18 +425,6 @@ probes:
   tip: {on: two, at: C}
   far: {on: block, at: far}
 )");
-}
-
-TEST(Found, AnUnstableStretchIsSeenFromAnyStepsOfItsOwn) {
-    // A body on a vertical slide through a ring of springs that push it sideways off its axis:
-    // unstable near the ring. Adaptive takes the steps it needs, independent of the requested
-    // number of points.
-    const Model model = found("adaptive-segfault-arch");
-    for (const int points : {1, 5, 20, 60}) {
-        const auto path =
-            solve(model, model.branches[0], {.method = adaptive(1e-5), .steps = points});
-        EXPECT_NE(path.outcome, Outcome::converged) << points;
-    }
 }
 
 }  // namespace

@@ -135,30 +135,6 @@ TEST(Extremes, ASpringIsNotFollowedThroughALengthOfNothing) {
             << method.name;
 }
 
-// A moment rotates a bar on a torsion spring: θ = M / k, up to half a turn, the limit of the
-// rotation vector.
-TEST(Extremes, ABushingIsNotFollowedThroughHalfATurn) {
-    for (const double to : {300., 320.}) {
-        const Model model = compile(parse_scene(
-            fmt::format(
-                "elastocheck: 1\nname: bar\nunits: {{length: m, angle: rad, force: N, moment: "
-                "N·m}}\n"
-                "points: {{foot: [0, 0, 0], head: [0, 0, 0.5]}}\nbodies: {{bar: {{origin: "
-                "head}}}}\n"
-                "joints: {{foot: {{type: revolute, bodies: [bar, ground], at: foot, axis: y}}}}\n"
-                "torsion_springs: {{foot: {{bodies: [bar, ground], at: foot, axis: y, rate: "
-                "100}}}}\n"
-                "loads: {{twist: {{on: bar, moment: [0, 1, 0]}}}}\n"
-                "branches: {{twist: {{load: twist, to: {}, steps: 20}}}}\nprobes: {{head: {{on: "
-                "bar, "
-                "at: head}}}}\n",
-                to),
-            "bar"));
-        const auto path = solve(model, model.branches[0], {.method = *find_method("series")});
-        EXPECT_EQ(path.outcome == Outcome::converged, to < 314) << to << path.detail;
-    }
-}
-
 // A row without moving bodies forms a loop of its own.
 TEST(Extremes, ALinkBetweenWhatIsFixedIsHeldAtItsLengthAndAtNoOther) {
     const Model model = compile(parse_scene(R"(

@@ -7,15 +7,12 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "recursive/series/path.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
 namespace {
 
-Model found(const std::string& name) {
-    return compile(read_scene(
-        fmt::format("{}/../../tests/recursive/found/{}.yaml", ELASTOCHECK_SCENES, name)));
-}
 Method named(const char* name) { return find_method(name).value(); }
 
 // Without its stop the arch has a limit point at 204 N; the stop closes a fraction of a newton

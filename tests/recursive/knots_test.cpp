@@ -213,16 +213,6 @@ TEST(Knots, AreNoMatterOnTheWayToTheSettledState) {
     }
 }
 
-TEST(Knots, OfAnOpenStopLeaveNothingIdle) {
-    Model model = with_stop.model();
-    EXPECT_TRUE(diagnose(model).idle.empty());
-    // the stop alone: the arm rotates freely, an idle mode
-    model.elastics.erase(model.elastics.begin());
-    EXPECT_EQ(diagnose(model).idle.size(), 1u);
-    const auto path = solve(model, model.branches[0], {.method = rung("tangent"), .steps = 10});
-    EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode);
-}
-
 TEST(Knots, WhereThePathTurnsBackEndIt) {
     // Beyond 20 mm the curve falls more steeply than the spring rises: the load has its maximum
     // there.

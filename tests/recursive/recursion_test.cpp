@@ -210,69 +210,6 @@ TEST(Recursion, UnbalancedDesignPositionSettlesAtLoadFactorZero) {
     EXPECT_EQ(path.counts.factorisations, 21);
 }
 
-// ---- Reactions
-
-TEST(JointWrench, OfASupportedLeverFollowsFromStatics) {
-    // A bar hinged at a about y, supported at b by a vertical distance rod, loaded at c by 90 N up:
-    // with arms 1 and 3 the rod pulls down with 270 and the hinge pushes up with 180.
-    const std::string text =
-        "elastocheck: 1\nname: lever\nunits: {length: m, angle: rad, force: N}\n"
-        "points: {a: [0, 0, 0], b: [1, 0, 0], c: [3, 0, 0], foot: [1, 0, -2]}\n"
-        "bodies: {bar: {origin: c}}\n"
-        "joints:\n  hinge: {type: revolute, bodies: [BODIES], at: a, axis: y}\n"
-        "  rod: {type: distance, bodies: [bar, ground], from: b, to: foot}\n"
-        "loads: {up: {on: bar, at: c, force: [0, 0, 1]}}\n"
-        "branches: {up: {load: up, to: 90, steps: 3}}\nprobes: {tip: {on: bar, at: c}}\n";
-    for (const auto& [bodies, sign] :
-         {std::pair{"bar, ground", 1.0}, std::pair{"ground, bar", -1.0}}) {
-        std::string scene = text;
-        scene.replace(scene.find("BODIES"), 6, bodies);
-        const Model model = compile(parse_scene(scene, "lever"));
-        const auto path = solve(model, model.branches[0]);
-        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        const auto& end = path.points.back();
-        EXPECT_LE((end.reactions[0].force - sign * Vector3d(0, 0, 180)).norm(), 1e-9);
-        EXPECT_LE(end.reactions[0].moment.norm(), 1e-9);
-        EXPECT_LE((end.reactions[1].force - Vector3d(0, 0, -270)).norm(), 1e-9);
-        const auto left = residuals(model, model.branches[0], end);
-        EXPECT_LE(std::max(left.force, left.moment), 1e-9);
-    }
-}
-
-// ---- Invariance
-
-TEST(Invariance, FrameBodyAxesOrderAndSideDoNotMatter) {
-    const Eigen::Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
-    const Eigen::Quaterniond Q(Eigen::AngleAxisd(-1, Vector3d(0.2, 1, 3).normalized()));
-    const Vector3d t(3, -2, 1);
-    const Eigen::DiagonalMatrix<double, 3> S(1, -1, 1);
-    for (const auto& name : support::small_scene_names()) {
-        const Scene scene = support::scene(name);
-        const auto drawn = one_ways(compile(scene)),
-                   moved = one_ways(compile(support::moved(scene, R, t))),
-                   axes = one_ways(compile(support::with_body_axes(scene, {R, Q}))),
-                   mirrored = one_ways(compile(support::mirrored(scene))),
-                   reversed = one_ways(compile(support::reversed(scene)));
-        for (std::size_t b = 0; b < drawn.size(); ++b) {
-            const auto point = [&](const std::vector<OneWay>& transformed) {
-                const auto& [model, branch] = transformed[b];
-                const auto path = solve(model, branch, {.steps = 50});
-                EXPECT_EQ(path.outcome, Outcome::converged) << name << " " << path.detail;
-                return leading_point(model, path.points.at(25));  // a full turn ends where it began
-            };
-            const auto& [model, branch] = drawn[b];
-            const Vector3d p = point(drawn);
-            const double bound =
-                1e-9 *
-                (p - leading_point(model, solve(model, branch, {.steps = 1}).points[0])).norm();
-            EXPECT_LE((point(moved) - (R * p + t)).norm(), bound) << name << ": moved";
-            EXPECT_LE((point(axes) - p).norm(), bound) << name << ": body axes";
-            EXPECT_LE((point(mirrored) - S * p).norm(), bound) << name << ": mirrored";
-            EXPECT_LE((point(reversed) - p).norm(), bound) << name << ": reversed";
-        }
-    }
-}
-
 // ---- One test per outcome
 
 // A bar from a to b with two more points; joints, elements and loads to be added.
@@ -296,43 +233,6 @@ void expect_of_every_method(const Model& model, std::initializer_list<Outcome> e
             << method.name << ": " << name(path.outcome) << " " << path.detail;
         EXPECT_NE(path.detail.find(words), std::string::npos) << method.name << path.detail;
     }
-}
-
-TEST(Outcome, LoadedIdleModeIsAnErrorThatNamesTheMode) {
-    const Model model =
-        bar("bodies: {bar: {origin: a}}\n"
-            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
-            "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
-            "loads: {load: {on: bar, at: c, force: [1, 0, 0.001]}}\n");
-    const auto path = solve(model, model.branches[0]);
-    EXPECT_EQ(path.outcome, Outcome::loaded_idle_mode);
-    EXPECT_NE(path.detail.find("bar: rotation"), std::string::npos) << path.detail;
-    EXPECT_EQ(path.points.size(), 1u);
-}
-
-TEST(Outcome, APreloadOnAnIdleModeIsAnErrorOfEveryMethod) {
-    // The bushing has no rate about the guide. It has a moment as drawn, or by the branch alone.
-    const Model model =
-        bar("bodies: {bar: {origin: a}}\n"
-            "joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n"
-            "bushings: {k: {bodies: [bar, ground], at: a, rates: [1000, 1000, 1000], "
-            "rotational_rates: [0, 10, 10]}}\n"
-            "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n");
-    Model preloaded = model;
-    std::get<Bushing>(preloaded.elastics.at(0).kind).preload[3] = 5;
-    ASSERT_EQ(diagnose(preloaded).idle.size(), 1u);
-    expect_of_every_method(preloaded, {Outcome::loaded_idle_mode});
-
-    const auto driven = [&](int about) {
-        Model result = model;
-        result.branches[0].drivers.push_back(
-            {elastocheck::Preload{0, elastocheck::Vector6::Unit(about)}, 0, 0.01});
-        return result;
-    };
-    ASSERT_EQ(diagnose(model).idle.size(), 1u);
-    expect_of_every_method(driven(3), {Outcome::loaded_idle_mode}, "bar: rotation");
-    // A moment about another axis is carried by the guide.
-    expect_of_every_method(driven(4), {Outcome::converged});
 }
 
 TEST(Outcome, APreloadThatTurnsOntoAnIdleModeIsAnErrorOfEveryMethod) {
@@ -426,21 +326,6 @@ TEST(Outcome, ForcesWithoutEnergyOnAnIdleModeAreAnErrorOfEveryMethod) {
     }
 }
 
-TEST(Outcome, IdleModeWithoutLoadIsHeldAndChangesNothing) {
-    const std::string rest =
-        "bodies: {bar: {origin: a}}\n"
-        "springs: {s: {bodies: [bar, ground], from: a, to: b, rate: 1000}}\n"
-        "loads: {load: {on: bar, at: b, force: [1, 0, 0]}}\n";
-    const Model idle =
-        bar("joints: {guide: {type: cylindrical, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
-    const Model held = bar(
-        "joints: {guide: {type: translational, bodies: [bar, ground], at: a, axis: x}}\n" + rest);
-    const auto a = solve(idle, idle.branches[0]), b = solve(held, held.branches[0]);
-    ASSERT_EQ(a.outcome, Outcome::converged) << a.detail;
-    EXPECT_LE((a.points.back().poses[0].r - b.points.back().poses[0].r).norm(), 1e-14);
-    EXPECT_LE(a.points.back().poses[0].p.angularDistance(b.points.back().poses[0].p), 1e-14);
-}
-
 TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
     // A block on a free slide, connected to a cart by a spring across the slide. When the cart
     // moves along the slide, the spring pulls the block along; at the design position it does not.
@@ -462,40 +347,6 @@ TEST(Outcome, IdleModeThatBecomesStiffIsNotHeldQuietly) {
     EXPECT_NE(path.detail.find("no longer is"), std::string::npos) << path.detail;
 }
 
-TEST(Outcome, RedundantButConsistentConstraintsGiveTheRightMotion) {
-    const std::string rest =
-        "bodies: {bar: {origin: a}}\n"
-        "bushings: {k: {bodies: [bar, ground], at: c, rates: [1e4, 1e4, 1e4]}}\n"
-        "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n";
-    const std::string hinge_1 =
-        "joints:\n  hinge_1: {type: revolute, bodies: [bar, ground], at: a, axis: x}\n";
-    const Model once = bar(hinge_1 + rest);
-    const Model twice = bar(
-        hinge_1 + "  hinge_2: {type: revolute, bodies: [bar, ground], at: b, axis: x}\n" + rest);
-    const auto a = solve(once, once.branches[0]), b = solve(twice, twice.branches[0]);
-    ASSERT_EQ(b.outcome, Outcome::converged) << b.detail;
-    EXPECT_LE(a.points.back().poses[0].p.angularDistance(b.points.back().poses[0].p), 1e-13);
-    EXPECT_GT(a.points.back().poses[0].p.angularDistance(Eigen::Quaterniond::Identity()), 1e-3);
-}
-
-TEST(Outcome, JointsThatCannotBeClosedAreInconsistent) {
-    // Two collinear hinges, and a rod from the bar to ground that is too long for the bar.
-    const Model model =
-        bar("bodies: {bar: {origin: a}}\n"
-            "joints:\n  hinge: {type: revolute, bodies: [bar, ground], at: a, axis: y}\n"
-            "  rod: {type: distance, bodies: [bar, ground], from: b, to: d}\n"
-            "loads: {load: {on: bar, at: c, force: [0, 0, 1]}}\n");
-    for (const auto& method : methods) {
-        Model longer = model;
-        std::get<DistanceBetween>(longer.constraints.back().kind).length = 5;
-        const auto path = solve(longer, longer.branches[0], {.method = method});
-        if (method.name == "series") continue;
-        EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints)
-            << method.name << ": " << path.detail;
-        EXPECT_TRUE(path.points.empty());
-    }
-}
-
 TEST(Outcome, TheModelMustStandOnTheBranch) {
     const Model model = compile(support::scene("chrono_mcpherson"));
     Branch branch = model.branches[0];
@@ -507,19 +358,6 @@ TEST(Outcome, TheModelMustStandOnTheBranch) {
         branch.drivers = {{what, 0, 1}};
         EXPECT_THROW(solve(model, branch), std::invalid_argument);
     }
-}
-
-TEST(Outcome, NaNInTheModelIsNeverConverged) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    Scene scene = support::scene("chrono_mcpherson");
-    std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind).f.y() = nan;
-    EXPECT_NE(solve(compile(scene), compile(scene).branches[0]).outcome, Outcome::converged);
-    scene = support::scene("chrono_mcpherson");
-    std::get<LinearStiffness>(std::get<Bushing>(scene.elastics[1].kind).law).K(2, 2) = nan;
-    EXPECT_NE(solve(compile(scene), compile(scene).branches[0]).outcome, Outcome::converged);
-    scene = support::scene("chrono_mcpherson");
-    scene.branches[0].to = nan;
-    EXPECT_EQ(solve(compile(scene), compile(scene).branches[0]).outcome, Outcome::not_finite);
 }
 
 TEST(Outcome, RecursionLosesItsStabilityWhereStoredForcesOutweighStiffness) {

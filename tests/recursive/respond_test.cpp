@@ -39,11 +39,6 @@ VectorXd one(const OneWay& way, const Equilibrium& state, const Disturbance& dis
     return response.increments.size() == 1 ? stacked(response.increments[0])
                                            : VectorXd::Constant(6, std::nan(""));
 }
-BodyId body_named(const Model& model, const std::string& name) {
-    for (std::size_t b = 0; b < model.bodies.size(); ++b)
-        if (model.bodies[b].name == name) return static_cast<BodyId>(b);
-    throw std::logic_error("no body " + name);
-}
 // The paper's first step is the response of K to the load, for any size of the load.
 TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
@@ -135,25 +130,6 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
 }
 
 // ---- Idle modes, redundant joints, invalid input.
-
-TEST(Respond, WhatPushesAnIdleModeIsRefusedAndTheModeNamed) {
-    const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
-    const Equilibrium state = end_of(way.model, way.branch);
-    const BodyId strut = body_named(way.model, "strut");
-    const Vector3d axis = state.poses[static_cast<std::size_t>(strut)].p * Vector3d::UnitZ();
-    for (const Method& method : methods) {
-        const Disturbance twist = UnitWrench{{strut, Vector3d::Zero()}, Vector3d::Zero(), axis};
-        const Response response =
-            linear_response(way.model, way.branch, state, {&twist, 1}, method);
-        EXPECT_EQ(response.outcome, Outcome::loaded_idle_mode) << method.name;
-        EXPECT_TRUE(response.increments.empty());
-        EXPECT_NE(
-            response.detail.find("a wrench on 'strut' acts on a motion that no joint or element "
-                                 "resists at the design position: strut: rotation about"),
-            std::string::npos)
-            << response.detail;
-    }
-}
 
 TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);

@@ -10,31 +10,20 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
-#include "models/branch.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/path.hpp"
 #include "tests/recursive/random.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive::series {
 namespace {
 
-struct Walked {
-    Model model;  // active on the branch
-    Branch branch;
-};
-Walked walked(const Scene& scene, const Branch& branch) {
-    Scene with = scene;
-    with.branches = {branch};
-    const Model model = compile(with);
-    return {on_branch(model, model.branches[0]), model.branches[0]};
-}
-
 // Newton's method with dense factors from `start`; minimum-norm steps along idle modes.
-Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
+Equilibrium newton(const OneWay& w, double a, const std::vector<Pose>& start) {
     const int n = coordinates(w.model), m = constraint_rows(w.model);
     const Inputs<double> inputs = inputs_at<double>(w.model, w.branch, a);
     State<double> q = state_of<double>(start);
@@ -66,18 +55,6 @@ Equilibrium newton(const Walked& w, double a, const std::vector<Pose>& start) {
     return point;
 }
 
-// Largest distance of origins, and of points 0.1 m beside them [m]; for bodies with idle rotation
-// origins only.
-double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
-    std::vector<bool> idle(model.bodies.size(), false);
-    for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
-    double worst = 0;
-    for (std::size_t body = 0; body < idle.size(); ++body)
-        worst = std::max({worst, (a.poses[body].r - b.poses[body].r).norm(),
-                          idle[body] ? 0 : 0.1 * a.poses[body].p.angularDistance(b.poses[body].p)});
-    return worst;
-}
-
 Scene mcpherson_on_a_jack(Branch& branch) {
     Scene scene = support::scene("chrono_mcpherson");
     const Wheel& wheel = scene.wheels[0];
@@ -95,63 +72,6 @@ Scene mcpherson_on_a_jack(Branch& branch) {
     branch.steps = 100;
     branch.drivers = {{Motion{static_cast<int>(scene.joints.size()) - 1}, 0, 1}};
     return scene;
-}
-
-TEST(SeriesDrivers, TravelCoversJounceAndReboundOfTheMcPherson) {
-    for (const double to : {0.11, -0.11}) {
-        Branch branch;
-        branch.to = to;
-        const Walked w = walked(mcpherson_on_a_jack(branch), branch);
-        const Path path = follow(w.model, w.branch);
-        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        const auto sampled = sample(w.model, path, w.branch, 40);
-        ASSERT_EQ(sampled.points.size(), 41u);
-        double worst = 0, open = 0;
-        std::vector<Pose> from = sampled.points[0].poses;
-        for (const auto& point : sampled.points) {
-            const Equilibrium exact = newton(w, point.load, from);
-            worst = std::max(worst, apart(w.model, point, exact));
-            open = std::max(open, point.constraint_error);
-            from = exact.poses;
-            // ... and the jack carries the load that holds the wheel there.
-            const Wrench& jack = point.reactions.back();
-            EXPECT_LE((jack.force - exact.reactions.back().force).norm(), 1e-6);
-        }
-        EXPECT_LE(worst, 1e-12) << to;  // 1e-9 mm
-        EXPECT_LE(open, 1e-12) << to;
-        // The jack holds the wheel centre.
-        const Wheel& wheel = w.model.wheels[0];
-        const auto height = [&](const Equilibrium& point) {
-            const Pose& pose = point.poses[static_cast<std::size_t>(wheel.body)];
-            return (pose.r + pose.p * wheel.centre_local).z();
-        };
-        for (const auto& point : sampled.points)
-            EXPECT_NEAR(height(point) - height(sampled.points[0]), point.load, 1e-12);
-    }
-}
-
-TEST(SeriesDrivers, TravelAndLoadMeetAtTheSameStates) {
-    Branch branch;
-    branch.to = 0.08;
-    const Walked jack = walked(mcpherson_on_a_jack(branch), branch);
-    const Path by_travel = follow(jack.model, jack.branch);
-    ASSERT_EQ(by_travel.outcome, Outcome::converged) << by_travel.detail;
-    const Model loaded = compile(support::scene("chrono_mcpherson"));
-    const Path by_load = follow(loaded, loaded.branches[0]);
-    double force = 0, work = 0, before = 0;
-    const auto sampled = sample(jack.model, by_travel, jack.branch, 200);
-    for (const auto& point : sampled.points) {
-        const double next = point.reactions.back().force.z();
-        if (point.load > 0) work += (force + next) / 2 * (point.load - before);
-        force = next;
-        before = point.load;
-        const auto place = find(by_load, force);
-        if (!place) continue;  // below zero by rounding
-        EXPECT_LE(apart(loaded, point, evaluate(loaded, loaded.branches[0], by_load, *place)), 1e-9)
-            << point.load;
-    }
-    EXPECT_GT(force, 500);
-    EXPECT_GT(work, 0);
 }
 
 // ---- Mechanisms without elasticity against exact geometry.
@@ -192,7 +112,7 @@ TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
         {"slide", InPlane{{1, {l, 0, 0}}, {ground, O}, {ground, Eigen::Vector3d::UnitY()}, 0}},
         crank_drive(0)};
     scene.probes = {{"slider", {1, {l, 0, 0}}}};
-    const Walked w = walked(scene, full_turn(3));
+    const OneWay w = walked(scene, full_turn(3));
     ASSERT_EQ(w.model.bodies.size(), 2u);
     const Path path = follow(w.model, w.branch, {.tolerance = 1e-14});
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -207,78 +127,6 @@ TEST(SeriesDrivers, SliderCrankGoesAFullTurn) {
         worst = std::max(worst, (slider - Eigen::Vector3d(x, 0, 0)).norm() / x);
     }
     EXPECT_LE(worst, 1e-12);
-}
-
-TEST(SeriesDrivers, FourBarGoesAFullTurn) {
-    const double crank = 0.1, coupler = 0.3, rocker = 0.25,
-                 base = 0.28;  // Grashof: the crank turns
-    // Intersection of coupler and rocker, always on the same side of the diagonal.
-    const auto joint = [&](double angle) {
-        const Eigen::Vector2d A(crank * std::cos(angle), crank * std::sin(angle)), D(base, 0);
-        const Eigen::Vector2d d = D - A;
-        const double along =
-            (d.squaredNorm() + coupler * coupler - rocker * rocker) / (2 * d.norm());
-        const double across = std::sqrt(coupler * coupler - along * along);
-        const Eigen::Vector2d u = d.normalized(),
-                              C = A + along * u + across * Eigen::Vector2d(-u.y(), u.x());
-        return Eigen::Vector3d(C.x(), C.y(), 0);
-    };
-    const Eigen::Vector3d O(0, 0, 0), A(crank, 0, 0), C = joint(0), D(base, 0, 0);
-    Scene scene;
-    scene.bodies = {bar("crank", O, A), bar("coupler", A, C), bar("rocker", D, C)};
-    scene.joints = {hinge("O", 0, O, ground, O),
-                    hinge("A", 0, A, 1, O),
-                    hinge("D", 2, O, ground, D),
-                    {"C", InLine{{1, {coupler, 0, 0}}, {2, {rocker, 0, 0}}, z_of(2)}},
-                    crank_drive(0)};
-    scene.probes = {{"C", {1, {coupler, 0, 0}}}};
-    const Walked w = walked(scene, full_turn(4));
-    ASSERT_EQ(w.model.bodies.size(), 3u);
-    const Path path = follow(w.model, w.branch, {.tolerance = 1e-14});
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    double worst = 0;
-    const auto sampled = sample(w.model, path, w.branch, 360);
-    ASSERT_EQ(sampled.points.size(), 361u);
-    for (const auto& point : sampled.points) {
-        const Eigen::Vector3d at =
-            point.poses[1].r + point.poses[1].p * Eigen::Vector3d(coupler, 0, 0);
-        worst = std::max(worst, (at - joint(point.load)).norm() / coupler);
-    }
-    EXPECT_LE(worst, 1e-12);
-}
-
-TEST(SeriesDrivers, TheArchIsPushedThroughBothOfItsLimitPoints) {
-    Scene scene = support::scene("two_spring_arch");
-    const double b = 0.3, h = 0.08, k = 100e3, l_0 = std::hypot(b, h);
-    const Eigen::Vector3d apex = scene.bodies[0].design.r;
-    scene.joints.push_back(
-        {"jack",
-         InPlane{
-             {0, Eigen::Vector3d::Zero()}, {ground, apex}, {ground, Eigen::Vector3d::UnitZ()}, 0},
-         true});
-    Branch branch;
-    branch.name = "push";
-    branch.to = -2.2 * h;
-    branch.steps = 100;
-    branch.unit = ParameterUnit::metre;
-    branch.drivers = {{Motion{static_cast<int>(scene.joints.size()) - 1}, 0, 1}};
-    const Walked w = walked(scene, branch);
-    const Path path = follow(w.model, w.branch);
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    EXPECT_TRUE(path.limits.empty());
-    const auto sampled = sample(w.model, path, w.branch, 100);
-    ASSERT_EQ(sampled.points.size(), 101u);
-    double least = 0, most = 0;
-    for (const auto& point : sampled.points) {
-        const double z = point.poses[0].r.z() - apex.z() + h, l = std::hypot(b, z);
-        EXPECT_NEAR(z, h + point.load, 1e-12);
-        const double force = point.reactions.back().force.z();
-        EXPECT_NEAR(force, 2 * k * (l - l_0) * z / l, 2e-7);  // the tolerance of 1e-12 m times 2 k
-        least = std::min(least, force);
-        most = std::max(most, force);
-    }
-    EXPECT_LT(least, -200);  // beyond the limit load
-    EXPECT_GT(most, 200);
 }
 
 // ---- Start values.
@@ -303,7 +151,7 @@ TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
         {Load{"brake", DeadForce{{scene.wheels[0].body, scene.wheels[0].contact_local},
                                  Eigen::Vector3d(-1, 0, 0)}},
          800, 1e4});
-    const Walked w = walked(scene, branch);
+    const OneWay w = walked(scene, branch);
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
     const auto sampled = sample(w.model, path, w.branch, 20);
@@ -314,47 +162,7 @@ TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
     EXPECT_LE(worst, 1e-12);
 }
 
-TEST(SeriesDrivers, ARodOfAnotherLengthThanDrawnIsClosedFirst) {
-    for (const double longer : {-0.03, 0.02}) {
-        Scene scene = support::scene("chrono_mcpherson");
-        for (auto& joint : scene.joints)
-            if (auto* rod = std::get_if<Distance>(&joint.kind)) rod->length += longer;
-        const Walked w = walked(scene, scene.branches[0]);
-        const Path path = follow(w.model, w.branch);
-        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        const auto sampled = sample(w.model, path, w.branch, 20);
-        ASSERT_EQ(sampled.points.size(), 21u);
-        for (const auto& point : sampled.points) {
-            EXPECT_LE(apart(w.model, point, newton(w, point.load, point.poses)), 1e-12) << longer;
-            EXPECT_LE(point.constraint_error, 1e-12);
-        }
-    }
-}
-
 // ---- Regression scenes: the result is right, or the outcome is a failure.
-
-Model found(const std::string& name) {
-    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" +
-                              name + ".yaml"));
-}
-
-TEST(SeriesFound, AStraightColumnIsNotFollowedPastItsBucklingLoad) {
-    for (const char* name : {"straight-column-one-body", "straight-column-two-bodies"}) {
-        const Model model = found(name);
-        const Path path = follow(model, model.branches[0]);
-        EXPECT_EQ(path.outcome, Outcome::bifurcation_point) << name << " " << path.detail;
-        // Below that load the branch converges.
-        Branch below = model.branches[0];
-        below.to /= 10;
-        EXPECT_EQ(follow(model, below).outcome, Outcome::converged) << name;
-    }
-}
-
-TEST(SeriesFound, TheArchEndsAtItsLimitPoint) {
-    const Model model = found("arch-past-its-limit");
-    const Path path = follow(model, model.branches[0]);
-    EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
-}
 
 TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
     for (const char* name : {"adaptive-segfault-arch", "adaptive-segfault-five-links"}) {
@@ -362,7 +170,7 @@ TEST(SeriesFound, WhatConvergesIsAnEquilibriumOfTheSameBranch) {
         for (const auto& branch : model.branches) {
             const Path path = follow(model, branch);
             EXPECT_FALSE(path.outcome != Outcome::converged && path.detail.empty());
-            const Walked w{model, branch};
+            const OneWay w{model, branch};
             const auto sampled = sample(model, path, branch, 20);
             for (const auto& point : sampled.points)
                 EXPECT_LE(apart(model, point, newton(w, point.load, point.poses)), 1e-11)

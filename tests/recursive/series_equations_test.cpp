@@ -120,38 +120,6 @@ TEST(SeriesEquations, HoldForEveryConstraintBetweenAnyBodies) {
         }
 }
 
-TEST(SeriesEquations, HoldForASpringBetweenAnyBodies) {
-    Random random;
-    for (const auto& [i, j] : sides)
-        for (int trial = 0; trial < 20; ++trial) {
-            Case c = anywhere(random);
-            const AxialSpring e{
-                {i, random.vector()}, {j, random.vector()}, LinearRate{3e4}, random(0.1, 3)};
-            // The force is not analytic near coincident ends.
-            if ((c.q[i].r + c.q[i].lever(e.i.s_local) - c.q[j].r - c.q[j].lever(e.j.s_local))
-                    .norm() < 1)
-                continue;
-            c.model.elastics.push_back({"spring", e});
-            expect_same(c, random, fmt::format("spring between {} and {}", i, j));
-        }
-}
-
-TEST(SeriesEquations, HoldForAnyBushingBetweenAnyBodiesAtAnyAngle) {
-    // Rates that couple, different about every axis, with preload.
-    Random random;
-    for (const auto& [i, j] : sides)
-        for (const double angle : {0.0, 1e-9, 1e-4, 0.04, 0.3, 1.0, 2.0}) {
-            Case c = anywhere(random);
-            Bushing e{marker(i, random), marker(j, random), LinearStiffness{random.stiffness()},
-                      Vector6<double>::Zero()};
-            e.preload = Vector6<double>::NullaryExpr([&] { return random(-500, 500); });
-            const Eigen::Quaterniond turn = exponential<double>(angle * random.unit());
-            e.j.A_local = c.q[j].p.conjugate() * c.q[i].p * e.i.A_local * turn;
-            c.model.elastics.push_back({"bushing", e});
-            expect_same(c, random, fmt::format("bushing between {} and {} at {} rad", i, j, angle));
-        }
-}
-
 TEST(SeriesEquations, HoldForABushingWithoutMoments) {
     Random random;
     for (const auto& [i, j] : sides) {
@@ -223,7 +191,8 @@ TEST(SeriesEquations, HoldForEveryFormulationOfABushing) {
                     if (!conjugate && frame != Frame::on_i) continue;
                     ++formulations;
                     for (const auto& [i, j] : sides)
-                        for (const double angle : {0.0, 1e-6, 0.3, 0.9}) {
+                        for (const double angle : {0.0, 1e-9, 1e-4, 0.04, 0.3, 0.9, 2.0}) {
+                            if (angle > 1 && angles != Angles::rotation_vector) continue;
                             Case c = anywhere(random);
                             Bushing e = any_bushing(i, j, angle, c.q, random);
                             e.formulation = {frame, angles, conjugate, offset_moment};

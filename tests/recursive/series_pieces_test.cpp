@@ -6,24 +6,14 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
-#include "models/branch.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/series/pieces.hpp"
 #include "tests/recursive/random.hpp"
+#include "tests/recursive/walks.hpp"
 
 namespace elastocheck::recursive::series {
 namespace {
 
-struct Walked {
-    Model model;  // active on the branch
-    Branch branch;
-};
-Walked walked(const Scene& scene, const Branch& branch) {
-    Scene with = scene;
-    with.branches = {branch};
-    const Model model = compile(with);
-    return {on_branch(model, model.branches[0]), model.branches[0]};
-}
 Branch loaded(double to, std::vector<Driver> drivers) {
     Branch branch;
     branch.name = "load";
@@ -98,7 +88,7 @@ Curve rising() {
 
 TEST(SeriesPieces, ABodyOnACurveMovesByItsInverse) {
     for (const double to : {6000.0, -4000.0}) {
-        const Walked w =
+        const OneWay w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(to, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -116,7 +106,7 @@ TEST(SeriesPieces, ABodyOnACurveMovesByItsInverse) {
 }
 
 TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
-    const Walked w =
+    const OneWay w =
         walked(on_the_x_axis({along_x("spring", rising())}), loaded(6000, {push(0, 1)}));
     const Path path = follow(w.model, w.branch);
     std::vector<double> met;
@@ -129,29 +119,10 @@ TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
     EXPECT_NEAR(met[2], 0.04, 1e-15);
 }
 
-TEST(SeriesPieces, AStopThatClosesTakesItsShareFromThere) {
-    const double k = 20e3, c = 0.03, K = 300e3;
-    const Walked w =
-        walked(on_the_x_axis({along_x("spring", LinearRate{k}), along_x("stop", stop(c, K))}),
-               loaded(2000, {push(0, 1)}));
-    const Path path = follow(w.model, w.branch);
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    EXPECT_EQ(path.expansions.size(), 2u);
-    const auto sampled = sample(w.model, path, w.branch, 200);
-    ASSERT_EQ(sampled.points.size(), 201u);
-    for (const auto& point : sampled.points) {
-        const double F = point.load, x = F <= k * c ? F / k : c + (F - k * c) / (k + K);
-        EXPECT_NEAR(moved(point), x, 1e-15) << F;
-    }
-    const double contact = K * (moved(sampled.points.back()) - c),
-                 by_hand = K * (2000 - k * c) / (k + K);
-    EXPECT_NEAR(contact / by_hand, 1, 1e-12);
-}
-
 TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
     // ... two knots at the same place within rounding.
     for (const double apart : {-1e-17, 0.0, 1e-17, 1e-15, 1e-12, 1e-9}) {
-        const Walked w = walked(
+        const OneWay w = walked(
             on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("left", stop(0.03, 1e5)),
                            along_x("right", stop(0.03 + apart, 2e5))}),
             loaded(2000, {push(0, 1)}));
@@ -170,7 +141,7 @@ TEST(SeriesPieces, FromAKnotTheMotionGoesIntoItsOwnPiece) {
     for (const double drawn : {0.0, 1e-17, -1e-17, 1e-16, -1e-16})
         for (const double to : {500.0, -500.0})
             for (const bool arc : {false, true}) {
-                const Walked w = walked(on_the_x_axis({along_x("spring", bent(10e3, 40e3), drawn)}),
+                const OneWay w = walked(on_the_x_axis({along_x("spring", bent(10e3, 40e3), drawn)}),
                                         loaded(to, {push(0, 1)}));
                 const Path path = follow(w.model, w.branch, {.arc_length = arc});
                 ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -198,7 +169,7 @@ TEST(SeriesPieces, ManyKnotsAtTheStartAgreeOnTheirPieces) {
             scene.elastics.push_back({"leg", Bushing{{ground, at, axes}, {0, at, axes}, law}});
         }
         scene.probes = {{"block", {0, Eigen::Vector3d::Zero()}}};
-        const Walked w = walked(
+        const OneWay w = walked(
             scene,
             loaded(100, {{Load{"f", DeadForce{{0, random.vector(0.1)}, random.unit()}}, 0, 1}}));
         const Path path = follow(w.model, w.branch);
@@ -245,7 +216,7 @@ TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
                               1e-12, -1e-12, 1e-10, -1e-10, 1e-6, -1e-6}) {
         const Curve f = bent(200e3, 4e3);
         const double free_length = h + deep;
-        const Walked w = walked(beside_the_rail(h, f, free_length, -0.06), jacked(0.12));
+        const OneWay w = walked(beside_the_rail(h, f, free_length, -0.06), jacked(0.12));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << deep << path.detail;
         int knots = 0;
@@ -265,7 +236,7 @@ TEST(SeriesPieces, FromAKnotAMotionBeginsAcrossTheSpring) {
     const double h = 0.1;
     for (const double to : {0.05, -0.05})
         for (const auto& f : {bent(200e3, 4e3), bent(4e3, 200e3)}) {
-            const Walked w = walked(beside_the_rail(h, f, h, 0), jacked(to));
+            const OneWay w = walked(beside_the_rail(h, f, h, 0), jacked(to));
             const Path path = follow(w.model, w.branch);
             ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
             for (const auto& point : sample(w.model, path, w.branch, 100).points) {
@@ -278,19 +249,8 @@ TEST(SeriesPieces, FromAKnotAMotionBeginsAcrossTheSpring) {
 // ---- A non-monotone curve: f rises to 100 N at 10 mm, falls to 50 at 20 mm, rises again.
 Curve falling() { return {{0.01, 0.02}, {{100, 1e4, 0, 0}, {100, -5e3, 0, 0}, {50, 1e4, 0, 0}}}; }
 
-TEST(SeriesPieces, WhereAStopGivesWayIsALimitPoint) {
-    const Walked w =
-        walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
-    const Path path = follow(w.model, w.branch);
-    EXPECT_EQ(path.outcome, Outcome::limit_point) << path.detail;
-    ASSERT_EQ(path.limits.size(), 1u);
-    EXPECT_NEAR(path.limits[0], 100, 1e-10);
-    EXPECT_TRUE(find(path, 99.999));
-    EXPECT_FALSE(find(path, 101));
-}
-
 TEST(SeriesPieces, ArcLengthGoesOnThroughTheTurnsOfACurve) {
-    const Walked w =
+    const OneWay w =
         walked(on_the_x_axis({along_x("spring", falling())}), loaded(200, {push(0, 1)}));
     const Path path = follow(w.model, w.branch, {.arc_length = true});
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -305,7 +265,7 @@ TEST(SeriesPieces, ArcLengthGoesOnThroughTheTurnsOfACurve) {
 
 TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
     for (const double held : {700.0, 3000.0, -900.0}) {
-        const Walked w =
+        const OneWay w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(1500, {push(held, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
@@ -314,7 +274,7 @@ TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
     }
     // Exactly to a knot, and on from there, in both directions.
     for (const double to : {300.0, -300.0}) {
-        const Walked w = walked(
+        const OneWay w = walked(
             on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("stop", stop(0.03, 3e5))}),
             loaded(to, {push(600, 1)}));
         const Path path = follow(w.model, w.branch);
@@ -352,7 +312,7 @@ TEST(SeriesFormulations, EveryOneHoldsInItsOwnFullEquations) {
                     scene.probes = {{"tip", {0, Eigen::Vector3d(0.2, 0, 0)}}};
                     const Load load{"tip", DeadForce{{0, Eigen::Vector3d(0.2, 0, 0)},
                                                      Eigen::Vector3d(0, 0.2, 1)}};
-                    const Walked w = walked(scene, loaded(300, {{load, 0, 1}}));
+                    const OneWay w = walked(scene, loaded(300, {{load, 0, 1}}));
                     const Path path = follow(w.model, w.branch);
                     const std::string what = std::to_string(static_cast<int>(frame)) +
                                              std::to_string(static_cast<int>(angles)) +
@@ -396,7 +356,7 @@ TEST(SeriesFormulations, AChainOfBeamsHoldsInItsFullEquations) {
     for (const LoadKind& kind : {LoadKind(DeadForce{{n - 1, at}, Eigen::Vector3d(0, 0.3, 1)}),
                                  LoadKind(FollowerForce{{n - 1, at}, Eigen::Vector3d(0, 0.3, 1)}),
                                  LoadKind(FollowerMoment{n - 1, Eigen::Vector3d(0.4, 0, 1)})}) {
-        const Walked w = walked(chain(n, 0.2), loaded(3000, {{Load{"tip", kind}, 0, 1}}));
+        const OneWay w = walked(chain(n, 0.2), loaded(3000, {{Load{"tip", kind}, 0, 1}}));
         // A beam has 4e8 N/m along itself: at the usual 1e-12 m the error would be 2e-9 of the
         // load.
         const Path path = follow(w.model, w.branch, {.tolerance = 1e-13});
@@ -412,60 +372,6 @@ TEST(SeriesFormulations, AChainOfBeamsHoldsInItsFullEquations) {
                               point.poses.back().p.angularDistance(Eigen::Quaterniond::Identity()));
         }
         EXPECT_GT(turned, 0.3) << kind.index();
-    }
-}
-
-TEST(SeriesFormulations, AChainUnderATipMomentRollsIntoAnArc) {
-    // Pure bending: every beam bends by M L / EI, and its chord, the axis of its middle, by half of
-    // that more.
-    const int n = 5;
-    const double L = 0.2, EI = 2.4e3, M = 6000;
-    const Walked w =
-        walked(chain(n, L),
-               loaded(M, {{Load{"tip", FollowerMoment{n - 1, Eigen::Vector3d::UnitZ()}}, 0, 1}}));
-    const Path path = follow(w.model, w.branch);
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    for (const auto& point : sample(w.model, path, w.branch, 20).points) {
-        const double theta = point.load * L / EI;
-        Eigen::Vector3d r(L / 2, 0,
-                          0);  // of the first joint: no force, so that no beam is stretched
-        for (int b = 0; b < n; ++b) {
-            const Pose& pose = point.poses[static_cast<std::size_t>(b)];
-            const double angle = (b + 1) * theta;
-            const Eigen::Vector3d along(std::cos(angle), std::sin(angle), 0);
-            EXPECT_LE((pose.r - r - L / 2 * along).norm(), 1e-11) << b;
-            EXPECT_NEAR(std::remainder(2 * std::atan2(pose.p.z(), pose.p.w()) - angle,
-                                       2 * std::numbers::pi),
-                        0, 1e-11);
-            r += L * along;
-        }
-    }
-}
-
-TEST(SeriesFollowers, AForceAtALeverTurnsWithItsBody) {
-    // Rates k and k_θ at the body's origin: θ = (s × f)_z / k_θ, d = C(θ) f / k.
-    const double k = 1e5, k_theta = 200;
-    Scene scene;
-    scene.bodies = {{"block", {}}};
-    Matrix6<double> K = Matrix6<double>::Zero();
-    K.diagonal() << k, k, k, k_theta, k_theta, k_theta;
-    scene.elastics = {{"bed", Bushing{{ground, Eigen::Vector3d::Zero()},
-                                      {0, Eigen::Vector3d::Zero()},
-                                      LinearStiffness{K}}}};
-    scene.probes = {{"block", {0, Eigen::Vector3d::Zero()}}};
-    const Eigen::Vector3d s(0.1, -0.3, 0), f(0.8, 0.6, 0);
-    const double m = -0.1, arm = s.x() * f.y() - s.y() * f.x() + m;
-    const Walked w = walked(
-        scene, loaded(1500, {{Load{"push", FollowerForce{{0, s}, f}}, 0, 1},
-                             {Load{"turn", FollowerMoment{0, Eigen::Vector3d(0, 0, m)}}, 0, 1}}));
-    const Path path = follow(w.model, w.branch);
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    for (const auto& point : sample(w.model, path, w.branch, 60).points) {
-        const double theta = point.load * arm / k_theta;
-        const Eigen::Vector3d d =
-            Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()) * f * point.load / k;
-        EXPECT_LE((point.poses[0].r - d).norm(), 1e-12);
-        EXPECT_NEAR(2 * std::atan2(point.poses[0].p.z(), point.poses[0].p.w()), theta, 1e-11);
     }
 }
 

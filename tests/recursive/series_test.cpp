@@ -113,16 +113,6 @@ TEST(Series, CoefficientsAreThoseOfTheEquilibriumLeg) {
     }
 }
 
-double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
-    std::vector<bool> idle(model.bodies.size(), false);
-    for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
-    double worst = 0;
-    for (std::size_t body = 0; body < idle.size(); ++body)
-        worst = std::max({worst, (a.poses[body].r - b.poses[body].r).norm(),
-                          idle[body] ? 0 : 0.1 * a.poses[body].p.angularDistance(b.poses[body].p)});
-    return worst;
-}
-
 TEST(Series, MeetsTheEquilibriumLegAtEveryLoad) {
     std::mt19937 random(3);
     for (const auto& name : support::small_scene_names()) {
