@@ -118,50 +118,6 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     expect_near(scene.wheels.at(0).contact_local, Vector3d(0, 0, -0.32), 1e-16);
 }
 
-TEST(ShippedScene, ParallelSpringsIsConvertedFromMillimetres) {
-    const Scene scene = shipped("parallel_springs");
-    const auto first = element<AxialSpring>(scene, "first");
-    EXPECT_EQ(k_of(first), 30e3);
-    EXPECT_DOUBLE_EQ(first.free_length, 0.4 + 600 / 30e3);
-    EXPECT_EQ(first.i.s_local, Vector3d(-0.2, 0, 0));
-    EXPECT_EQ(first.j.s_local, Vector3d(-0.2, 0, 0));
-    EXPECT_EQ(element<AxialSpring>(scene, "second").free_length, 0.4);
-    EXPECT_EQ(joint<Translational>(scene, "guide").axis_j.u_local, Vector3d::UnitZ());
-    EXPECT_EQ(std::get<DeadForce>(scene.static_loads.at(0).kind).f, Vector3d(0, 0, -600));
-}
-
-TEST(ShippedScene, TwoSpringArchHasItsApexAsOrigin) {
-    const Scene scene = shipped("two_spring_arch");
-    EXPECT_EQ(scene.bodies.at(0).design.r, Vector3d(0, 0, 0.08));
-    const auto left = element<AxialSpring>(scene, "left");
-    EXPECT_EQ(k_of(left), 1e5);
-    EXPECT_EQ(left.i.s_local, Vector3d::Zero());
-    EXPECT_EQ(left.j.s_local, Vector3d(-0.3, 0, 0));
-    EXPECT_DOUBLE_EQ(left.free_length, std::hypot(0.3, 0.08));
-}
-
-TEST(ShippedScene, PinnedBarIsConvertedFromMillimetres) {
-    const Scene scene = shipped("pinned_bar");
-    const auto tip = element<Bushing>(scene, "tip");
-    EXPECT_EQ(K_of(tip).diagonal(), (Vector6() << 2e4, 2e4, 2e4, 0, 0, 0).finished());
-    EXPECT_EQ(tip.i.s_local, Vector3d(0.5, 0, 0));
-    EXPECT_EQ(joint<Revolute>(scene, "pin").axis_i.u_local, Vector3d::UnitY());
-}
-
-TEST(ShippedScene, BushingScenesKeepTheirRatesAndOrder) {
-    const auto mount = element<Bushing>(shipped("single_bushing"), "mount");
-    EXPECT_EQ(mount.i.body, ground);
-    EXPECT_EQ(mount.j.body, 0);
-    EXPECT_EQ(mount.i.s_local, Vector3d(0.1, 0.2, 0.3));
-    EXPECT_EQ(mount.j.s_local, Vector3d::Zero());
-    EXPECT_EQ(K_of(mount).diagonal(), (Vector6() << 2e5, 3e5, 5e5, 400, 500, 700).finished());
-    const auto pair = element<Bushing>(shipped("bushing_pair"), "front");
-    EXPECT_EQ(pair.j.s_local, Vector3d(0.15, 0, 0));
-    const auto pivot = element<Bushing>(shipped("pendulum"), "pivot");
-    EXPECT_EQ(K_of(pivot).diagonal(), (Vector6() << 0, 0, 0, 600, 600, 600).finished());
-    EXPECT_EQ(pivot.i.s_local, Vector3d(-0.32, -0.24, 0));
-}
-
 TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed) {
     int count = 0;
     for (const auto& entry : fs::directory_iterator(ELASTOCHECK_SCENES)) {

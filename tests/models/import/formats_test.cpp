@@ -332,44 +332,6 @@ TEST(Chrono, HardpointsOfTheFileStayWithTheirLines) {
     EXPECT_NE(yaml.find("# midpoint of Upper Control Arm/Location Chassis Front and"), yaml.npos);
 }
 
-// Piecewise linear table with kinks at its rows: for every leg the height z of a block on a spring
-// follows the inverse of the table.
-TEST(Curve, StraightBetweenItsRowsIsFollowedByEveryLeg) {
-    const std::vector<std::pair<double, double>> rows{
-        {-0.1, -2000}, {-0.03, -400}, {0, 0}, {0.02, 100}, {0.1, 900}};
-    const Scene scene = parse_scene(R"(
-elastocheck: 1
-name: block
-units: {length: m, angle: rad, force: N}
-points: {o: [0, 0, 0], top: [0, 0, 0.5]}
-bodies: {block: {origin: o}}
-joints: {guide: {type: translational, bodies: [ground, block], at: o, axis: z}}
-springs:
-  coil: {bodies: [ground, block], from: o, to: top, free_length: 0.5, curve: {interpolation: linear,
-    table: [[-0.1, -2000], [-0.03, -400], [0, 0], [0.02, 100], [0.1, 900]]}}
-loads: {push: {on: block, at: o, force: [0, 0, 1]}}
-branches: {push: {load: push, from: -2500, to: 1500, steps: 40}}
-probes: {o: {on: block, at: o}}
-)",
-                                    "block");
-    const Model model = compile(scene);
-    const auto ways = compare::sides_of(model, model.branches.front(), 40);
-    for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series}) {
-        const auto path = compare::walk(ways, {.leg = leg});
-        ASSERT_EQ(path.outcome, Outcome::converged) << name(leg) << path.detail;
-        ASSERT_EQ(path.points.size(), 41u) << name(leg);
-        for (const auto& point : path.points) {
-            const double F = point.load;
-            std::size_t k = 0;
-            while (k + 2 < rows.size() && rows[k + 1].second < F) ++k;
-            const double z = rows[k].first + (F - rows[k].second) *
-                                                 (rows[k + 1].first - rows[k].first) /
-                                                 (rows[k + 1].second - rows[k].second);
-            EXPECT_NEAR(point.poses.at(0).r.z(), z, 1e-12) << name(leg) << " " << F;
-        }
-    }
-}
-
 // A wheel directly over its spring, whose table has a row every 10 mm. At branch points on a row
 // the wheel rate is undefined, since rounding would select the side; the legs agree on these
 // points.
