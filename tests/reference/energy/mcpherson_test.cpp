@@ -25,25 +25,6 @@ const Solved& solved() {
     return all;
 }
 
-// The wheel moves up under an upward load, by an amount that agrees with wheel and spring rates.
-TEST(McPherson, WheelTravelsUpUnderLoadAndDownWithout) {
-    const Solved& s = solved();
-    for (std::size_t b = 0; b < s.paths.size(); ++b) {
-        double previous = 0;
-        for (const auto& state : s.paths[b].points) {
-            const double z =
-                state.poses[static_cast<std::size_t>(s.model.wheels[0].body)].r.z() -
-                s.model.bodies[static_cast<std::size_t>(s.model.wheels[0].body)].design.r.z();
-            if (state.load != 0) {
-                EXPECT_GT(z / state.load, previous / state.load) << state.load;
-            }
-            previous = z;
-        }
-        EXPECT_GT(std::abs(previous), 0.07);
-        EXPECT_LT(std::abs(previous), 0.25);
-    }
-}
-
 // Path independence: the same equilibrium in 3 or 300 steps, upwards or on the way back.
 TEST(McPherson, EquilibriumDoesNotDependOnTheWayThere) {
     const Solved& s = solved();
