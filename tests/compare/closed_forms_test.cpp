@@ -7,12 +7,8 @@
 
 #include "compare/comparison/compare.hpp"
 #include "elastocheck/compile.hpp"
-#include "elastocheck/energy.hpp"
-#include "elastocheck/equilibrium.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "recursive/series/path.hpp"
 #include "tests/support/cantilever.hpp"
-#include "tests/support/quadrature.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -156,76 +152,6 @@ TEST(Cantilever, ARoundRodUnderADeadMomentIsNoMinimumOfAnEnergyAllTheWayRound) {
             EXPECT_LE(1e3 * off, 1e-8) << name(leg) << " " << phi;
         }
     }
-}
-
-TEST(Cantilever, FollowsTheElasticaUnderAForceAtItsTip) {
-    EXPECT_NEAR(elastica(4).y, 0.66996, 1e-5);  // Mattiasson (1981)
-    EXPECT_NEAR(1 - elastica(4).x, 0.32894, 1e-5);
-    std::vector<double> errors;
-    for (const int n : {4, 8, 16}) {
-        const Solved s(
-            leaf(n) + fmt::format("loads: {{push: {{on: tip, at: tip, force: [0, 1, 0]}}}}\n"
-                                  "branches: {{push: {{load: push, to: {}, steps: 5}}}}\n",
-                                  10 * EI / (L * L)),
-            fmt::format("leaf of {} segments", n), 1e-13);
-        const auto x = s.read("push", "tip_x"), y = s.read("push", "tip_y");
-        ASSERT_EQ(x.size(), 6u) << n;
-        double error = 0;
-        for (std::size_t k = 1; k < x.size(); ++k) {
-            const Tip exact = elastica(2. * static_cast<double>(k));
-            error = std::max(error, std::hypot(x[k] - 1e3 * L * exact.x, y[k] - 1e3 * L * exact.y));
-        }
-        errors.push_back(error);
-    }
-    for (std::size_t k = 1; k < errors.size(); ++k)
-        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, k == 1 ? 0.3 : 0.15)
-            << errors[k - 1] << " to " << errors[k];
-    EXPECT_LE(errors.back(), 2) << "mm, of a tip that comes 810 mm across";
-}
-
-// ---- Euler's column: a beam under axial pressure.
-
-// Below Euler's load every method follows the straight column, above it none: the tangent's
-// determinant changes its sign (series, adaptive), the stiffness becomes negative (equilibrium
-// leg), the potential loses its minimum (energy leg, which detects this when the stiffness is
-// negative beyond its uncertainty: slightly later).
-TEST(Column, TangentIsSingularAtEulersLoad) {
-    const double euler = pi * pi * EI / (4 * L * L);
-    std::vector<double> errors;
-    for (const int n : {4, 8, 16}) {
-        const Model model = compile(parse_scene(
-            "elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n" + leaf(n) +
-                "loads: {press: {on: tip, at: tip, force: [-1, 0, 0]}}\n"
-                "branches: {press: {load: press, to: 1, steps: 1}}\n",
-            "column.yaml"));
-        const double P = critical_load(n);
-        for (const auto& [leg, method] : {std::pair{Leg::recursive, "series"},
-                                          {Leg::recursive, "adaptive"},
-                                          {Leg::recursive, "published"},
-                                          {Leg::recursive, "chord"},
-                                          {Leg::equilibrium, "series"},
-                                          {Leg::energy, "series"}}) {
-            const double margin = leg == Leg::energy ? 2e-6 : 1e-8;
-            for (const double share : {1 - margin, 1 + margin, 1.5}) {
-                Branch branch = model.branches[0];
-                branch.to = share * P;
-                const auto path = walk(
-                    sides_of(model, branch),
-                    {.leg = leg, .recursion = {.method = recursive::find_method(method).value()}});
-                // Within its smallest step the equilibrium leg does not distinguish a bifurcation
-                // from a limit point.
-                const bool ends = path.outcome == Outcome::bifurcation_point ||
-                                  (leg == Leg::equilibrium && path.outcome == Outcome::singular);
-                EXPECT_TRUE(share < 1 ? path.outcome == Outcome::converged : ends)
-                    << elastocheck::name(path.outcome) << " " << n << " " << name(leg) << " "
-                    << method << " at " << share << ": " << path.detail;
-            }
-        }
-        errors.push_back(1 - P / euler);
-    }
-    for (std::size_t k = 1; k < errors.size(); ++k)
-        EXPECT_NEAR(order(errors[k - 1], errors[k]), 2, 0.1)
-            << errors[k - 1] << " to " << errors[k];
 }
 
 // ---- Torsion, bending, and both.
@@ -379,32 +305,11 @@ struct Block {
             "branches: {{push: {{load: push, from: {}, to: {}, steps: 30}}}}\n",
             k, c, s, d, r, -to, to);
     }
-    // Displacement under a force F, and the force of the stop.
+    // Displacement under a force F.
     double down(double F) const {
         return F > k * c ? (F + s * c) / (k + s) : F < -k * d ? (F - r * d) / (k + r) : F / k;
     }
-    double contact(double F) const {
-        return F > k * c ? s * (F - k * c) / (k + s) : F < -k * d ? r * (F + k * d) / (k + r) : 0;
-    }
 };
-
-TEST(Stop, BearsWhatTheHandCalculationSaysInEveryLeg) {
-    const Block block;
-    for (const double to : {3100.0, 600.0, 1000.0, 20000.0}) {
-        const Solved s(block.text(to), fmt::format("block to {} N", to));
-        for (const Leg leg : legs) {
-            const LegRun& run = s.run("push", leg);
-            const auto z = s.read("push", "top_z", leg);
-            ASSERT_EQ(z.size(), 31u);
-            for (std::size_t k = 0; k < z.size(); ++k) {
-                const double F = run.curve.a[k], down = 0.4 - z[k] / 1e3;
-                EXPECT_NEAR(1e3 * down, 1e3 * block.down(F), 1e-8) << name(leg) << " " << F;
-                EXPECT_NEAR(F - block.k * down, block.contact(F), 1e-8 * to)
-                    << name(leg) << " " << F;
-            }
-        }
-    }
-}
 
 // The step that closes the stop uses the stiffness before contact. Methods that sum stiffness times
 // step keep that error: the part of the step beyond the knot times the difference in flexibility,
@@ -439,160 +344,6 @@ TEST(Stop, IsPassedByEveryMethodOfTheLadder) {
                         1e-12)
                 << method.name << " " << steps;
         }
-}
-
-// ---- A curve and a stop on an arm with a prescribed angle.
-
-// Monotone interpolation (Fritsch & Butland 1984) in Hermite form: through the table, with slopes
-// m.
-struct Interpolated {
-    std::vector<double> x, f, m;
-
-    Interpolated(std::vector<double> x_, std::vector<double> f_)
-        : x(std::move(x_)), f(std::move(f_)), m(x.size()) {
-        const std::size_t last = x.size() - 1;
-        const auto h = [&](std::size_t k) { return x[k + 1] - x[k]; };
-        const auto rise = [&](std::size_t k) { return (f[k + 1] - f[k]) / h(k); };
-        for (std::size_t k = 1; k < last; ++k) {
-            const double v = 2 * h(k) + h(k - 1), w = h(k) + 2 * h(k - 1);
-            m[k] = (v + w) / (v / rise(k - 1) + w / rise(k));  // all increasing here
-        }
-        // three-point formula, not below zero
-        const auto end = [](double h_0, double h_1, double d_0, double d_1) {
-            return std::max(0.0, ((2 * h_0 + h_1) * d_0 - h_0 * d_1) / (h_0 + h_1));
-        };
-        m[0] = end(h(0), h(1), rise(0), rise(1));
-        m[last] = end(h(last - 1), h(last - 2), rise(last - 1), rise(last - 2));
-    }
-    double force(double at) const {
-        if (at <= x.front()) return f.front() + m.front() * (at - x.front());
-        if (at >= x.back()) return f.back() + m.back() * (at - x.back());
-        std::size_t k = 0;
-        while (at > x[k + 1]) ++k;
-        const double h = x[k + 1] - x[k], t = (at - x[k]) / h, s = 1 - t;
-        return s * s * ((1 + 2 * t) * f[k] + h * t * m[k]) +
-               t * t * ((1 + 2 * s) * f[k + 1] - h * s * m[k + 1]);
-    }
-    // ∫₀ f by Simpson's rule from row to row, which is exact for cubics.
-    double energy(double at) const {
-        const double low = std::min(0.0, at), high = std::max(0.0, at);
-        std::vector<double> ends{low};
-        for (const double row : x)
-            if (row > low && row < high) ends.push_back(row);
-        ends.push_back(high);
-        double u = 0;
-        for (std::size_t k = 1; k < ends.size(); ++k) {
-            const double a = ends[k - 1], b = ends[k];
-            u += (b - a) / 6 * (force(a) + 4 * force((a + b) / 2) + force(b));
-        }
-        return at < 0 ? -u : u;
-    }
-};
-
-// An arm of 0.3 m about y, on a spring with a curve and a bump stop, attached to a point above.
-struct Arm {
-    Interpolated curve{{-0.06, -0.03, 0, 0.02, 0.05, 0.08}, {-2600, -900, 0, 700, 2400, 6000}};
-    double R = 0.3, x = 0.25, z = 0.35, clearance = 0.025, rate = 400e3;
-
-    std::string text(double to) const {
-        std::string rows;
-        for (std::size_t k = 0; k < curve.x.size(); ++k)
-            rows += fmt::format("{}[{}, {}]", k > 0 ? ", " : "", curve.x[k], curve.f[k]);
-        return fmt::format(
-            "points: {{hinge: [0, 0, 0], end: [{}, 0, 0], top: [{}, 0, {}]}}\nbodies: {{arm: "
-            "{{origin: "
-            "hinge}}}}\n"
-            "joints: {{hinge: {{type: revolute, bodies: [arm, ground], at: hinge, axis: y}}}}\n"
-            "springs:\n  coil: {{bodies: [arm, ground], from: end, to: top, curve: {{table: "
-            "[{}]}}, "
-            "bump_stop: {{clearance: "
-            "{}, rate: {}}}}}\n"
-            "probes: {{end: {{on: arm, at: end}}}}\n"
-            "branches: {{turn: {{drive: joints.hinge, from: {}, to: {}, steps: 24}}}}\n",
-            R, x, z, rows, clearance, rate, -to, to);
-    }
-    // ℓ - ℓ(0) with the arm turned by α from x towards -z, and its slope dℓ/dα.
-    double longer(double alpha) const { return length(alpha) - length(0); }
-    double length(double alpha) const {
-        return std::hypot(x - R * std::cos(alpha), z + R * std::sin(alpha));
-    }
-    double slope(double alpha) const {
-        return R * (x * std::sin(alpha) + z * std::cos(alpha)) / length(alpha);
-    }
-    // Holding moment and stored energy.
-    double moment(double alpha) const {
-        const double e = longer(alpha);
-        return (curve.force(e) + rate * std::min(0.0, e + clearance)) * slope(alpha);
-    }
-    double energy(double alpha) const {
-        const double e = longer(alpha);
-        return curve.energy(e) + rate * std::pow(std::min(0.0, e + clearance), 2) / 2;
-    }
-    // Angle at which the spring is longer by e.
-    double angle(double e) const {
-        double low = -0.8, high = 0.8;  // ℓ increases monotonically
-        for (int i = 0; i < 60; ++i) {
-            const double middle = (low + high) / 2;
-            (longer(middle) < e ? low : high) = middle;
-        }
-        return (low + high) / 2;
-    }
-};
-
-TEST(Curve, NeedsTheMomentOfTheHandCalculationAtEveryAngle) {
-    const Arm arm;
-    const Solved s(arm.text(0.24), "arm");
-    for (const Leg leg : legs) {
-        const LegRun& run = s.run("turn", leg);
-        const auto M = s.read("turn", "hinge.drive_moment", leg);
-        double size = 0;
-        for (const double alpha : {-0.24, 0.24}) size = std::max(size, std::abs(arm.moment(alpha)));
-        for (std::size_t k = 0; k < M.size(); ++k)
-            EXPECT_NEAR(M[k], arm.moment(run.curve.a[k] / in_unit(run.curve.unit)), 1e-8 * size)
-                << name(leg) << " " << run.curve.a[k];
-    }
-}
-
-TEST(Curve, StoresTheWorkOfTheMomentThatTurnsIt) {
-    const Arm arm;
-    const Model model = compile(parse_scene(
-        "elastocheck: 1\nname: arm\nunits: {length: m, angle: rad, force: N}\n" + arm.text(0.24),
-        "arm"));
-    const auto all = channels(model);
-    const auto drive = static_cast<std::size_t>(find_channel(all, "hinge.drive_moment"));
-    for (const auto& way : sides_of(model, model.branches[0])) {
-        const double to = way.branch.to;
-        std::vector<double> ends{0, to};  // no knot in between
-        for (const double knot : {-0.03, -0.06, 0.02, 0.05, 0.08, -arm.clearance})
-            if (const double alpha = arm.angle(knot);
-                alpha * to > 0 && std::abs(alpha) < std::abs(to))
-                ends.push_back(alpha);
-        std::ranges::sort(ends, {}, [](double a) { return std::abs(a); });
-        EXPECT_GT(ends.size(), 3u);
-        std::vector<double> at, weight;
-        for (std::size_t k = 1; k < ends.size(); ++k)
-            for (const auto& node : support::gauss(ends[k - 1], ends[k], 12)) {
-                at.push_back(node.x);
-                weight.push_back(node.weight);
-            }
-        const auto path = recursive::series::follow(way.model, way.branch);
-        std::vector<Equilibrium> polynomial;
-        for (const double a : at)
-            polynomial.push_back(recursive::series::evaluate(
-                way.model, way.branch, path, recursive::series::find(path, a).value()));
-        for (const auto& [leg, points] :
-             {std::pair{Leg::equilibrium,
-                        reference::equilibrium::solve(way.model, way.branch, at).points},
-              {Leg::energy, reference::energy::solve(way.model, way.branch, at).points},
-              {Leg::series, polynomial}}) {
-            ASSERT_EQ(points.size(), at.size()) << name(leg);
-            double work = 0;
-            for (std::size_t k = 0; k < at.size(); ++k)
-                work += weight[k] * evaluate(way.model, all, points[k])[drive];
-            const double U = arm.energy(to);
-            EXPECT_NEAR(work, U, 1e-9 * U) << name(leg) << " " << work / U - 1;
-        }
-    }
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ std::string name_of(const SolverSettings& solver) {
                                         : name(solver.leg);
 }
 
-TEST(Visit, TheRecursionHandsOverThePointsThatItWouldKeep) {
-    for (const auto& scene : support::scene_names()) {
+void expect_visited_as_kept(const std::vector<std::string>& scenes) {
+    for (const auto& scene : scenes) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
             for (const auto& way : sides_of(model, branch, 6))
@@ -74,6 +74,14 @@ TEST(Visit, TheRecursionHandsOverThePointsThatItWouldKeep) {
                     expect_same(visited, kept.points, where);
                 }
     }
+}
+
+TEST(Visit, TheRecursionHandsOverThePointsThatItWouldKeep) {
+    expect_visited_as_kept(support::small_scene_names());
+}
+
+TEST(NightlyVisit, TheRecursionHandsOverThePointsThatItWouldKeepOnEveryScene) {
+    expect_visited_as_kept(support::scene_names());
 }
 
 TEST(Visit, TheReferencesHandOverThePointsThatTheyWouldKeep) {

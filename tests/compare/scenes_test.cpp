@@ -290,26 +290,6 @@ TEST(Scenes, TheTrackBarMovesTheSolidAxleSideways) {
     }
 }
 
-// A mirrored scene is the right side of the same car.
-TEST(Scenes, TheRightSideIsTheMirrorImageOfTheLeft) {
-    for (const char* name : {"mcpherson_strut", "double_wishbone", "multi_link", "trailing_arm",
-                             "semi_trailing_arm", "twist_beam", "solid_axle", "front_axle"}) {
-        const Scene scene = trimmed(name);
-        const Model left = compile(scene), right = compile(support::mirrored(scene));
-        for (const auto& branch : left.branches) {
-            const Walk a = walk(left, branch.name, Leg::equilibrium, 4),
-                       b = walk(right, branch.name, Leg::equilibrium, 4);
-            for (const auto& channel : a.channels)
-                if (channel.kinematic() && channel.unit != Unit::percent) {
-                    EXPECT_LE(apart(a[channel.name], b[channel.name],
-                                    channel.name.ends_with("_y") ? -1 : 1),
-                              1e-9)
-                        << name << " " << branch.name << " " << channel.name;
-                }
-        }
-    }
-}
-
 // ---- Pure kinematics.
 
 // and with rubber

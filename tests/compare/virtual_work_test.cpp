@@ -325,7 +325,15 @@ TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(VirtualWork, EveryScene, testing::ValuesIn(support::scene_names()),
+// The small scenes, and a suspension with curves and stops.
+std::vector<std::string> sample() {
+    auto names = support::small_scene_names();
+    names.emplace_back("mcpherson_strut");
+    return names;
+}
+INSTANTIATE_TEST_SUITE_P(VirtualWork, EveryScene, testing::ValuesIn(sample()),
+                         [](const auto& scene) { return scene.param; });
+INSTANTIATE_TEST_SUITE_P(Nightly, EveryScene, testing::ValuesIn(support::scene_names()),
                          [](const auto& scene) { return scene.param; });
 
 }  // namespace
