@@ -22,6 +22,7 @@
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/document/against.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
@@ -60,6 +61,7 @@ struct Request {
     std::string stress;                    // JSON, results of `elastocheck stress`
     std::string tolerance = "0.01mm,0.001deg,1%";
     bool archive = false;
+    bool against = false;  // compare the second of two scenes with the first
     bool as_json = false;  // write the answers as a document to standard output
     bool open = false;     // open the finished page in a browser
 };
@@ -267,6 +269,8 @@ int report(const Request& request, const std::string& reproduce) {
             "report: --map: is of --candidate or of --measured; give one of them");
     if (request.candidate.wanted() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --candidate belongs to one scene; give one");
+    if (request.against && request.from.empty() && request.scenes.size() != 2)
+        throw std::invalid_argument("report: --against: needs two scenes, the base first");
     CandidateRequest asked = request.candidate;
     if (!request.measured.empty()) asked.map.clear();  // it is of the measurement
     check(asked, request.settings);
@@ -306,6 +310,16 @@ int report(const Request& request, const std::string& reproduce) {
         if (request.archive) remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
+    if (request.against) {
+        if (result["scenes"].size() != 2)
+            throw std::invalid_argument("report: --against: the result has not two scenes");
+        add_against(result["scenes"][0], result["scenes"][1]);
+        // nobody asked whether the fast method is good enough for a variant
+        for (auto& scene : result["scenes"])
+            if (scene.contains("judgement") && !scene["judgement"]["tolerance"]["asked"])
+                scene.erase("judgement");
+        result = json::parse(result.dump());
+    }
     const auto answers = write_report(result, file, request.folder,
                                       {.archive = request.archive, .progress = progress});
     progress("");
@@ -328,6 +342,8 @@ int report(const Request& request, const std::string& reproduce) {
     const std::string page = request.folder + (request.archive ? "/README.md" : "/report.html");
     if (request.as_json)
         print_document(answer_document(result, answers, page));
+    else if (request.against)
+        print("{}\nThe page: {}\n", against_sentence(result["scenes"][0]), page);
     else
         print(answer_text(answers, page, elapsed.count()));
     if (request.open) open_in(opener, page);
@@ -361,7 +377,9 @@ Command report_command() {
     add_candidate_options(options, request->candidate);
     options.insert(
         options.end(),
-        {{"--archive", Flag{&request->archive},
+        {{"--against", Flag{&request->against},
+          "of two scenes: what the second has otherwise than the first, as a section"},
+         {"--archive", Flag{&request->archive},
           "the form for version control: README.md, numbers.csv, figures/*.svg, without times"},
          json_option(request->as_json),
          {"--open", Flag{&request->open}, "open the page with $BROWSER or xdg-open"}});

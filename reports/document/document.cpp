@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/comparison/characteristics.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/studies/findings.hpp"
 #include "models/overloaded.hpp"
@@ -80,6 +81,13 @@ json channels_json(const std::vector<compare::Channel>& channels) {
                         {"kind", name(channel.kind())},
                         {"definition", channel.definition}});
     return list;
+}
+
+json numbers_json(const Scene& scene) {
+    json numbers = json::array();
+    for (const auto& n : scene.numbers)
+        numbers.push_back({{"path", n.path}, {"value", n.value}, {"unit", n.unit}});
+    return numbers;
 }
 
 json counts_json(const Counts& counts) {
@@ -312,8 +320,12 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     }
     json channels = channels_json(comparison.channels);
     const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
-    for (std::size_t c = 0; c < drawn.size(); ++c)
+    for (std::size_t c = 0; c < drawn.size(); ++c) {
+        const auto* rate = std::get_if<compare::Characteristic>(&comparison.channels[c].reads);
         if (comparison.channels[c].kinematic()) channels[c]["drawn"] = drawn[c];
+        if (rate != nullptr && compare::is_swing_arm(*rate)) channels[c]["reciprocal"] = true;
+    }
+    scene_document["numbers"] = numbers_json(scene);
     scene_document["channels"] = channels;
     scene_document["branches"] = branches;
     scene_document["findings"] = findings_json(comparison);
@@ -359,8 +371,7 @@ void add_curves(json& scene_document, const Model& model,
 
 void add_inspection(json& scene_document, const Scene& scene, const Model& model) {
     const auto channels = compare::channels(model);
-    json bodies = json::array(), list = json::array(), branches = json::array(),
-         numbers = json::array();
+    json bodies = json::array(), list = json::array(), branches = json::array();
     for (const auto& body : model.bodies) {
         const Eigen::Vector3d mm = 1e3 * body.design.r;
         bodies.push_back({{"name", body.name}, {"origin_mm", {mm.x(), mm.y(), mm.z()}}});
@@ -378,11 +389,11 @@ void add_inspection(json& scene_document, const Scene& scene, const Model& model
                           {"displacement", moves}};
         branches.push_back(std::move(one));
     }
-    for (const auto& n : scene.numbers)
-        numbers.push_back({{"path", n.path}, {"value", n.value}, {"unit", n.unit}});
     scene_document["channels"] = channels_json(channels);
-    scene_document["inspection"] = {
-        {"bodies", bodies}, {"elements", list}, {"branches", branches}, {"numbers", numbers}};
+    scene_document["inspection"] = {{"bodies", bodies},
+                                    {"elements", list},
+                                    {"branches", branches},
+                                    {"numbers", numbers_json(scene)}};
 }
 
 void add_trim(json& scene_document, const compare::TrimRecord& trim) {

@@ -12,6 +12,7 @@ namespace elastocheck::reports {
 
 // Each makes its section from one scene of result.json, or none if the scene has no data for it.
 // Throws ResultError for missing fields.
+std::optional<Section> against_section(const JsonCursor& scene);
 std::optional<Section> candidate_section(const JsonCursor& scene);
 std::optional<Section> first_section(const JsonCursor& scene);
 std::optional<Section> drawing_section(const JsonCursor& scene);

@@ -281,9 +281,9 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
     }
     std::vector<std::string> names;
     for (const auto& c : family.cases) names.push_back(c.sweep.name);
-    figure.description = fmt::format(
-        "{} over {} by the full solution, {}: from {} to {} {}.", quantity.title,
-        family.x, enumerated(names), number(low), number(high), found[0].unit);
+    figure.description =
+        fmt::format("{} over {} by the full solution, {}: from {} to {} {}.", quantity.title,
+                    family.x, enumerated(names), number(low), number(high), found[0].unit);
     const bool pair = found.size() > 1 && wheels.size() > 1 && !apart;
     FigureGroup group{
         fmt::format(

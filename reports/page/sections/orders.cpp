@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 namespace {
 
-constexpr Colour colours[] = {vermilion, blue, green, purple};
+constexpr Colour order_colours[] = {vermilion, blue, green, purple};
 
 FigureGroup group(const std::string& branch, const compare::Table& levels) {
     FigureGroup group;
@@ -38,9 +38,9 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
     std::vector<std::string> listed;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
-        figure.series.push_back({fmt::format("tolerance {} m", number(tolerance, 1)),
-                                 Series::Style::line_points, colours[k % std::size(colours)],
-                                 static_cast<int>(4 + k), rows});
+        figure.series.push_back(
+            {fmt::format("tolerance {} m", number(tolerance, 1)), Series::Style::line_points,
+             order_colours[k % std::size(order_colours)], static_cast<int>(4 + k), rows});
         listed.push_back(fmt::format("tolerance {} m, {} expansions at order {} and {} at order {}",
                                      number(tolerance, 1), number(rows.front()[1], 3),
                                      number(rows.front()[0], 2), number(rows.back()[1], 3),

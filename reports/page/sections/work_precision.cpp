@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 namespace {
 
-constexpr Colour colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
+constexpr Colour method_colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
 
 Figure figure(const JsonCursor& trade, const compare::Table& points, const char* id,
               const char* price, char front, const char* axis, const char* title) {
@@ -40,7 +40,8 @@ Figure figure(const JsonCursor& trade, const compare::Table& points, const char*
         if (series == nullptr) {
             const auto n = figure.series.size();
             figure.series.push_back({method, Series::Style::line_points,
-                                     colours[n % std::size(colours)], static_cast<int>(n)});
+                                     method_colours[n % std::size(method_colours)],
+                                     static_cast<int>(n)});
             series = &figure.series.back();
         }
         series->rows.push_back({work, error});

@@ -19,7 +19,7 @@ using compare::Verdict;
 
 constexpr std::array verdicts{Verdict::right,     Verdict::no_claim, Verdict::reported_failure,
                               Verdict::elsewhere, Verdict::unjudged, Verdict::wrong};
-constexpr std::size_t width = 118;  // of a terminal
+constexpr std::size_t terminal_width = 118;  // of a terminal
 
 compare::Column words(std::string name, std::string description = {}) {
     return {std::move(name), {}, std::move(description), true};
@@ -152,7 +152,7 @@ std::string stress_text(const Survival& survival) {
     for (const auto& scene : rows.scenes) head = std::max(head, scene.size());
     std::size_t column = survival.solvers.size();
     for (const auto& sweep : rows.sweeps) column = std::max(column, sweep.size());
-    const std::size_t at_once = std::max<std::size_t>(1, (width - head) / (column + 2));
+    const std::size_t at_once = std::max<std::size_t>(1, (terminal_width - head) / (column + 2));
     for (std::size_t first = 0; first < rows.sweeps.size(); first += at_once) {
         const std::size_t last = std::min(first + at_once, rows.sweeps.size());
         fmt::format_to(out, "{:<{}}", "", head);
