@@ -114,26 +114,28 @@ std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade)
     for (std::size_t r = 0; r < points.rows.size() && std::isnan(full); ++r)
         if (words(points, r, "leg") == "equilibrium") full = number(points, r, "price");
     for (const auto& method : distinct(points, "method")) {
+        // the recommended one, else the cheapest that is good enough, else the cheapest of the most
+        // accurate
         std::optional<std::size_t> best;
-        const auto good = [&](std::size_t r) {
+        double least = INFINITY;
+        const auto share = [&](std::size_t r) {
             const double own = number(points, r, "told");  // no looser than what is asked
-            return number(points, r, "share") <= 1 &&
-                   !(1e3 * own > trade["tolerance"]["mm"].number());
+            return 1e3 * own > trade["tolerance"]["mm"].number() ? INFINITY
+                                                                 : number(points, r, "share");
         };
+        const auto good = [&](std::size_t r) { return share(r) <= 1; };
+        const auto wanted = [&](std::size_t r) {
+            return words(points, r, "method") == method && words(points, r, "leg") == "recursive" &&
+                   std::isfinite(share(r));
+        };
+        for (std::size_t r = 0; r < points.rows.size(); ++r)
+            if (wanted(r)) least = std::min(least, share(r));
         for (std::size_t r = 0; r < points.rows.size(); ++r) {
-            if (words(points, r, "method") != method || words(points, r, "leg") != "recursive" ||
-                !std::isfinite(number(points, r, "error")))
-                continue;
-            if (!best || good(r) > good(*best) ||
-                (good(r) == good(*best) &&
-                 (good(r) ? number(points, r, "price") < number(points, *best, "price")
-                          : number(points, r, "share") < number(points, *best, "share"))))
-                best = r;
-            if (words(points, r, "recommended") == "yes") {
-                best = r;
-                break;
-            }
+            if (!wanted(r) || share(r) > std::max(1.0, 1.1 * least)) continue;
+            if (!best || number(points, r, "price") < number(points, *best, "price")) best = r;
         }
+        for (std::size_t r = 0; r < points.rows.size(); ++r)
+            if (wanted(r) && words(points, r, "recommended") == "yes") best = r;
         if (!best) continue;
         const double count = number(points, *best, "steps"), own = number(points, *best, "told");
         MethodRow row{.method = method,

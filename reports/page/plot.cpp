@@ -1,6 +1,7 @@
 #include "reports/page/plot.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -242,6 +243,7 @@ struct Entry {
     const Series* series = nullptr;  // or of a band
     const Band* band = nullptr;
     std::string_view text{};
+    std::size_t key = 0;  // position in the legend of the figure, or of the series
     double x = 0;
     int line = 0;
 };
@@ -249,8 +251,10 @@ struct Entry {
 // Legend entries on lines of this width.
 std::vector<Entry> legend(const Figure& figure, double lines_width) {
     std::vector<Entry> entries;
-    for (const auto& series : figure.legend.empty() ? figure.series : figure.legend)
-        if (!series.title.empty()) entries.push_back({.series = &series, .text = series.title});
+    const auto& listed = figure.legend.empty() ? figure.series : figure.legend;
+    for (std::size_t k = 0; k < listed.size(); ++k)
+        if (!listed[k].title.empty())
+            entries.push_back({.series = &listed[k], .text = listed[k].title, .key = k});
     for (const auto& band : figure.bands) entries.push_back({.band = &band, .text = band.label});
     double x = 0;
     int line = 0;
@@ -339,9 +343,15 @@ Svg draw_plot(const Figure& figure) {
             {0, 0}, figure.y, slate, "middle",
             fmt::format(" transform=\"translate(17.6,{}) rotate(270)\"", px((top + bottom) / 2)));
     svg.text({(left + right) / 2, svg.height - 8.0}, figure.x, slate, "middle");
-    for (const auto& entry : entries)
+    for (const auto& entry : entries) {
+        if (entry.series != nullptr) svg.elements += fmt::format("<g data-e=\"{}\">", entry.key);
         draw_entry(svg, entry, {left + entry.x, 17.7 + line_pitch * entry.line});
-    for (const auto& series : figure.series)
+        if (entry.series != nullptr) svg.elements += "</g>";
+    }
+    for (std::size_t k = 0; k < figure.series.size(); ++k) {
+        const Series& series = figure.series[k];
+        const auto keys = figure.legend.empty() ? std::vector{k} : series.keys;
+        svg.elements += fmt::format("<g data-k=\"{}\">", fmt::join(keys, " "));
         draw_series(
             svg, series,
             [&](double a, double b) {
@@ -349,6 +359,16 @@ Svg draw_plot(const Figure& figure) {
                 return std::isfinite(p.x) && std::isfinite(p.y) ? std::optional(p) : std::nullopt;
             },
             top, bottom);
+        svg.elements += "</g>";
+    }
+    // for the script of the page: pixels and coordinates of the ends of the axes, and their names
+    const auto tell = [&](char name, const Axis& axis, const std::string& words) {
+        svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",
+                                    name, px(axis.start), px(axis.stop), axis.low, axis.high,
+                                    axis.logarithmic, for_xml(words));
+    };
+    tell('x', x, figure.x);
+    tell('y', y, figure.y);
     svg.stroke(fmt::format("M{},{}V{}H{}", px(left), px(top), px(bottom), px(right)), slate, 0.8);
     return svg;
 }

@@ -58,9 +58,9 @@ Illustration illustrate(const Svg& svg, const std::string& id, const std::string
         "<svg width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
         "xmlns=\"http://www.w3.org/2000/svg\" fill=\"none\" stroke-linecap=\"round\" "
         "stroke-linejoin=\"round\" font-size=\"11\" role=\"img\" "
-        "aria-labelledby=\"{2}-title {2}-desc\"><title id=\"{2}-title\">{3}</title>"
+        "aria-labelledby=\"{2}-title {2}-desc\"{5}><title id=\"{2}-title\">{3}</title>"
         "<desc id=\"{2}-desc\">{4}</desc>",
-        svg.width, svg.height, id, for_xml(title), for_xml(description));
+        svg.width, svg.height, id, for_xml(title), for_xml(description), svg.of_image);
     nlohmann::ordered_json tints = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < palette.size(); ++k)
         tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});

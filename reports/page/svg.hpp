@@ -34,6 +34,7 @@ inline constexpr std::array<Tint, 10> palette{{
 struct Svg {
     int width = 0, height = 0;  // [px]
     std::string elements{};
+    std::string of_image{};  // attributes of the image, with a leading space
 
     // Path data of a polyline, without repeated points; "" for fewer than two points.
     static std::string polyline(const std::vector<PaperPoint>& points, bool closed = false);

@@ -22,9 +22,9 @@ json two_scenes() {
     return result;
 }
 
-std::string page() {
+std::string page(const json& result = two_scenes()) {
     const Folder folder;
-    write_report(two_scenes(), "result.json", folder.path / "r");
+    write_report(result, "result.json", folder.path / "r");
     return text_of(folder.path / "r" / "report.html");
 }
 
@@ -47,14 +47,15 @@ std::vector<std::string> parts(const std::string& text, const std::string& open,
 
 TEST(Page, AsksForNothingFromOutside) {
     const std::string html = page();
-    EXPECT_NE(
-        html.find(
-            "Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\""),
-        html.npos);
+    // the page's own script, by its hash, and no other
+    EXPECT_TRUE(std::regex_search(
+        html, std::regex("Content-Security-Policy\" content=\"default-src 'none'; style-src "
+                         "'unsafe-inline'; script-src 'sha256-[A-Za-z0-9+/]{43}='\"")));
+    EXPECT_EQ(parts(html, "<script", ">"), std::vector<std::string>{"<script>"});
     for (const auto& target : all(html, "(?:href|src)=\"([^\"]*)\""))
         EXPECT_TRUE(target.starts_with("#")) << target;
     for (const char* fetching :
-         {"<script", "<img", "<link", "<iframe", "<object", "url(", "@import", "@font-face"})
+         {"<img", "<link", "<iframe", "<object", "url(", "@import", "@font-face"})
         EXPECT_EQ(html.find(fetching), html.npos) << fetching;
     for (const auto& address : all(html, "(https?://[^\" <]*)"))
         EXPECT_TRUE(address == "http://www.w3.org/2000/svg" ||
@@ -130,16 +131,42 @@ TEST(Page, TheMarkdownTwinSaysTheSame) {
     EXPECT_EQ(all(md, "\\]\\((figures/)").size(), parts(html, "<svg", "</svg>").size());
 }
 
+support::Said in_a_browser(const Folder& folder, const std::string& html,
+                           const std::string& options) {
+    return support::says(
+        "chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
+        "--user-data-dir=" +
+        (folder.path / "profile").string() + " " + options + " file://" +
+        folder.write("page.html", html));
+}
+
 // In a browser: a script added by the test measures the page and writes the result into the body.
-json measured_in_a_browser(const std::string& width, const std::string& scheme) {
+json measured_in_a_browser(std::string html, const std::string& script, const std::string& width,
+                           const std::string& scheme = "1") {
     const Folder folder;
-    std::string html = page();
     const std::string policy = all(html, "(<meta http-equiv[^>]*>)").at(0);
     html.replace(html.find(policy), policy.size(), "");
     html.insert(
         html.find("</head>"),
         "<script>window.wrong=[];addEventListener('error',e=>wrong.push(e.message));</script>");
-    html.insert(html.find("</body>"), R"(<script>
+    html.insert(html.find("</body>"), "<script>" + script + R"(
+document.body.innerHTML='<pre>'+JSON.stringify(seen)+'</pre>';
+</script>)");
+    const auto said =
+        in_a_browser(folder, html,
+                     "--window-size=" + width +
+                         ",900 --blink-settings=preferredColorScheme=" + scheme + " --dump-dom");
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(said.err.find(":CONSOLE"), said.err.npos) << said.err;
+    const auto found = all(said.out, "<pre>(\\{.*\\})</pre>");
+    if (found.size() != 1) {
+        ADD_FAILURE() << said.out.substr(0, 2000) << said.err;
+        return nullptr;
+    }
+    return json::parse(found[0]);
+}
+
+const std::string layout = R"(
 document.querySelectorAll('details.evidence').forEach(d=>d.open=true);
 const boxes=[...document.querySelectorAll('svg')].map(s=>{const b=s.getBoundingClientRect();return [b.width,b.height]});
 const luminance=c=>{const v=c.match(/[\d.]+/g).slice(0,3).map(x=>x/255).map(x=>x<=.04045?x/12.92:((x+.055)/1.055)**2.4);
@@ -154,30 +181,17 @@ for(const s of document.querySelectorAll('svg')){const all=s.getBoundingClientRe
   t.forEach(([a,p],i)=>{if(p.left<all.left-1||p.right>all.right+1||p.top<all.top-1||p.bottom>all.bottom+1)clashes.push(a+' leaves '+s.querySelector('title').textContent);
     t.slice(0,i).forEach(([b,q])=>{if(p.left<q.right-.5&&q.left<p.right-.5&&p.top<q.bottom-1.5&&q.top<p.bottom-1.5)clashes.push(s.querySelector('title').textContent+': '+a+' on '+b)})})}
 const outside=[...document.querySelectorAll('table,pre,svg,p,dl,h1,h2,h3,h4')].filter(e=>!e.closest('.scroll,pre')&&e.getBoundingClientRect().right>innerWidth+1).map(e=>e.tagName);
-document.body.innerHTML='<pre>'+JSON.stringify({boxes,wrong,clashes,outside,requests:performance.getEntriesByType('resource').length,
+const seen={boxes,wrong,clashes,outside,requests:performance.getEntriesByType('resource').length,
   page:document.documentElement.scrollWidth,window:innerWidth,dark:paper<.2,
-  contrast:Math.min(...words.map(contrast)),words:words.length})+'</pre>';
-</script>)");
-    const auto file = folder.write("page.html", html);
-    const auto said = support::says(
-        "chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr "
-        "--user-data-dir=" +
-        (folder.path / "profile").string() + " --window-size=" + width +
-        ",900 --blink-settings=preferredColorScheme=" + scheme + " --dump-dom file://" + file);
-    EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_EQ(said.err.find(":CONSOLE"), said.err.npos) << said.err;
-    const auto found = all(said.out, "<pre>(\\{.*\\})</pre>");
-    if (found.size() != 1) {
-        ADD_FAILURE() << said.out.substr(0, 2000) << said.err;
-        return nullptr;
-    }
-    return json::parse(found[0]);
-}
+  contrast:Math.min(...words.map(contrast)),words:words.length};
+)";
+
+bool no_browser() { return support::says("command -v chromium").code != 0; }
 
 TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
-    if (support::says("command -v chromium").code != 0) GTEST_SKIP() << "chromium is not installed";
+    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     for (const auto& [width, scheme] : {std::pair{"1280", "1"}, std::pair{"390", "0"}}) {
-        const json seen = measured_in_a_browser(width, scheme);
+        const json seen = measured_in_a_browser(page(), layout, width, scheme);
         ASSERT_TRUE(seen.is_object());
         EXPECT_TRUE(seen["wrong"].empty()) << seen["wrong"];
         EXPECT_EQ(seen["requests"], 0);
@@ -194,6 +208,78 @@ TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
         EXPECT_GE(seen["contrast"], 4.5) << "of text to paper";
         EXPECT_GT(seen["words"], 500);
     }
+}
+
+// Values under the pointer, and curves switched by the legend. The policy of the page lets this
+// script run: it names its hash.
+TEST(Browser, TellsTheValueUnderThePointerAndSwitchesCurves) {
+    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+    const std::string html = page(compared_result("front_axle"));
+    const json seen = measured_in_a_browser(html, R"(
+const svg=[...document.querySelectorAll('svg[data-x]')].find(s=>s.querySelector('title').textContent=='Toe angle');
+const box=svg.getBoundingClientRect(),[x0,x1,low,high]=svg.dataset.x.split(' ').map(Number);
+const at=box.left+(x0+(0-low)/(high-low)*(x1-x0))*box.width/svg.viewBox.baseVal.width;
+const point=()=>{svg.dispatchEvent(new PointerEvent('pointermove',{clientX:at,clientY:box.top+50}));return document.querySelector('.tip').textContent};
+const before=point();
+const entry=[...svg.querySelectorAll('g[data-e]')].find(g=>g.textContent=='vertical');
+entry.dispatchEvent(new MouseEvent('click'));
+const hidden=point();
+entry.dispatchEvent(new MouseEvent('click'));
+svg.dispatchEvent(new PointerEvent('pointerleave'));
+const seen={before,hidden,again:point(),plots:document.querySelectorAll('svg[data-x]').length,
+  silent:[...document.querySelectorAll('svg[data-x]')].filter(s=>!s.querySelector('g[data-k] path')).length};
+)",
+                                            "1280");
+    ASSERT_TRUE(seen.is_object());
+    EXPECT_TRUE(seen["before"].get<std::string>().starts_with("wheel travel [mm]: 0\ntoe [deg]\n"))
+        << seen;
+    for (const char* name : {"\nparallel: ", "\nopposite: ", "\nvertical: ", "\nroll: "})
+        EXPECT_NE(seen["before"].get<std::string>().find(name), std::string::npos) << seen;
+    EXPECT_EQ(seen["hidden"].get<std::string>().find("vertical"), std::string::npos) << seen;
+    EXPECT_EQ(seen["again"], seen["before"]);
+    EXPECT_GT(seen["plots"], 10);
+    EXPECT_EQ(seen["silent"], 0);
+    const Folder folder;
+    const auto said = in_a_browser(folder, html, "--dump-dom");
+    EXPECT_NE(said.out.find("<html lang=\"en\" class=\"js\">"), std::string::npos) << said.err;
+}
+
+TEST(Browser, RowsOfRatesFitAPhone) {
+    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+    const json seen = measured_in_a_browser(page(compared_result("front_axle")), R"(
+const rows=[...document.querySelectorAll('section[id$=rates] tr,section[id$=first] tr')];
+const cells=[...document.querySelectorAll('section[id$=rates] td')];
+const seen={rows:rows.length,tallest:Math.max(...rows.map(r=>r.getBoundingClientRect().height)),
+  right:Math.max(...cells.map(c=>c.getBoundingClientRect().right)),window:innerWidth};
+)",
+                                            "390");
+    ASSERT_TRUE(seen.is_object());
+    EXPECT_GT(seen["rows"], 30);
+    EXPECT_LE(seen["tallest"], 100) << "px";
+    EXPECT_LE(seen["right"], seen["window"]) << "unit and definition are on the screen";
+}
+
+// Pages of A4, by the objects of the PDF.
+int printed_pages(const std::string& html) {
+    const Folder folder;
+    const std::string pdf = (folder.path / "page.pdf").string();
+    EXPECT_EQ(in_a_browser(folder, html, "--no-pdf-header-footer --print-to-pdf=" + pdf).code, 0);
+    return static_cast<int>(all(text_of(pdf), "(/Type /Page)[^s]").size());
+}
+
+TEST(Browser, PartOneOfAnAxlePrintsOnFivePages) {
+    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+    std::string html = page(compared_result("front_axle"));
+    EXPECT_LE(html.size(), 1'500'000u);
+    const int whole = printed_pages(html);
+    const auto evidence = html.find("<details class=\"evidence\"");
+    ASSERT_NE(evidence, html.npos);
+    html.erase(evidence, html.find("</main>") - evidence);
+    const int first = printed_pages(html);
+    EXPECT_GE(first, 3);
+    EXPECT_LE(first, 5);
+    EXPECT_GT(whole, first) << "the evidence is an appendix in print, though folded on the screen";
+    EXPECT_LE(whole, first + 15);
 }
 
 }  // namespace

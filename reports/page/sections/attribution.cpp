@@ -79,24 +79,18 @@ std::optional<Section> attribution_section(const JsonCursor& scene) {
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto gaps = read_table((*study)["gap"], compare::gap_table({}, {}));
     if (gaps.rows.empty()) return std::nullopt;
-    bool any = false;
     for (const auto& branch : distinct(gaps, "branch")) {
+        if (!leads(scene, branch)) continue;
         const auto found = where(gaps, "branch", branch);
         const std::string reading = distinct(found, "reading").front();
         const auto shares = where(found, "reading", reading);
         if (const auto& why = words(shares, 0, "not attributed"); !why.empty())
             section.words["notes"].push_back({{"branch", branch}, {"why", why}});
         else if (auto made = group(branch, reading, shares,
-                                   where(where(outputs, "branch", branch), "reading", reading))) {
-            any = true;
-            made->table.folded = true;
-            if (leads(scene, branch))
-                section.figures.push_back(std::move(*made));
-            else
-                section.tables.push_back(std::move(made->table));
-        }
+                                   where(where(outputs, "branch", branch), "reading", reading)))
+            section.figures.push_back(std::move(*made));
     }
-    section.words["empty"] = !any;
+    section.words["empty"] = section.figures.empty();
     return section;
 }
 

@@ -117,9 +117,9 @@ std::optional<Section> convergence_section(const JsonCursor& scene) {
     const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
     const auto steps = read_table((*study)["step_errors"], compare::step_table({}));
     for (const auto& branch : distinct(outputs, "branch")) {
+        if (!leads(scene, branch)) continue;
         const auto levels = where(where(steps, "branch", branch), "method", "published");
-        if (leads(scene, branch))
-            if (auto made = group(branch, levels)) section.figures.push_back(std::move(*made));
+        if (auto made = group(branch, levels)) section.figures.push_back(std::move(*made));
         const auto found = where(outputs, "branch", branch);
         const auto readings = distinct(found, "reading");
         const auto published = where(found, "method", "published");

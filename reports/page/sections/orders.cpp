@@ -65,14 +65,11 @@ std::optional<Section> orders_section(const JsonCursor& scene) {
     auto& nearest = section.words["nearest"] = nlohmann::ordered_json::array();
     const auto table = read_table(*orders, compare::order_table({}));
     for (const auto& branch : distinct(table, "branch")) {
+        if (!leads(scene, branch)) continue;
         const auto levels = where(table, "branch", branch);
-        if (auto made = group(branch, levels); leads(scene, branch))
-            section.figures.push_back(std::move(made));
-        else
-            section.tables.push_back(std::move(made.table));
+        section.figures.push_back(group(branch, levels));
         const std::size_t last = levels.rows.size() - 1;
-        if (const double radius = number(levels, last, "singularity");
-            std::isfinite(radius) && leads(scene, branch))
+        if (const double radius = number(levels, last, "singularity"); std::isfinite(radius))
             nearest.push_back(
                 {{"branch", branch},
                  {"radius", number(radius, 3)},
