@@ -230,11 +230,7 @@ StepConvergence step_convergence(Levels levels, double formal_order, const Floor
     result.first = static_cast<int>(first);
     result.count = static_cast<int>(used - first);
 
-    // The order agrees with the formal one within a tenth or two standard errors, at most a quarter
-    // of an order.
-    const double two_errors = std::isfinite(result.order_error) ? 2 * result.order_error : 0;
-    result.as_formal =
-        std::abs(law.p - formal_order) <= std::min(0.25, std::max(0.1 * formal_order, two_errors));
+    result.as_formal = agrees_with_formal(law.p, result.order_error, formal_order);
 
     // Error of the law at the finest level. The finest value may lie on the fitted limit by chance,
     // so the larger of both counts. Where levels lie at round-off, the finest value is the limit,
@@ -269,6 +265,33 @@ double steps_for(const StepConvergence& convergence, Levels levels, double error
                     window.back().steps * std::pow(finest_error / error, 1 / convergence.order));
 }
 
+bool agrees_with_formal(double order, double order_error, double formal_order) {
+    const double two_errors = std::isfinite(order_error) ? 2 * order_error : 0;
+    return std::abs(order - formal_order) <=
+           std::min(0.25, std::max(0.1 * formal_order, two_errors));
+}
+
+namespace {
+
+// Straight line through ln |error| over ln h: p is the slope, `scatter` the sum of squares about it.
+struct Slope {
+    double p = 0, scatter = 0, stretch = 0;
+};
+Slope slope_of(Levels errors) {
+    Numbers x(errors.size()), y(errors.size());
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+        x[k] = -std::log(errors[k].steps);
+        y[k] = std::log(std::abs(errors[k].value));
+    }
+    x -= mean(x);
+    y -= mean(y);
+    const double p = dot(x, y) / dot(x, x);
+    y -= p * x;
+    return {p, dot(y, y), dot(x, x)};
+}
+
+}  // namespace
+
 OrderFit order_of(Levels errors, double floor) {
     OrderFit result;
     if (!all_finite(errors)) return result;
@@ -281,19 +304,26 @@ OrderFit order_of(Levels errors, double floor) {
     result.first = static_cast<int>(first);
     result.count = static_cast<int>(end - first);
     if (result.count < 2) return result;
-
-    Numbers x(end - first), y(end - first);  // ln h, ln |error|: p is the slope
-    for (std::size_t k = first; k < end; ++k) {
-        x[k - first] = -std::log(errors[k].steps);
-        y[k - first] = std::log(std::abs(errors[k].value));
-    }
-    x -= mean(x);
-    y -= mean(y);
-    result.order = dot(x, y) / dot(x, x);
-    y -= result.order * x;
+    const Slope slope = slope_of(errors.subspan(first, end - first));
+    result.order = slope.p;
     if (result.count > 2)
-        result.order_error = std::sqrt(dot(y, y) / (result.count - 2) / dot(x, x));
+        result.order_error = std::sqrt(slope.scatter / (result.count - 2) / slope.stretch);
     return result;
+}
+
+OrderFit asymptotic_order_of(Levels errors, double floor) {
+    OrderFit best = order_of(errors, floor);
+    const auto end = static_cast<std::size_t>(best.first + best.count);
+    const auto scatter = [&](const OrderFit& fit) {
+        const auto first = static_cast<std::size_t>(fit.first);
+        return std::sqrt(slope_of(errors.subspan(first, end - first)).scatter / (fit.count - 2));
+    };
+    for (auto first = static_cast<std::size_t>(best.first) + 1; first + 4 <= end; ++first) {
+        OrderFit fit = order_of(errors.subspan(first), floor);
+        fit.first = static_cast<int>(first);
+        if (scatter(fit) <= std::ldexp(scatter(best), best.first - fit.first)) best = fit;
+    }
+    return best;
 }
 
 }  // namespace elastocheck::compare

@@ -66,4 +66,12 @@ struct OrderFit {
 };
 OrderFit order_of(std::span<const Level> errors, double floor);
 
+// The same without coarse levels that are not yet asymptotic: each excluded level at least halves
+// the scatter about the straight line, and four levels remain.
+OrderFit asymptotic_order_of(std::span<const Level> errors, double floor);
+
+// Whether an observed order agrees with the formal one: within a tenth or two standard errors, at
+// most a quarter of an order. False for a formal order of NaN.
+bool agrees_with_formal(double order, double order_error, double formal_order);
+
 }  // namespace elastocheck::compare

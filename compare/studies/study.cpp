@@ -82,19 +82,66 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
     return d;
 }
 
+// Station at which the last refinement moves the value most: there the leading term of the error
+// is largest, while at coarse levels the next one may be.
+std::size_t most_moved(const std::vector<std::vector<double>>& levels) {
+    const auto moves = difference(levels[levels.size() - 2], levels.back());
+    return static_cast<std::size_t>(
+        std::ranges::max_element(moves, {}, [](double e) { return std::abs(e); }) - moves.begin());
+}
+
+StepConvergence at_station(const std::vector<int>& steps,
+                           const std::vector<std::vector<double>>& levels, std::size_t station,
+                           double formal, double reference) {
+    std::vector<Level> sequence;
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        sequence.push_back({static_cast<double>(steps[l]), levels[l][station]});
+    return step_convergence(sequence, formal, {round_off, reference});
+}
+
 // Own limit at every station: its Richardson limit where the sequence converges there, else the
-// finest value.
+// finest value. Where the coefficient C(a) of the error C h^p crosses zero along the branch, the
+// next term sets the observed order, which is no basis for an extrapolation. So at stations whose
+// order is not p, that of the station with the largest error (the formal one where it agrees), the
+// two finest levels v and w, h_v = r h_w, give the limit:  w + (w - v) / (r^p - 1).
 std::vector<double> own_limit(const std::vector<int>& steps,
                               const std::vector<std::vector<double>>& levels, double formal) {
+    const auto leading = at_station(steps, levels, most_moved(levels), formal, 0);
+    const double p = leading.as_formal ? formal : leading.order;
+    const auto& finest = levels.back();
+    const auto& before = levels[levels.size() - 2];
+    const double r = static_cast<double>(steps.back()) / steps[steps.size() - 2];
     std::vector<double> limit;
-    for (std::size_t s = 0; s < levels.front().size(); ++s) {
-        std::vector<Level> sequence;
-        for (std::size_t l = 0; l < levels.size(); ++l)
-            sequence.push_back({static_cast<double>(steps[l]), levels[l][s]});
-        const auto c = step_convergence(sequence, formal, {round_off, 0});
-        limit.push_back(c.behaviour == Behaviour::converging ? c.limit : levels.back()[s]);
+    for (std::size_t s = 0; s < finest.size(); ++s) {
+        const auto c = at_station(steps, levels, s, formal, 0);
+        const bool converges = c.behaviour == Behaviour::converging;
+        const bool leads = leading.behaviour != Behaviour::converging ||
+                           agrees_with_formal(c.order, c.order_error, p);
+        limit.push_back(!converges ? finest[s]
+                        : leads    ? c.limit
+                                   : finest[s] + (finest[s] - before[s]) / (std::pow(r, p) - 1));
     }
     return limit;
+}
+
+// Order of the largest step error over the branch. The value at the end is no measure of it: where
+// the coefficient of the leading error term crosses zero there, the next term sets its order.
+void add_order(ChannelStudy& study, const std::vector<int>& steps,
+               const std::vector<std::vector<double>>& levels, double formal) {
+    constexpr double hardly_any = 0.1, above_rounding = 10;
+    std::vector<Level> errors;
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        const auto N = static_cast<double>(steps[l]);
+        errors.push_back({N, study.step_error_max[l]});
+        study.zero_at_end = study.zero_at_end ||
+                            (errors.back().value > above_rounding * round_off &&
+                             std::abs(study.step_error_end[l]) < hardly_any * errors.back().value);
+    }
+    study.behaviour =
+        at_station(steps, levels, most_moved(levels), formal, study.uncertainty).behaviour;
+    if (study.behaviour != Behaviour::converging) return;
+    study.order = asymptotic_order_of(errors, above_rounding * round_off);
+    study.as_formal = agrees_with_formal(study.order.order, study.order.order_error, formal);
 }
 
 ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curve>& levels,
@@ -109,19 +156,20 @@ ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curv
     result.range = std::max(high, start) - std::min(low, start);
 
     std::vector<std::vector<double>> values;
-    std::vector<Level> sequence;
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        values.push_back(at_stations(levels[l], channel, by, span));
-        sequence.push_back({static_cast<double>(steps[l]), values.back().back()});
-    }
-    result.end = step_convergence(sequence, formal, {round_off, result.uncertainty});
+    for (const auto& level : levels) values.push_back(at_stations(level, channel, by, span));
+    result.end = at_station(steps, values, stations - 1, formal, result.uncertainty);
     const auto limit = own_limit(steps, values, formal);
+    if (result.end.behaviour == Behaviour::converging && result.end.limit != limit.back()) {
+        result.end.band = std::max(result.end.band, std::abs(result.end.limit - limit.back()));
+        result.end.limit = limit.back();
+    }
     for (const auto& level : values) {
         const auto error = difference(level, limit);
         result.step_error_end.push_back(error.back());
         result.step_error_max.push_back(largest(error));
         result.step_error_rms.push_back(rms(error));
     }
+    add_order(result, steps, values, formal);
     const auto gap = difference(limit, truth);
     result.gap = gap.back();
     result.gap_max = largest(gap);

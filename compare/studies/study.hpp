@@ -33,7 +33,12 @@ struct StudyOptions {
 
 // One channel of one method over one branch, in the channel's unit.
 struct ChannelStudy {
-    StepConvergence end;                                 // at the end of the branch
+    // of the value with the largest step error on the branch
+    Behaviour behaviour = Behaviour::too_few_levels;
+    OrderFit order;          // at which step_error_max falls; only where `behaviour` is converging
+    bool as_formal = false;  // it agrees with the formal order
+    bool zero_at_end = false;  // the step error at the end is below a tenth of step_error_max
+    StepConvergence end;       // of the value at the end of the branch: own limit and its band
     std::vector<double> step_error_end;                  // per level: value - own limit, signed
     std::vector<double> step_error_max, step_error_rms;  // per level, over the branch
     double gap = 0;                                      // own limit - reference at the end, signed

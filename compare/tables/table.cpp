@@ -224,6 +224,17 @@ Table formulation_table(const FormulationStudy& study, const Comparison& compari
     return table;
 }
 
+namespace {
+
+std::string behaviour_words(const ChannelStudy& study) {
+    std::string text = name(study.behaviour);
+    if (study.behaviour == Behaviour::converging && study.zero_at_end)
+        text += "; nearly zero at the end";
+    return text;
+}
+
+}  // namespace
+
 Table study_table(const Study& study) {
     Table table{"convergence",
                 {words("branch"),
@@ -231,8 +242,8 @@ Table study_table(const Study& study) {
                  words("reading"),
                  words("output"),
                  words("unit"),
-                 words("behaviour"),
-                 {"order"},
+                 words("behaviour", "of the value with the largest step error on the branch"),
+                 {"order", "", "at which the largest step error over the branch falls"},
                  {"order error", "", "its standard error"},
                  words("as formal", "the order agrees with the method's"),
                  {"limit", "", "own limit for infinitely many steps, at the end"},
@@ -268,10 +279,10 @@ Table study_table(const Study& study) {
                                                reading,
                                                study.channels[c].name,
                                                symbol(study.channels[c].unit),
-                                               name(s.end.behaviour),
-                                               s.end.order,
-                                               s.end.order_error,
-                                               s.end.as_formal ? "yes" : "",
+                                               behaviour_words(s),
+                                               s.order.order,
+                                               s.order.order_error,
+                                               s.as_formal ? "yes" : "",
                                                s.end.limit,
                                                s.end.band,
                                                s.step_error_max.back(),

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -47,6 +48,64 @@ TEST(Study, SeparatesStepErrorFromFormulationGap) {
     EXPECT_NEAR(z.step_error_end[0] / z.step_error_end[1], 2, 0.1);
     // At equal travel a bar has no error.
     EXPECT_LE(std::abs(s.branches[0].methods[0].equal_abscissa[0].gap), 1e-6);
+}
+
+// Curves with the error (1 - a) h² + h³: the coefficient of h² is zero at the end, where the values
+// fall with h³.
+TEST(Study, TheOrderIsThatOfTheLargestErrorThoughTheEndHasAnother) {
+    const Model model = compile(support::scene("bushing_pair"));
+    const auto all = motion(model);
+    const std::vector<int> steps{10, 20, 40, 80, 160, 320};
+    const auto made = [&](double h) {
+        Curve curve;
+        curve.unit = Unit::newton;
+        for (int k = 0; k <= 60; ++k) {
+            const double a = k / 60., error = 3 * (1 - a) * a * h * h + a * h * h * h;
+            append(curve, a, std::vector<double>(all.size(), a + error));
+        }
+        return curve;
+    };
+    References known;
+    known.truth = known.other = made(0);
+    std::vector<Curve> levels;
+    for (const int N : steps) levels.push_back(made(1. / N));
+    MethodStudy study;
+    study_levels(study, all, {0}, steps, levels, known, 2);
+    const ChannelStudy& found = study.equal_parameter.front();
+    EXPECT_EQ(found.behaviour, Behaviour::converging);
+    EXPECT_NEAR(found.end.order, 3, 0.05);
+    EXPECT_NEAR(found.order.order, 2, 0.02);
+    EXPECT_LE(found.order.order_error, 0.02);
+    EXPECT_TRUE(found.as_formal);
+    EXPECT_TRUE(found.zero_at_end);
+    for (std::size_t l = 1; l < steps.size(); ++l)
+        EXPECT_NEAR(found.step_error_max[l - 1] / found.step_error_max[l], 4, 0.15);
+}
+
+// Of every converging output the printed errors fall as the printed order says.
+TEST(Study, TheErrorsThatAreShownFallByTheOrderThatIsShown) {
+    int compared = 0;
+    for (const char* name : {"bushing_pair", "chrono_mcpherson"}) {
+        const Study s = study(compile(support::scene(name)), options({"published", "tangent"}));
+        for (const auto& branch : s.branches)
+            for (const auto& method : branch.methods)
+                for (const auto* reading : {&method.equal_parameter, &method.equal_abscissa})
+                    for (const auto& channel : *reading) {
+                        if (channel.behaviour != Behaviour::converging) continue;
+                        const auto& fit = channel.order;
+                        ASSERT_GE(fit.count, 2) << name;
+                        const auto last = static_cast<std::size_t>(fit.first + fit.count - 1);
+                        const auto first = static_cast<std::size_t>(fit.first);
+                        const double whole = std::log2(channel.step_error_max[first] /
+                                                       channel.step_error_max[last]) /
+                                             (fit.count - 1);
+                        EXPECT_NEAR(fit.order, whole,
+                                    0.02 + (fit.count > 2 ? 2 * fit.order_error : 0))
+                            << name;
+                        ++compared;
+                    }
+    }
+    EXPECT_GT(compared, 30);
 }
 
 TEST(Study, APublishedRecursionWithoutStoredLeversHasNoGap) {

@@ -233,9 +233,10 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
         "/bushing_pair.yaml --method published,tangent --steps 20,40,80,160,320 -o " +
         (folder.path / "out").string());
     EXPECT_EQ(said.code, 0) << said.err;
-    for (const char* part : {"branch 'lift' at equal load", "branch 'lift' at equal nose_z",
-                             "  published ", "  tangent ", "|Φ| at its end, eq. (31)",
-                             "whole = lever + axis + load + rest", "conclusive"})
+    for (const char* part :
+         {"branch 'lift' at equal load: order at which the largest step error",
+          "branch 'lift' at equal nose_z", "  published ", "  tangent ", "|Φ| at its end, eq. (31)",
+          "whole = lever + axis + load + rest", "conclusive"})
         EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     const auto& study = result["scenes"][0]["convergence"];

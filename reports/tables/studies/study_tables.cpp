@@ -70,7 +70,8 @@ std::string study_text(const Model& model, const compare::Study& study,
         for (const auto& reading : distinct(levels, "reading"))
             fmt::format_to(
                 out,
-                "\nbranch '{0}' {1}: orders of the steps, and what no step count removes\n{2}"
+                "\nbranch '{0}' {1}: order at which the largest step error over the branch falls, "
+                "and what no step count removes\n{2}"
                 "\nbranch '{0}' {1}: step errors, largest over the branch, over the steps\n{3}",
                 branch, reading,
                 text(where(where(outputs, "branch", branch), "reading", reading), study_columns),
