@@ -412,6 +412,25 @@ TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
     const Folder folder;
     const std::string lines =
         solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
+// A candidate has no |Φ|, so that table is left out.
+TEST(CandidateCommand, ConvergeHasNoTableOfConstraintErrorsOfACandidate) {
+    const Folder folder;
+    std::string levels;
+    for (const int steps : {40, 80, 160})
+        levels += fmt::format(
+            " --candidate {}={}", steps,
+            solved(folder, fmt::format("{}.csv", steps),
+                   fmt::format("--method published --channels 'wheel_centre_*' --steps {} -o",
+                               steps)));
+    const Said said = elastocheck_says("converge " + strut + " --steps 40,80,160,320,640" + levels);
+    const auto own = said.out.find("the candidate: ");
+    ASSERT_NE(own, said.out.npos) << said.out << said.err;
+    EXPECT_TRUE(contains(said.out.substr(0, own), "|Φ| at its end")) << said.out;
+    EXPECT_FALSE(contains(said.out.substr(own), "|Φ|")) << said.out;
+    EXPECT_TRUE(contains(said.out.substr(own), "order at which the largest step error"))
+        << said.out;
+}
+
     std::vector<std::string> rows;
     for (const auto& line : parts_of(text_of(lines), '\n')) {
         const json state = json::parse(line);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "reports/tables/select.hpp"
@@ -77,8 +79,13 @@ std::string study_text(const Model& model, const compare::Study& study,
                 text(where(where(outputs, "branch", branch), "reading", reading), study_columns),
                 over_steps(where(levels, "reading", reading), {"method", "output", "unit"},
                            "largest"));
-        fmt::format_to(out, "\nbranch '{}': |Φ| at its end, eq. (31), over the steps\n{}", branch,
-                       over_steps(levels, {"method"}, "constraint error"));
+        // A candidate does not give |Φ|.
+        if (const std::size_t c = column(levels, "constraint error");
+            std::ranges::any_of(levels.rows, [&](const auto& row) {
+                return std::isfinite(std::get<double>(row[c]));
+            }))
+            fmt::format_to(out, "\nbranch '{}': |Φ| at its end, eq. (31), over the steps\n{}",
+                           branch, over_steps(levels, {"method"}, "constraint error"));
         const auto made = where(gaps, "branch", branch);
         for (const auto& reading : distinct(made, "reading"))
             fmt::format_to(
