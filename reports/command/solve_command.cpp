@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -101,6 +102,52 @@ std::vector<Channel> requested_channels(const Model& model,
     return chosen(all, patterns);
 }
 
+// Largest differences between two states in the main outputs, in words: "2.2 mm (wheel_centre_z)
+// and 0.0068 deg (toe)".
+std::string differences(const Model& model, const Branch& branch, const Equilibrium& state,
+                        const Equilibrium& truth) {
+    auto main = compare::channels(model);
+    std::erase_if(main, [](const Channel& c) { return !c.main || !c.kinematic(); });
+    const auto is = compare::evaluate(model, branch, main, state),
+               right = compare::evaluate(model, branch, main, truth);
+    std::string text;
+    for (const auto unit : {compare::Unit::mm, compare::Unit::deg}) {
+        const Channel* worst = nullptr;
+        double off = 0;
+        for (std::size_t c = 0; c < main.size(); ++c) {
+            const double by = compare::worse(std::abs(is[c] - right[c]), off);
+            if (main[c].unit != unit || (worst != nullptr && by == off)) continue;
+            worst = &main[c], off = by;
+        }
+        if (worst != nullptr)
+            text += fmt::format("{}{:.2g} {} ({})", text.empty() ? "" : " and ", off, symbol(unit),
+                                worst->name);
+    }
+    return text;
+}
+
+// Error of a method at the end of a branch side: its state there against one solve of the
+// equilibrium leg at the same parameter.
+std::string error_at_end(const Model& model, compare::BranchSide way, const Equilibrium& state) {
+    const compare::Unit unit = compare::unit_of(way.branch.unit);
+    const std::string where =
+        fmt::format("at {:g} {}, the end", compare::in_unit(unit) * way.branch.to, symbol(unit));
+    way.branch.steps = 1;
+    std::optional<Equilibrium> truth;
+    const EquilibriumPath path = compare::walk(way, {.leg = compare::Leg::equilibrium},
+                                               [&](const Equilibrium& found) { truth = found; });
+    if (path.outcome != Outcome::converged || !truth)
+        return fmt::format("its error {} is not known: equilibrium leg: {}: {}", where,
+                           name(path.outcome), path.detail);
+    return fmt::format("off by {} {}, from the equilibrium leg there",
+                       differences(model, way.branch, state, *truth), where);
+}
+
+// The last recorded parameter is the end but for rounding.
+bool is_end(const Branch& way, double load) {
+    return std::abs(load - way.to) <= 1e-12 * std::abs(way.to);
+}
+
 // Writes each row when its point is found, except for the branch side that is solved in reverse.
 // Invalid requests are rejected before the work. Returns the exit code; for a branch that does not
 // converge, the rows reach to its last point. The CSV goes to the file of `delivery` or to standard
@@ -140,6 +187,8 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             : std::nullopt;
     compare::SolverSettings solver = request.solver;
     solver.error_bound = error_bound || promise;
+    // A method with equal steps promises no accuracy, so its error is told.
+    const bool approximate = leg == compare::Leg::recursive && recursive::has_steps(how.method);
     for (const auto& branch : model.branches) {
         compare::BranchErrorBounds said{promise};
         if (csv) progress(branch.name);
@@ -147,11 +196,14 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         compare::Analyses analyses;
         compare::PathCurve whole;
         whole.curve.unit = compare::unit_of(branch.unit);
+        std::vector<std::optional<Equilibrium>> ends(ways.size());
         const EquilibriumPath path = compare::walk(
             ways, solver,
             [&](const Equilibrium& state) {
                 if (solver.error_bound) add(said, state);
                 if (states) states->add(state_line(model, branch.name, state)), has_states = true;
+                for (std::size_t w = 0; approximate && w < ways.size(); ++w)
+                    if (is_end(ways[w].branch, state.load)) ends[w] = state;
                 return compare::row_of(model, channels, ways.front(), request.solver, state,
                                        analyses);
             },
@@ -169,6 +221,10 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         }
         for (const auto& line : messages(said, branch.unit))
             print_error("{}: {}: {}\n", who, branch.name, line);
+        for (std::size_t w = 0; w < ways.size(); ++w)
+            if (ends[w])
+                print_error("{}: {}: {}\n", who, branch.name,
+                            error_at_end(model, ways[w], *ends[w]));
         if (path.outcome == Outcome::converged) continue;
         print_error("{}: {}: {}\n", who, name(path.outcome), path.detail);
         code = could_not_judge;
@@ -215,7 +271,7 @@ SolveRequest with_solver(SolveRequest request, RecursionRequest recursion_reques
 
 Command solve_command() {
     struct Given {
-        std::string scene, output, method = "published";
+        std::string scene, output, method = name(compare::Leg::equilibrium);
         Settings settings;
         RecursionRequest recursion;
         SolveRequest request;
@@ -228,9 +284,8 @@ Command solve_command() {
     options.insert(
         options.end(),
         {{"--method", Text{&given->method, one_of(solvers())},
-          "published (default, or recursive), closed, balanced, tangent, chord, midpoint, adaptive "
-          "or "
-          "series; equilibrium; energy"},
+          "equilibrium (default) or energy; a fast method: published (or recursive), closed, "
+          "balanced, tangent, chord, midpoint, adaptive or series"},
          {"--account", Flag{&given->request.solver.error_bound},
           "report the extrapolated singular point and error estimates; adaptive and series always "
           "do"},

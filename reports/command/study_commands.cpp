@@ -46,9 +46,10 @@ struct CompareRequest {
     recursive::Options recursion;
     int every = 1;  // compares every `every`-th step
     Detail detail = Detail::required;
-    std::string within = "0.01mm,0.001deg,1%";  // tolerance of the verdict
-    CandidateRequest candidate = {};            // external solver, beside the legs
-    bool formulations = false;                  // adds the spread over bushing formulations
+    std::string within = {};          // tolerance of the verdict; empty: the default
+    bool verdict = false;             // asked for by a method or a tolerance
+    CandidateRequest candidate = {};  // external solver, beside the legs
+    bool formulations = false;        // adds the spread over bushing formulations
 };
 
 json document_of(const LoadedScene& loaded, const std::string& file) {
@@ -156,8 +157,10 @@ int inspect(const std::string& file, const Settings& settings, Detail detail, bo
 
 int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
                  const Delivery& delivery) {
-    (void)compare::parse_tolerance(
-        request.within, compare::Asks::forces_too);  // rejects an invalid tolerance before the work
+    const bool asked = !request.within.empty();
+    const auto tolerance = asked
+                               ? compare::parse_tolerance(request.within, compare::Asks::forces_too)
+                               : compare::default_tolerance;
     check(request.candidate, settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings, request.detail);
@@ -179,9 +182,8 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     progress("");
     delivery.print_text(tables(model, comparison));
     if (study) delivery.print_text(formulation_text(*study, comparison));
-    const auto tolerance = compare::parse_tolerance(request.within, compare::Asks::forces_too);
-    const bool asked = request.within != CompareRequest{}.within;
-    const auto judgement = compare::assess(model, comparison, tolerance, asked);
+    auto judgement = compare::assess(model, comparison, tolerance, asked);
+    judgement.requested = asked || request.verdict;
     std::vector<compare::CandidateJudgement> candidates;
     for (const auto& output :
          outputs_of(request.candidate, file,
@@ -352,7 +354,7 @@ Command inspect_command() {
 
 Command compare_command() {
     struct Given : Common {
-        RecursionRequest recursion;
+        RecursionRequest recursion{.method = ""};
         CompareRequest request;
         bool keep_all = false;
     };
@@ -364,21 +366,22 @@ Command compare_command() {
     options.push_back({"--formulations", Flag{&given->request.formulations},
                        "add the spread of the outputs over the bushing formulations of tools"});
     options.push_back({"--within", Text{&given->request.within},
-                       "required accuracy of the verdict: mm, deg, N, Nm, and % of the extent of "
-                       "forces, moments "
-                       "and rates (default: 0.01mm,0.001deg,1%)"});
+                       "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent of "
+                       "forces, moments and rates (with --method: 0.01mm,0.001deg,1%)"});
     add_recursion_options(options, given->recursion);
     options.push_back({"--method", Text{&given->recursion.method, one_of(methods)},
-                       "of the recursion: published (default), closed, balanced, tangent, chord, "
-                       "midpoint, adaptive "
-                       "or series"});
+                       "give a verdict on this method: published (shown without a verdict by "
+                       "default), closed, balanced, tangent, chord, midpoint, adaptive or series"});
     options.push_back(every_option(given->request.every));
     options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
     add_candidate_options(options, given->request.candidate);
     return {"compare", "Solve a scene with all three methods and show the deviations",
             std::move(options), [given](const std::string& line) {
                 CompareRequest request = given->request;
-                request.recursion = recursion(given->recursion);
+                RecursionRequest method = given->recursion;
+                request.verdict = !method.method.empty();
+                if (!request.verdict) method.method = RecursionRequest{}.method;
+                request.recursion = recursion(method);
                 request.detail = given->keep_all ? Detail::everything : Detail::required;
                 return compare_legs(given->scene, given->settings, request, given->delivery(line));
             }};

@@ -181,6 +181,12 @@ std::string recursion_of(const compare::Comparison& comparison) {
                                                    : fmt::format("the method '{}'", method);
 }
 
+std::string method_of(const compare::Comparison& comparison) {
+    const std::string method =
+        comparison.branches.empty() ? "" : comparison.branches.front().runs.front().method;
+    return method.empty() ? "published" : method;
+}
+
 // The substitute of the energy leg, and where it is used.
 std::string instead_of_energy(const compare::Comparison& comparison) {
     bool none = false, large = false;
@@ -219,12 +225,13 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
     const auto out = std::back_inserter(text);
     fmt::format_to(
         out,
-        "{}\n{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
+        "{}: the method '{}' of the linear recursion beside two full solutions\n"
+        "{} coordinates, {} constraints, {} unknowns. The recursion is {}, read against "
         "the equilibrium leg;\n"
         "share: of the channel's range over the branch; uncertainty: the energy leg{} against the "
         "equilibrium leg;\n"
         "rates: of the reference, with the recursion's error.\n",
-        model.name, coordinates(model), constraint_rows(model),
+        model.name, method_of(comparison), coordinates(model), constraint_rows(model),
         coordinates(model) + constraint_rows(model), recursion_of(comparison),
         instead_of_energy(comparison));
     const auto errors = compare::rate_errors(model, comparison);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <tuple>
 
@@ -92,6 +93,16 @@ std::string compared(const Assessment& j) {
                        others);
 }
 
+// The deviations without a verdict.
+std::string deviations(const Assessment& j) {
+    const std::string text = j.exact ? fmt::format("{} is exact to round-off", subject(j))
+                                     : fmt::format("{} is off from the full solution by up to {}{}",
+                                                   subject(j), worst_of(j), rate_of(j));
+    return fmt::format("{}{}; {}. No verdict was asked for: --within gives a tolerance.",
+                       static_cast<char>(std::toupper(static_cast<unsigned char>(text.front()))),
+                       text.substr(1), compared(j));
+}
+
 json worst_json(const std::optional<Worst>& worst) {
     if (!worst) return nullptr;
     return {{"channel", worst->channel},
@@ -125,6 +136,7 @@ std::string tolerance_text(const compare::Tolerance& tolerance, bool others) {
 }
 
 std::string sentence(const Assessment& j) {
+    if (!j.requested && j.verdict != Grade::not_judged) return deviations(j);
     switch (j.verdict) {
         case Grade::not_judged: {
             const std::string more =
@@ -163,7 +175,8 @@ json judgement_json(const Assessment& j) {
                 {"unit", symbol(j.wheel_rate->unit)},
                 {"off", j.wheel_rate->off},
                 {"as_position_mm", compare::as_position(*j.wheel_rate)}};
-    return {{"verdict", compare::name(j.verdict)},
+    const bool told = j.requested || j.verdict == Grade::not_judged;
+    return {{"verdict", told ? compare::name(j.verdict) : "not asked"},
             {"sentence", sentence(j)},
             {"method", j.method},
             {"tolerance", tolerance_json(j.tolerance, j.asked)},

@@ -17,7 +17,7 @@ std::string tolerance_text(const compare::Tolerance& tolerance, bool others);
 // A tolerance: mm, deg, N, Nm, share, and whether the user requested it ("asked").
 nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool asked);
 
-//   verdict         "pass", "fail", "not judged"
+//   verdict         "pass", "fail", "not judged"; "not asked" where no verdict was asked for
 //   sentence        as above
 //   method          of the recursion
 //   tolerance       mm, deg, N, Nm, share, and whether it was given or is the default

@@ -105,7 +105,7 @@ TEST(CandidateCommand, AStateOutOfBalanceIsNoFullSolutionThoughNoForceIsAsked) {
 TEST(CandidateCommand,
      ThePublishedRecursionRunFromOutsideGetsTheNumbersOfTheBuiltInOneDigitForDigit) {
     const Said said = judge("--steps 20 --json --candidate-command '" ELASTOCHECK_COMMAND
-                            " solve {scene} --steps {steps} -o {output}'");
+                            " solve {scene} --method published --steps {steps} -o {output}'");
     EXPECT_EQ(said.code, 1) << said.err;
     const json scene = json::parse(said.out)["scenes"][0];
     int same = 0;
@@ -466,7 +466,7 @@ TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
     const std::string out = (folder.path / "out").string();
     const Said said = elastocheck_says(fmt::format(
         "converge {} --steps 40,80,160,320,640 -o {} --candidate-command '" ELASTOCHECK_COMMAND
-        " solve {{scene}} --steps {{steps}} -o {{output}}'",
+        " solve {{scene}} --method published --steps {{steps}} -o {{output}}'",
         strut, out));
     EXPECT_EQ(said.code, 0) << said.err;
     const auto ours = cells_of(text_of(out + "/convergence.csv")),
@@ -488,16 +488,17 @@ TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
         ++converging;
     }
     EXPECT_GT(converging, 5);
-    const Said few = elastocheck_says(
-        "converge " + strut + " --candidate 75=" + solved(folder, "a.csv", "--steps 75 -o"));
+    const Said few = elastocheck_says("converge " + strut + " --candidate 75=" +
+                                      solved(folder, "a.csv", "--method published --steps 75 -o"));
     EXPECT_EQ(few.code, 3);
     EXPECT_TRUE(contains(few.out, "at least three numbers of steps")) << few.out;
 }
 
 TEST(CandidateCommand, CompareShowsItBesideTheLegs) {
     const Folder folder;
-    const Said said = elastocheck_says(fmt::format("compare {} --steps 10 --candidate {}", strut,
-                                                   solved(folder, "mine.csv", "--steps 10 -o")));
+    const Said said = elastocheck_says(
+        fmt::format("compare {} --steps 10 --candidate {}", strut,
+                    solved(folder, "mine.csv", "--method published --steps 10 -o")));
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(contains(said.out, "Fail: the candidate ‘mine’")) << said.out;
 }
@@ -507,7 +508,7 @@ TEST(CandidateCommand, ThePageShowsItsVerdictFirst) {
     const std::string out = (folder.path / "page").string();
     const Said said = elastocheck_says(
         fmt::format("report {}/pinned_bar.yaml -o {} --candidate-command '" ELASTOCHECK_COMMAND
-                    " solve {{scene}} --steps {{steps}} -o {{output}}'",
+                    " solve {{scene}} --method published --steps {{steps}} -o {{output}}'",
                     scenes, out));
     EXPECT_EQ(said.code, 1) << said.err;
     const std::string page = text_of(out + "/report.md");

@@ -98,6 +98,8 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
                                            (folder.path / "compared").string());
     EXPECT_EQ(compared.code, 0) << compared.err;
     EXPECT_TRUE(contains(compared.out, "series       converged")) << compared.out;
+    EXPECT_TRUE(contains(compared.out, ": the method 'series' of the linear recursion beside two"))
+        << compared.out;
     EXPECT_TRUE(contains(compared.out, "The recursion is the method 'series'")) << compared.out;
     EXPECT_FALSE(contains(compared.out, "eq. (29)")) << compared.out;
     const auto result = nlohmann::json::parse(text_of(folder.path / "compared/result.json"));
@@ -212,7 +214,7 @@ TEST(Command, SolvePrintsOneLegAsCsv) {
         EXPECT_TRUE(contains(said.out, std::string("up,") + method + ",5000,")) << said.out;
     }
     EXPECT_TRUE(contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out,
-                         "up,recursive,"));
+                         "up,equilibrium,"));
 }
 
 TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
@@ -221,7 +223,8 @@ TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
     for (const char* word : {"to: 1500, steps: 60", "to: -1500, steps: 60"})
         scene.replace(scene.find(word), std::string(word).size(),
                       word[4] == '-' ? "to: -3000, steps: 600" : "to: 3000, steps: 600");
-    const Said said = elastocheck_says("solve " + folder.write("p.yaml", scene));
+    const Said said =
+        elastocheck_says("solve " + folder.write("p.yaml", scene) + " --method published");
     EXPECT_EQ(said.code, 3);
     EXPECT_TRUE(contains(said.err, "published: diverged: branch 'up': at 2685 N: ")) << said.err;
 }

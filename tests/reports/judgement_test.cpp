@@ -213,11 +213,37 @@ TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
     EXPECT_FALSE(contains(given, "default")) << given;
 }
 
+TEST(Assessment, CompareGivesNoVerdictOnAMethodThatNobodyNamed) {
+    const support::Folder folder;
+    const std::string out = (folder.path / "r").string(),
+                      command = "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 ";
+    const auto said = elastocheck_says(command + "-o " + out);
+    EXPECT_EQ(said.code, 0);
+    EXPECT_TRUE(contains(said.out.substr(0, said.out.find('\n')),
+                         ": the method 'published' of the linear recursion beside two full "
+                         "solutions"))
+        << said.out;
+    EXPECT_FALSE(contains(said.out, "Pass") || contains(said.out, "Fail")) << said.out;
+    const json judgement =
+        json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
+    EXPECT_EQ(judgement["verdict"], "not asked");
+    const std::string sentence = judgement["sentence"];
+    EXPECT_TRUE(
+        sentence.starts_with("The linear recursion as published is off from the full "
+                             "solution by up to "))
+        << sentence;
+    EXPECT_TRUE(sentence.ends_with(" No verdict was asked for: --within gives a tolerance."))
+        << sentence;
+    EXPECT_TRUE(said.out.ends_with(sentence + "\n")) << said.out;
+    for (const char* asked : {"--method published", "--within 0.01mm,0.001deg,1%"})
+        EXPECT_TRUE(contains(elastocheck_says(command + asked).out, "\nFail: ")) << asked;
+}
+
 TEST(Assessment, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
     const support::Folder folder;
     const std::string out = (folder.path / "r").string();
-    const auto said =
-        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 -o " + out);
+    const auto said = elastocheck_says(
+        "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --method published -o " + out);
     const json judgement =
         json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
     EXPECT_EQ(judgement["verdict"], "fail");

@@ -80,7 +80,7 @@ const Line lines[] = {
      "$E judge $SCENES/pendulum.yaml --candidate mine.csv --tolerance 0.01mm,0.001deg -o judged"},
     {"judge",
      "$E judge $SCENES/pendulum.yaml --candidate-timeout 30.5 --candidate-command "
-     "\"$E solve {scene} --steps {steps} -o {output}\""},
+     "\"$E solve {scene} --method published --steps {steps} -o {output}\""},
     {"report",
      "$E report $SCENES/single_bushing.yaml -o page && $E report --from page/result.json -o again"},
     // Its joints are inconsistent, so no solver takes the requested million steps.

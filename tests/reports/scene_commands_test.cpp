@@ -170,7 +170,8 @@ TEST(Readme, ItsTenLinesAreASuspensionThatCanBeJudged) {
     const std::string lines = page.substr(from + 8, to - from - 7);
     EXPECT_LE(std::ranges::count(lines, '\n'), 11);
     const Folder folder;
-    const Said said = elastocheck_says("compare " + folder.write("my_arm.yaml", lines));
+    const Said said =
+        elastocheck_says("compare " + folder.write("my_arm.yaml", lines) + " --method published");
     EXPECT_EQ(said.code, 0) << said.err;
     EXPECT_TRUE(contains(said.out, "roll_centre_height")) << said.out;
     // The quoted sentence, independent of line breaks.

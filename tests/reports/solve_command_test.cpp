@@ -7,7 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "compare/comparison/legs.hpp"
@@ -58,6 +61,49 @@ TEST(SolveCommand, WritesTheRowsOfThePointsBitByBitOnEveryScene) {
             EXPECT_EQ(text_of(file), said.out) << command;
         }
     }
+}
+
+TEST(SolveCommand, IsTheEquilibriumLegUnlessAnotherMethodIsNamed) {
+    const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 4";
+    const Said said = elastocheck_says(command);
+    EXPECT_EQ(said.out, elastocheck_says(command + " --method equilibrium").out);
+    EXPECT_TRUE(contains(said.out, "\njounce,equilibrium,3000,")) << said.out;
+    EXPECT_TRUE(said.err.empty()) << said.err;
+}
+
+// The line says what the two solutions differ by at the end, in the output that differs most.
+TEST(SolveCommand, AFastMethodSaysHowFarItIsOffAtTheEndOfEveryBranchSide) {
+    const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 20 ";
+    const auto right = cells_of(elastocheck_says(command).out);
+    for (const char* method : {"published", "tangent"}) {
+        const Said said = elastocheck_says(command + "--method " + method);
+        EXPECT_EQ(said.code, 0);
+        const auto rows = cells_of(said.out);
+        ASSERT_EQ(rows.size(), right.size());
+        for (const std::size_t end : {21u, 42u}) {
+            double off = 0;
+            std::string channel;
+            for (std::size_t c = 4; c < 7; ++c)  // wheel_centre_x, _y, _z
+                if (const double by = std::abs(std::stod(rows[end][c]) - std::stod(right[end][c]));
+                    by > off)
+                    off = by, channel = rows[0][c].substr(0, rows[0][c].find(' '));
+            EXPECT_TRUE(contains(said.err, fmt::format("{}: {}: off by {:.2g} mm ({}) and ", method,
+                                                       rows[end][0], off, channel)))
+                << said.err << off << channel;
+            EXPECT_TRUE(contains(said.err, fmt::format(" at {} N, the end, from the equilibrium "
+                                                       "leg there\n",
+                                                       rows[end][2])))
+                << said.err;
+        }
+    }
+    const Said two_sided = elastocheck_says("solve " + scenes +
+                                            "/double_wishbone_rigid.yaml --steps 20 --method "
+                                            "published --channels toe");
+    EXPECT_TRUE(contains(two_sided.err, " at -80 mm, the end,")) << two_sided.err;
+    EXPECT_TRUE(contains(two_sided.err, " at 80 mm, the end,")) << two_sided.err;
+    for (const char* method : {"equilibrium", "energy", "series"})
+        EXPECT_FALSE(contains(elastocheck_says(command + "--method " + method).err, "off by"))
+            << method;
 }
 
 TEST(SolveCommand, SaysWhatThePointsAnnounce) {
@@ -203,8 +249,10 @@ TEST(CompareCommand, EveryNthStepIsCompared) {
         if (row[2] == "recursive") written.push_back({row[1], row[3], row[7]});
         if (row[2] == "energy") visited.insert(row[1] + row[3]);
     }
-    const auto solved = cells_of(
-        elastocheck_says("solve " + scene + " --steps 40 --every 15 --channels nose_z").out);
+    const auto solved =
+        cells_of(elastocheck_says("solve " + scene +
+                                  " --method published --steps 40 --every 15 --channels nose_z")
+                     .out);
     for (const auto& row : solved)
         if (row[1] == "recursive") expected.push_back({row[0], row[2], row[4]});
     EXPECT_EQ(written, expected);

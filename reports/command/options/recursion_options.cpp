@@ -31,8 +31,7 @@ recursive::Options recursion(const RecursionRequest& request) {
     auto* series = std::get_if<recursive::Series>(&options.method.kind);
     const auto belongs = [&](bool given, bool has, std::string_view option, std::string_view to) {
         if (given && !has)
-            throw std::invalid_argument(
-                fmt::format("{}: only with --method {}, not with {}", option, to, request.method));
+            throw std::invalid_argument(fmt::format("{}: only with --method {}", option, to));
     };
     belongs(!request.tolerance.empty(), adaptive || series, "--tolerance", "adaptive or series");
     belongs(request.order > 0, series, "--order", "series");

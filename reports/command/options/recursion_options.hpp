@@ -12,7 +12,7 @@ namespace elastocheck::reports {
 struct RecursionRequest {
     std::string method = "published";
     int steps = 0, order = 0, expansions = 0;
-    std::string tolerance;
+    std::string tolerance = {};
     bool arc_length = false;
 };
 
