@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 #include <stdexcept>
 
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/formula/load_growth.hpp"
+#include "recursive/formula/parameter.hpp"
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/singularity/branch_events.hpp"
@@ -18,18 +18,6 @@
 
 namespace elastocheck::recursive {
 namespace {
-
-// A parameter value with its unit for messages: "1200 N", "35.2 mm".
-std::string in_unit(ParameterUnit unit, double a) {
-    switch (unit) {
-        case ParameterUnit::newton: return fmt::format("{:.6g} N", a);
-        case ParameterUnit::newton_metre: return fmt::format("{:.6g} N·m", a);
-        case ParameterUnit::metre: return fmt::format("{:.6g} mm", 1e3 * a);
-        case ParameterUnit::radian: return fmt::format("{:.6g} deg", a * 180 / std::numbers::pi);
-        case ParameterUnit::none: return fmt::format("{:.6g}", a);
-    }
-    return {};
-}
 
 // Names of the redundant joints that are inconsistent at the design position: "'upper', 'lower'";
 // empty if none.

@@ -9,6 +9,7 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/equilibrium.hpp"
 
@@ -70,7 +71,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
         left.second = comparison.branches[b].second;
         for (const auto& state : states) {
             if (state.branch != branch.name) continue;
-            const double a = in_unit(left.unit) * state.load;
+            const double a = parameter_in(left.unit, state.load);
             result.points.branch.push_back(branch.name);
             result.points.a.push_back(a);
             Equilibrium found;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "compare/outputs/curve.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/positions.hpp"
@@ -186,7 +187,7 @@ std::vector<ElementValue> element_values(const Model& model, const Comparison& c
                 const double off = others[c] - values[c], size = std::abs(values[c]);
                 if (std::isnan(values[c])) continue;  // inactive here
                 list.push_back({.branch = branch.branch,
-                                .a = in_unit(branch.unit) * truth->load,
+                                .a = parameter_in(branch.unit, truth->load),
                                 .a_unit = branch.unit,
                                 .element = element_of(channels[c]),
                                 .output = channels[c].name,

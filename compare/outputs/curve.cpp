@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -26,8 +27,15 @@ std::vector<double> Curve::channel(std::size_t c) const {
     return y;
 }
 
+double parameter_in(Unit unit, double load) {
+    const std::string digits = fmt::format("{:.15g}", in_unit(unit) * load);
+    double rounded = load;
+    std::from_chars(digits.data(), digits.data() + digits.size(), rounded);
+    return rounded;
+}
+
 void append(Curve& curve, double load, std::vector<double> values) {
-    const double a = in_unit(curve.unit) * load;
+    const double a = parameter_in(curve.unit, load);
     if (!curve.a.empty() && std::abs(a) < std::abs(curve.a[curve.start]))
         curve.start = curve.a.size();
     curve.a.push_back(a);

@@ -9,6 +9,10 @@
 
 namespace elastocheck::compare {
 
+// A parameter [SI] in its display unit, rounded to 15 digits: what a scene says in degrees, -60,
+// is not -59.99999999999999 after its way to radians and back.
+double parameter_in(Unit unit, double load);
+
 // Appends one point; `load` in SI.
 void append(Curve& curve, double load, std::vector<double> values);
 

@@ -26,7 +26,8 @@ BranchOrders study_way(const Model& model, const std::vector<Channel>& channels,
     for (const double tolerance : options.tolerances)
         for (const int order : options.orders) {
             if (options.progress)
-                options.progress(fmt::format("{}: order {}, {:.0e} m", way.name, order, tolerance));
+                options.progress(
+                    fmt::format("{}: order {}, {:.0e} mm", way.name, order, 1e3 * tolerance));
             const auto path = recursive::series::follow(
                 way.model, way.branch,
                 {.order = order, .tolerance = tolerance, .expansions = options.expansions});

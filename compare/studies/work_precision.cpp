@@ -283,7 +283,8 @@ SolverSettings gait_of(const TradePoint& point, int points) {
 std::string describe(const TradePoint& point) {
     if (point.leg != Leg::recursive)
         return fmt::format("{} leg{}", name(point.leg), point.again ? " again" : "");
-    if (point.steps == 0) return fmt::format("{} at {:.0e} m", point.method, point.own_tolerance);
+    if (point.steps == 0)
+        return fmt::format("{} at {:.0e} mm", point.method, 1e3 * point.own_tolerance);
     return fmt::format("{}, {} steps", point.method, point.steps);
 }
 

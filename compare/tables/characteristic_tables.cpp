@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/tables/table.hpp"
 
@@ -84,7 +85,8 @@ Table compliance_table(const Model& model, const Comparison& comparison) {
     for (const auto& branch : comparison.branches)
         for (const auto& run : branch.runs)
             for (const auto& at : run.compliance)
-                for (const auto& [point, C] :
+                for (const double per_si = in_unit(run.curve.unit);
+                     const auto& [point, C] :
                      {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
                     for (Eigen::Index r = 0; r < C->rows(); ++r)
                         for (Eigen::Index loaded = 0; loaded < C->cols(); loaded += 6) {
@@ -93,7 +95,7 @@ Table compliance_table(const Model& model, const Comparison& comparison) {
                             };
                             const bool moves = r % 6 < 3;
                             std::vector<Cell> row{branch.branch,
-                                                  at.a,
+                                                  parameter_in(run.curve.unit, at.a / per_si),
                                                   symbol(run.curve.unit),
                                                   name(run.leg),
                                                   point,

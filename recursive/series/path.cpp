@@ -5,6 +5,7 @@
 #include <array>
 
 #include "recursive/diagnosis/finite.hpp"
+#include "recursive/formula/parameter.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
 #include "recursive/stepping/recording.hpp"
@@ -561,7 +562,7 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
     const std::string branch = fmt::format("branch '{}'", w.s.branch.name);
     const std::string at =
         settles ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch, w.at())
-                : fmt::format("{}: at {:.6g}", branch, w.at());
+                : fmt::format("{}: at {}", branch, in_unit(w.s.branch.unit, w.at()));
     if (w.s.begins_unstable)
         return fmt::format("{}: the equilibrium that settles at 0 is unstable", branch);
     switch (outcome) {
@@ -572,9 +573,9 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
                                  "no equilibrium continues it",
                                  branch, w.path.limits.back())
                            : fmt::format(
-                                 "{}: limit point near {:.9g}, past it no equilibrium continues "
+                                 "{}: limit point near {}, past it no equilibrium continues "
                                  "the branch",
-                                 branch, w.path.limits.back());
+                                 branch, in_unit(w.s.branch.unit, w.path.limits.back(), 9));
         case Outcome::iteration_limit:
             return at + fmt::format(": {} expansions were not enough", w.path.expansions.size());
         case Outcome::singular:

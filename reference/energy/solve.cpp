@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "models/branch.hpp"
@@ -27,15 +28,15 @@ Equilibrium equilibrium(const Path& path, const State& state) {
     return {state.a, state.poses, reactions(path.model, chart, values, lambda), values.Phi.norm()};
 }
 
-const char* symbol(ParameterUnit unit) {
+std::string in_units_of(ParameterUnit unit, double a) {
     switch (unit) {
-        case ParameterUnit::newton: return " N";
-        case ParameterUnit::newton_metre: return " N·m";
-        case ParameterUnit::metre: return " m";
-        case ParameterUnit::radian: return " rad";
-        case ParameterUnit::none: return "";
+        case ParameterUnit::newton: return fmt::format("{:.10g} N", a);
+        case ParameterUnit::newton_metre: return fmt::format("{:.10g} N·m", a);
+        case ParameterUnit::metre: return fmt::format("{:.10g} mm", 1e3 * a);
+        case ParameterUnit::radian: return fmt::format("{:.10g} deg", a * 180 / std::numbers::pi);
+        case ParameterUnit::none: break;
     }
-    return "";
+    return fmt::format("{:.10g}", a);
 }
 
 // Detects a link whose length would not be positive.
@@ -49,9 +50,9 @@ std::optional<Failure> impossible_length(const Path& path, double a) {
         if (!(length > 0))
             return Failure{
                 Outcome::inconsistent_constraints,
-                fmt::format("joint '{}' would have the length {:.6g} m",
+                fmt::format("joint '{}' would have the length {:.6g} mm",
                             path.model.joints[static_cast<std::size_t>(constraint.joint)].name,
-                            length)};
+                            1e3 * length)};
     }
     return {};
 }
@@ -99,9 +100,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
             fmt::format("branch '{}', {}: {}{}", branch.name, where, failure.what, reached);
         return result;
     };
-    const auto in_units = [&](double a) {
-        return fmt::format("{:.10g}{}", a, symbol(branch.unit));
-    };
+    const auto in_units = [&](double a) { return in_units_of(branch.unit, a); };
 
     std::vector<double> ends(values.begin(), values.end());
     ends.push_back(branch.to);

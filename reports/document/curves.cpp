@@ -31,7 +31,7 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
                         columns[name].fail("not as many numbers as parameters");
                     for (std::size_t k = 0; k < values.size(); ++k)
                         csv += fmt::format(
-                            "{},{:.17g},{},{},{}\n", whose, a[k], unit, what,
+                            "{},{},{},{},{}\n", whose, a[k], unit, what,
                             std::isnan(values[k]) ? "" : fmt::format("{:.17g}", values[k]));
                 }
             }

@@ -5,6 +5,7 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/deviation/agreement.hpp"
+#include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -65,8 +66,8 @@ json drivers_json(const Model& model, const Branch& branch) {
 json branch_json(const Model& model, const Branch& branch) {
     const compare::Unit unit = compare::unit_of(branch.unit);
     return {{"name", branch.name},
-            {"from", in_unit(unit) * branch.from},
-            {"to", in_unit(unit) * branch.to},
+            {"from", parameter_in(unit, branch.from)},
+            {"to", parameter_in(unit, branch.to)},
             {"unit", symbol(unit)},
             {"drivers", drivers_json(model, branch)}};
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "compare/outputs/curve.hpp"
 #include "models/kinds.hpp"
 
 namespace elastocheck::reports {
@@ -367,7 +368,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
             entry["of"] = branch.branch;
             entry["unit"] = symbol(branch.unit);
             entry["where"] = where;
-            entry["a"] = in_unit(branch.unit) * state.load;
+            entry["a"] = parameter_in(branch.unit, state.load);
             along.push_back(entry);
         };
         if (middle) put(branch.branch, "middle", *middle);

@@ -115,8 +115,8 @@ std::string inspection(const Inspected& inspected) {
     line("");
     line("bodies");
     for (const auto& body : std::span(model.bodies).first(shown(model.bodies.size())))
-        line("  {:<20} origin ({:.6g}, {:.6g}, {:.6g}) m", body.name, body.design.r.x(),
-             body.design.r.y(), body.design.r.z());
+        line("  {:<20} origin ({:.6g}, {:.6g}, {:.6g}) mm", body.name, 1e3 * body.design.r.x(),
+             1e3 * body.design.r.y(), 1e3 * body.design.r.z());
     rest(model.bodies.size(), "bodies");
     if (!model.joints.empty()) line("\njoints");
     const auto made_of = compositions(model);

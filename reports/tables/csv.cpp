@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "compare/outputs/curve.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -28,8 +29,8 @@ std::string curves_header(const std::vector<compare::Channel>& channels) {
 
 std::string curves_row(const std::string& branch, compare::Leg leg, compare::Unit unit,
                        const compare::Row& row) {
-    return fmt::format("{},{},{:.17g},{}{}\n", for_csv(branch), name(leg), in_unit(unit) * row.load,
-                       symbol(unit), numbers(row.values));
+    return fmt::format("{},{},{},{}{}\n", for_csv(branch), name(leg),
+                       parameter_in(unit, row.load), symbol(unit), numbers(row.values));
 }
 
 std::string rates_header(const std::vector<compare::Channel>& channels) {
@@ -42,7 +43,7 @@ std::string rates_header(const std::vector<compare::Channel>& channels) {
 
 std::string rates_row(const std::string& way, compare::Unit unit, double a,
                       const std::vector<double>& slopes) {
-    return fmt::format("{},{:.17g},{}{}\n", for_csv(way), in_unit(unit) * a, symbol(unit),
+    return fmt::format("{},{},{}{}\n", for_csv(way), parameter_in(unit, a), symbol(unit),
                        numbers(slopes));
 }
 

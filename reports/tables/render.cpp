@@ -123,7 +123,22 @@ std::vector<ShownColumn> nonempty_columns(const Table& table,
     return some;
 }
 
-std::string text(const Table& table, const std::vector<ShownColumn>& shown) {
+namespace {
+
+// Lengths in mm, as everywhere on a terminal; tables of studies have tolerances and |Φ| in m.
+Table in_mm(Table table) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+        if (table.columns[c].unit != "m") continue;
+        table.columns[c].unit = "mm";
+        for (auto& row : table.rows) row[c] = 1e3 * std::get<double>(row[c]);
+    }
+    return table;
+}
+
+}  // namespace
+
+std::string text(const Table& given, const std::vector<ShownColumn>& shown) {
+    const Table table = in_mm(given);
     const auto columns = nonempty_columns(table, shown);
     std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
     std::vector<std::size_t> places, widths;

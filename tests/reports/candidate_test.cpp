@@ -271,6 +271,10 @@ TEST(CandidateCommand, TradeOfRunsThatCouldNotBeJudgedIsNoSuccess) {
                                        "/pinned_bar.yaml --candidate-command 'false {output}' -o " +
                                        (folder.path / "out").string());
     EXPECT_EQ(said.code, 3) << said.out << said.err;
+    EXPECT_TRUE(contains(said.out, "told [mm]")) << "tolerances are in mm\n" << said.out;
+    EXPECT_FALSE(contains(said.out, " m,") || contains(said.out, " m\n") ||
+                 contains(said.out, "[m]"))
+        << said.out;
     const auto result = json::parse(text_of(folder.path / "out/result.json"));
     EXPECT_TRUE(contains(
         result["scenes"][0]["verdict"].dump(),

@@ -185,6 +185,12 @@ TEST(Readme, ItsTenLinesAreASuspensionThatCanBeJudged) {
 
 // ---- inspect
 
+TEST(Inspect, OriginsAreInMillimetres) {
+    const Said said = elastocheck_says("inspect " + scenes + "/front_axle.yaml");
+    EXPECT_TRUE(contains(said.out, "origin (-279, 0, 1) mm")) << said.out;
+    EXPECT_FALSE(contains(said.out, ") m\n")) << said.out;
+}
+
 TEST(Inspect, SaysWhatElementsAre) {
     const Folder folder;
     const auto scene = folder.write(

@@ -151,8 +151,8 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
     const std::string said = order_text(table);
     for (const auto& branch : orders)
         EXPECT_TRUE(contains(said, "branch '" + branch.branch + "'")) << said;
-    EXPECT_TRUE(contains(said, "told [m]  order  outcome")) << said;
-    EXPECT_TRUE(contains(said, "   1e-09      8  converged")) << said;
+    EXPECT_TRUE(contains(said, "told [mm]  order  outcome")) << said;
+    EXPECT_TRUE(contains(said, "   1e-06      8  converged")) << said;
 
     auto failed = orders;
     failed.front().failure = "the energy leg diverged";
@@ -167,7 +167,7 @@ TEST(Tables, TheArithmeticStandsSideBySide) {
     EXPECT_EQ(std::ranges::count(csv(compare::precision_table(study)), '\n'), 1 + 3 * 3 * 3);
     EXPECT_EQ(precision_json(study)["floors"]["rows"].size(), 9u);
     const std::string said = precision_text(study);
-    for (const char* words : {"float: |Φ| [m]", "long double: |Φ| [m]", "least |Φ| [m]"})
+    for (const char* words : {"float: |Φ| [mm]", "long double: |Φ| [mm]", "least |Φ| [mm]"})
         EXPECT_TRUE(contains(said, words)) << said;
     EXPECT_FALSE(contains(said, "converged")) << said;
     study.series[0].levels[1].outcome = Outcome::diverged;
