@@ -33,9 +33,9 @@ std::string in_contradiction(const Model& model, const Diagnosis& diagnosis) {
 
 std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& branch,
                   const Method& method, Outcome outcome, const Stop& stop) {
-    if (stop.begins_unstable)
-        return fmt::format("the equilibrium that settles at {} is unstable",
-                           in_unit(branch.unit, 0));
+    if (!stop.unstable_start.empty())
+        return fmt::format("the equilibrium that settles at {} is unstable: {}",
+                           in_unit(branch.unit, 0), stop.unstable_start);
     std::string detail = std::isnan(stop.at) ? std::string("while the start settles")
                                              : "at " + in_unit(branch.unit, stop.at);
     switch (outcome) {
@@ -141,7 +141,7 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
                                            : !std::isnan(stop.at) && is_past(stop.at)) {
         std::erase_if(path.points, [&](const Equilibrium& point) { return is_past(point.load); });
         path.outcome = event->outcome;
-        stop = {event->load, event->begins_unstable};
+        stop = {event->load, event->unstable_start};
     }
     if (path.outcome != Outcome::converged)
         path.detail = fmt::format(

@@ -18,6 +18,7 @@
 #include "models/reader/document/yaml.hpp"
 #include "models/reader/elements/driven.hpp"
 #include "models/reader/elements/sections.hpp"
+#include "models/reader/plausibility.hpp"
 #include "models/reader/settings.hpp"
 
 namespace elastocheck {
@@ -212,7 +213,7 @@ void keep_each_once(std::vector<Number>& numbers) {
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
 }
 
-Scene read_tree(const Cursor& scene, const Folder& folder) {
+SceneAndWarnings read_tree(const Cursor& scene, const Folder& folder) {
     if (scene.value->kind == Value::Kind::nothing)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
     scene.only_keys({"elastocheck",     "name",     "units",    "mirror",  "gravity",
@@ -258,34 +259,40 @@ Scene read_tree(const Cursor& scene, const Folder& folder) {
     check_all_held(scene, result);
     read_trim(scene, defs.units, by_name, drivable, result);
     read_branches(scene, defs.units, by_name, drivable, result);
-    return result;
+    auto warnings = implausible(scene, defs.units, result);
+    return {std::move(result), std::move(warnings)};
 }
 
-Scene read_whole(std::string_view text, const std::string& name, std::span<const Setting> settings,
-                 const Folder& folder) {
+SceneAndWarnings read_whole(std::string_view text, const std::string& name,
+                            std::span<const Setting> settings, const Folder& folder) {
     Value tree = parse_yaml(text, name);
     apply(settings, tree, name);
     std::vector<Number> numbers;
-    Scene scene = read_tree({&tree, "", &name, &numbers}, folder);
+    SceneAndWarnings read = read_tree({&tree, "", &name, &numbers}, folder);
     keep_each_once(numbers);
-    scene.numbers = std::move(numbers);
-    return scene;
+    read.scene.numbers = std::move(numbers);
+    return read;
 }
 
 }  // namespace
+
+SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,
+                                          std::span<const Setting> settings) {
+    const std::string name = file.string();
+    const TextFile read = read_text(file, Pipes::allowed);
+    if (!read.trouble.empty()) fail(name, 0, "", read.trouble);
+    return read_whole(read.text, name, settings, file.parent_path());
+}
 
 }  // namespace reader
 
 Scene parse_scene(std::string_view text, const std::string& name,
                   std::span<const Setting> settings) {
-    return reader::read_whole(text, name, settings, std::nullopt);
+    return reader::read_whole(text, name, settings, std::nullopt).scene;
 }
 
 Scene read_scene(const std::filesystem::path& file, std::span<const Setting> settings) {
-    const std::string name = file.string();
-    const reader::TextFile read = reader::read_text(file, reader::Pipes::allowed);
-    if (!read.trouble.empty()) reader::fail(name, 0, "", read.trouble);
-    return reader::read_whole(read.text, name, settings, file.parent_path());
+    return reader::read_scene_with_warnings(file, settings).scene;
 }
 
 }  // namespace elastocheck

@@ -563,8 +563,9 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
     const std::string at =
         settles ? fmt::format("{}: settling the start, at {:.6g} of the homotopy", branch, w.at())
                 : fmt::format("{}: at {}", branch, in_unit(w.s.branch.unit, w.at()));
-    if (w.s.begins_unstable)
-        return fmt::format("{}: the equilibrium that settles at 0 is unstable", branch);
+    if (!w.s.unstable_start.empty())
+        return fmt::format("{}: the equilibrium that settles at 0 is unstable: {}", branch,
+                           w.s.unstable_start);
     switch (outcome) {
         case Outcome::limit_point:
             return settles ? fmt::format(

@@ -219,7 +219,7 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
     SteppingState<double> s(model, branch, analysis);
     s.consistent = true;
     if (const Outcome o = settles(s, branch, analysis); ends(o) || o == Outcome::loaded_idle_mode)
-        return Event{o, std::numeric_limits<double>::quiet_NaN(), s.begins_unstable};
+        return Event{o, std::numeric_limits<double>::quiet_NaN(), s.unstable_start};
     else if (o != Outcome::converged)
         return std::nullopt;  // the method reports this failure itself
     const Traversal traversal = follow_by_long_steps(s, branch.to);

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "elastocheck/recursive.hpp"
 
@@ -29,8 +30,8 @@ namespace elastocheck::recursive {
 // inconsistent_constraints, or from settling loaded_idle_mode.
 struct Event {
     Outcome outcome = Outcome::singular;
-    double load = 0;               // NaN: while settling to the start of the branch
-    bool begins_unstable = false;  // whether the start of the branch is unstable
+    double load = 0;                  // NaN: while settling to the start of the branch
+    std::string unstable_start = {};  // as in SteppingState
 };
 
 // Follows the branch with `adaptive`; none where `adaptive` reaches the end or fails for another

@@ -180,7 +180,7 @@ EquilibriumPath sweep_adaptive(const Model& model, const Branch& branch, const O
     recording.finish();
     path.counts = s.counts;
     stop = {settled ? s.a : std::numeric_limits<double>::quiet_NaN(),
-            path.outcome == Outcome::singular && s.begins_unstable};
+            path.outcome == Outcome::singular ? s.unstable_start : std::string()};
     return path;
 }
 

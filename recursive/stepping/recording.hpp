@@ -6,11 +6,11 @@
 
 namespace elastocheck::recursive {
 
-// Where a sweep stopped: the parameter, NaN while settling; and whether the cause is that the
-// settled start is unstable.
+// Where a sweep stopped: the parameter, NaN while settling; and the motion in which the
+// settled start is unstable, if that is the cause.
 struct Stop {
     double at = std::numeric_limits<double>::quiet_NaN();
-    bool begins_unstable = false;
+    std::string unstable_start = {};  // as in SteppingState
 };
 
 struct Recording {

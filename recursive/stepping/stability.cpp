@@ -1,6 +1,9 @@
 #include "recursive/stepping/stability.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
@@ -81,13 +84,63 @@ bool is_unstable(const SteppingState<double>& s) {
     return has_negative_eigenvalue(sparse(s.system.M), s.system.weight.head(s.n()), held);
 }
 
+namespace {
+
+// The bodies that a motion W x displaces, and the one that it turns most.
+std::string moving_bodies(const Model& model, const Eigen::VectorXd& motion) {
+    constexpr double nothing = 1e-6, with_the_largest = 0.5;
+    std::vector<double> displaced, turned;
+    for (Eigen::Index row = 0; row < motion.size(); row += 6) {
+        displaced.push_back(motion.segment<3>(row).norm());
+        turned.push_back(motion.segment<3>(row + 3).norm());
+    }
+    const double farthest = std::ranges::max(displaced);
+    std::string text;
+    for (std::size_t b = 0; b < displaced.size(); ++b)
+        if (displaced[b] > nothing && displaced[b] >= with_the_largest * farthest)
+            text += fmt::format("{}'{}'", text.empty() ? "bodies that are displaced: " : ", ",
+                                model.bodies[b].name);
+    const auto most = std::ranges::max_element(turned);
+    if (*most > nothing)
+        text += fmt::format("{}body that turns most: '{}'", text.empty() ? "" : "; ",
+                            model.bodies[static_cast<std::size_t>(most - turned.begin())].name);
+    return text;
+}
+
+// The motion of least stiffness with the matrix in the system: the eigenvector of ZᵀKZ, Z a basis
+// of the null space of Φ_q, in the norm |W x|. Computed densely, where a message needs it.
+std::string softest_motion(const SteppingState<double>& s) {
+    constexpr Eigen::Index most = 600;    // coordinates
+    constexpr double independent = 1e-9;  // of rows of length one
+    const Eigen::Index n = s.n(), m = s.m();
+    if (n > most) return "a motion of a model too large to say which bodies move";
+    const Eigen::MatrixXd M = sparse(s.system.M);
+    const auto scale = s.system.weight.head(n).cwiseInverse().asDiagonal();
+    Eigen::MatrixXd K = scale * M.topLeftCorner(n, n) * scale;
+    K = ((K + K.transpose()) / 2).eval();
+    Eigen::MatrixXd Z = Eigen::MatrixXd::Identity(n, n);
+    if (m > 0) {
+        Eigen::MatrixXd Phi_T = (M.bottomLeftCorner(m, n) * scale).transpose();
+        Phi_T.colwise().normalize();
+        Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(n, m);
+        qr.setThreshold(independent);
+        qr.compute(Phi_T);
+        Z = (qr.householderQ() * Z).rightCols(n - qr.rank()).eval();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Z.transpose() * K * Z);
+    return moving_bodies(s.model, Z * solver.eigenvectors().col(0));
+}
+
+}  // namespace
+
 Outcome check_start_stability(SteppingState<double>& s) {
     // modes soft relative to the stiffest are below the rounding of is_unstable()
     SubspaceBasis<double> softest;
     const LeastStiffness least = least_stiffness(s, softest);
-    s.begins_unstable = is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
-                        (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
-    return s.begins_unstable ? Outcome::singular : Outcome::converged;
+    const bool unstable = is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
+                          (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
+    if (unstable) s.unstable_start = softest_motion(s);
+    return unstable ? Outcome::singular : Outcome::converged;
 }
 
 double least_eigenvalue(const Eigen::MatrixXd& Q) {

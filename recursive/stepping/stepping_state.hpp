@@ -133,8 +133,9 @@ struct SteppingState {
     Vector<Real> upper, lower, x, Phi, force, dq, last;  // last: W Δqⁿ⁻¹
     int orientation = 0;  // sign of the consistent tangent's determinant at the start of the branch
     Real missed = 0;  // estimate of the distance of qⁿ from equilibrium: |W Δqⁿ⁻¹ - W Δqⁿ⁻²| [m]
-    bool begins_unstable = false;  // whether the settled start is unstable
-    int swings = 0;                // steps in a row that reversed the one before and were larger
+    // where the settled start is unstable: the bodies that move in the motion of least stiffness
+    std::string unstable_start = {};
+    int swings = 0;  // steps in a row that reversed the one before and were larger
 
     std::vector<std::vector<Moved>> moved;  // for every idle mode
     // The elastic elements that idle modes move, and those of them that may exert a force along

@@ -56,6 +56,7 @@ json document_of(const LoadedScene& loaded, const std::string& file) {
     json part = scene_document(loaded.scene, read_whole(file), loaded.model,
                                recursive::diagnose(loaded.model));
     if (loaded.trim) add_trim(part, *loaded.trim);
+    if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
     return part;
 }
 

@@ -71,6 +71,29 @@ struct Arch {
     }
 };
 
+// A mast on a ball joint, pressed from above by more than its rotational rates bear, on a carriage
+// that stays where it is, beside a block that a load moves: the mast falls, and is named.
+TEST_P(Stability, AnUnstableStartNamesTheBodyThatMovesInTheUnstableMode) {
+    if (leg().kind == Leg::energy) GTEST_SKIP() << "says that there is no minimum, not where to";
+    constexpr double rate = 100, height = 0.5;
+    Scene s;
+    s.bodies = {{"carriage", {0 * Z}}, {"mast", {height * Z}}, {"block", {X}}};
+    s.joints = {{"rail", Translational{{0}, {ground}, {0, Z}, ground_z}},
+                {"ball", Spherical{{1, -height * Z}, {0}}}};
+    s.elastics = {{"carriage", bushing({ground}, {0}, {1e5, 1e5, 1e5}, {1e3, 1e3, 1e3})},
+                  {"spring", bushing({0}, {1, -height * Z}, {0, 0, 0}, {rate, rate, rate})},
+                  {"block", bushing({ground, X}, {2}, {1e4, 1e4, 1e4}, {100, 100, 100})}};
+    s.static_loads = {{"weight", DeadForce{{1}, -1.5 * rate / height * Z}}};
+    s.branches = {load_branch(DeadForce{{2}, X}, 10)};
+    s.probes = {{"block", {2}}, {"mast", {1}}, {"carriage", {0}}};
+    const auto path = solve(leg(), side_of(s), 4);
+    EXPECT_NE(path.outcome, Outcome::converged);
+    EXPECT_TRUE(contains(path.detail, "unstable: bodies that are displaced: 'mast'"))
+        << path.detail;
+    EXPECT_FALSE(contains(path.detail, "'carriage'") || contains(path.detail, "'block'"))
+        << path.detail;
+}
+
 TEST_P(Stability, AnUnstableStretchEndsTheBranchWhereverThePointsFall) {
     const Arch arch;
     for (const double z_c : {0.05, 0.02, 0.0053, 0.0021}) {

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "models/reader/plausibility.hpp"
 #include "tests/reports/command.hpp"
 
 namespace {
 
+namespace reader = elastocheck::reader;
 namespace support = elastocheck::support;
 using elastocheck::elastocheck_says;
 using elastocheck::parts_of;
@@ -181,6 +183,101 @@ TEST(Readme, ItsTenLinesAreASuspensionThatCanBeJudged) {
         for (std::size_t at; (at = sentence.find(space)) != std::string::npos;)
             sentence.replace(at, space.size(), " ");
     EXPECT_TRUE(contains(flat, sentence)) << sentence;
+}
+
+// ---- numbers that are probably in another unit
+
+// Points and rates for a scene in mm.
+std::string arm_in(const std::string& units) {
+    return "elastocheck: 1\nname: arm\nunits: " + units + R"(
+points: {outer: [500, 900, 0], inner: [420, 600, -50], seat: [150, 800, 0], top: [150, 800, 300],
+         centre: [0, 1100, 0], patch: [0, 1100, -320]}
+bodies: {arm: {origin: centre}}
+bushings:
+  outer: {bodies: [arm, ground], at: outer, rates: [4000, 9000, 9000], rotational_rates: [2, 6, 6]}
+  inner: {bodies: [arm, ground], at: inner, rates: [4000, 9000, 9000], rotational_rates: [2, 6, 6]}
+springs: {coil: {bodies: [arm, ground], from: seat, to: top, rate: 90}}
+loads: {up: {on: arm, at: patch, force: [0, 0, 1]}}
+branches: {up: {load: up, to: 100, steps: 4}}
+wheel: {body: arm, centre: centre, contact_patch: patch, spin_axis: y, side: left}
+)";
+}
+
+TEST(Plausibility, ALengthInTheWrongUnitIsAWarningWithItsLine) {
+    const Folder folder;
+    const std::string file =
+        folder.write("m.yaml", arm_in("{length: m, angle: deg, force: N, moment: N·m}"));
+    for (const char* command : {"inspect ", "solve "}) {
+        const Said said = elastocheck_says(command + file);
+        EXPECT_EQ(said.code, 0) << said.err;
+        EXPECT_TRUE(contains(said.err,
+                             "m.yaml:3: units.length: the hardpoints extend over 620 m, far from "
+                             "the size of a car; are they in mm, not in m? (warning)\n"))
+            << said.err;
+    }
+    const auto document = nlohmann::json::parse(elastocheck_says("inspect --json " + file).out);
+    ASSERT_EQ(document["scenes"][0]["warnings"].size(), 1u);
+    std::string small = arm_in("{length: mm, angle: deg, force: N, moment: N·m}");
+    const auto points = small.find("points:"), bodies = small.find("bodies:");
+    small.replace(
+        points, bodies - points,
+        "points: {outer: [0.5, 0.9, 0], inner: [0.42, 0.6, -0.05], seat: [0.15, 0.8, 0],\n"
+        "         top: [0.15, 0.8, 0.3], centre: [0, 1.1, 0], patch: [0, 1.1, -0.32]}\n");
+    EXPECT_TRUE(contains(elastocheck_says("inspect " + folder.write("mm.yaml", small)).err,
+                         "mm.yaml:3: units.length: the hardpoints extend over "));
+}
+
+TEST(Plausibility, RotationalRatesWithoutAUnitOfMomentAreAWarningWithTheirLine) {
+    const Folder folder;
+    const Said said = elastocheck_says(
+        "inspect " + folder.write("a.yaml", arm_in("{length: mm, angle: deg, force: N}")));
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_TRUE(contains(said.err,
+                         "a.yaml:8: bushings.outer.rotational_rates: 6 N·mm/deg beside 9e+03 N/mm "
+                         "is the rotational stiffness of a bushing with a radius of 0.2 mm; "
+                         "`units` says no moment: is `moment: N·m` meant? (and so of 1 more) "
+                         "(warning)\n"))
+        << said.err;
+    const Said right = elastocheck_says(
+        "inspect " +
+        folder.write("b.yaml", arm_in("{length: mm, angle: deg, force: N, moment: N·m}")));
+    EXPECT_TRUE(right.err.empty()) << right.err;
+}
+
+TEST(Plausibility, NoBuiltInSceneAndNoImportWarns) {
+    const Folder folder;
+    int read = 0;
+    for (const char* part : {"/", "/../extremes/"})
+        for (const auto& entry : std::filesystem::directory_iterator(scenes + part)) {
+            if (entry.path().extension() != ".yaml") continue;
+            for (const auto& warning : reader::read_scene_with_warnings(entry.path(), {}).warnings)
+                ADD_FAILURE() << warning;
+            ++read;
+        }
+    for (const auto& entry :
+         std::filesystem::directory_iterator(scenes + "/../../tests/models/import/samples")) {
+        const std::string file = (folder.path / "imported.yaml").string();
+        if (elastocheck_says("import " + entry.path().string() + " -o " + file).code != 0) continue;
+        for (const auto& warning : reader::read_scene_with_warnings(file, {}).warnings)
+            ADD_FAILURE() << entry.path() << ": " << warning;
+        ++read;
+        std::filesystem::remove(file);
+    }
+    EXPECT_GT(read, 60);
+}
+
+// A rack that nothing holds, with the steering axes leaning outwards: the wheels steer away.
+TEST(Plausibility, AnUnstableEquilibriumNamesTheRackThatIsFree) {
+    const Folder folder;
+    std::string scene = text_of(scenes + "/front_axle.yaml");
+    const auto held = scene.find(", held: true"), steering = scene.find("  steering: ");
+    scene.erase(steering, scene.find('\n', steering) + 1 - steering);
+    scene.erase(held, 12);
+    const Said said = elastocheck_says("solve " + folder.write("free.yaml", scene) +
+                                       " --set points.upper_ball_left.y=0.95");
+    EXPECT_EQ(said.code, 3) << said.err;
+    EXPECT_TRUE(contains(said.err, "is unstable: bodies that are displaced: ")) << said.err;
+    EXPECT_TRUE(contains(said.err, "'rack'")) << said.err;
 }
 
 // ---- inspect

@@ -348,8 +348,10 @@ std::optional<Failure> begin_branch(Continuation& continuation, double reach) {
                       continuation.here.stiffness)) {
         case Stability::kept: return std::nullopt;
         case Stability::lost:
-            return Failure{Outcome::singular,
-                           fmt::format("the equilibrium that settles at {} is unstable", at_0)};
+            return Failure{
+                Outcome::singular,
+                fmt::format("the equilibrium that settles at {} is unstable: {}", at_0,
+                            softest_motion(continuation.system, continuation.here.linearised))};
         case Stability::uncertain: break;
     }
     return Failure{Outcome::iteration_limit,

@@ -97,6 +97,10 @@ Failure failure(Continuation& continuation, double t, const Trial& trial);
 // inconsistent joints.
 Failure unsolvable_load(const System& system, const Eigen::VectorXd& left);
 
+// The bodies that move in the free motion of least stiffness, in words: the motion in which an
+// equilibrium is unstable.
+std::string softest_motion(const System& system, const Linearisation& at);
+
 // Failure where a mode is resisted by elements but too softly for the precision of J.
 Failure too_soft(const System& system, const Eigen::VectorXd& left);
 

@@ -1,6 +1,9 @@
 // Diagnosis of the end of a branch.
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+
 #include "reference/equilibrium/continuation/continuation.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -104,6 +107,41 @@ Failure unsolvable_load(const System& system, const VectorXd& left) {
     return {Outcome::loaded_idle_mode,
             fmt::format("body '{}' is loaded along a motion that nothing resists",
                         body_with_largest(system, left))};
+}
+
+// M = ZᵀKZ, formed here with Z from a singular value decomposition of Φ_q. Its least eigenvalue is
+// that of stability.hpp, or that of an idle mode with a negative stiffness.
+std::string softest_motion(const System& system, const Linearisation& at) {
+    constexpr int largest_dense = 600;  // coordinates
+    const int n = 6 * system.bodies, m = system.constraint_rows;
+    if (n > largest_dense) return "the model is too large to say which bodies move";
+    const Eigen::MatrixXd J = at.J;
+    Eigen::MatrixXd Z = Eigen::MatrixXd::Identity(n, n);
+    if (m > 0) {
+        constexpr double dependent = 1e-9;  // of the largest singular value
+        Eigen::JacobiSVD<Eigen::MatrixXd> svd(J.bottomLeftCorner(m, n), Eigen::ComputeFullV);
+        svd.setThreshold(dependent);
+        Z = svd.matrixV().rightCols(n - svd.rank()).eval();
+    }
+    const Eigen::MatrixXd K = -J.topLeftCorner(n, n);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Z.transpose() *
+                                                                ((K + K.transpose()) / 2) * Z);
+    const VectorXd motion = Z * solver.eigenvectors().col(0);
+    VectorXd turns = motion, moves = motion;
+    for (int body = 0; body < system.bodies; ++body) {
+        turns.segment<3>(6 * body).setZero();
+        moves.segment<3>(6 * body + 3).setZero();
+    }
+    const double farthest = largest(moves);
+    std::string text;
+    for (int body = 0; body < system.bodies; ++body)
+        if (largest(moves.segment<6>(6 * body)) > std::max(farthest / 2, 1e-6))
+            text += (text.empty() ? "bodies that are displaced: '" : ", '") +
+                    system.model->bodies[static_cast<std::size_t>(body)].name + "'";
+    if (largest(turns) > 1e-6)
+        text += (text.empty() ? "body that turns most: '" : "; body that turns most: '") +
+                body_with_largest(system, turns) + "'";
+    return text;
 }
 
 Failure too_soft(const System& system, const VectorXd& left) {

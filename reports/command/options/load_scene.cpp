@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include "models/reader/plausibility.hpp"
+#include "reports/files/terminal.hpp"
+
 namespace elastocheck::reports {
 
 LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail) {
-    const Scene scene = read_scene(file, settings);
-    const auto where = [&] {
+    auto [scene, warnings] = reader::read_scene_with_warnings(file, settings);
+    for (const auto& warning : warnings) print_error("{} (warning)\n", warning);
+    const auto where = [&, &scene = scene] {
         return scene.trim && scene.trim->line > 0
                    ? fmt::format("{}:{}: trim", file, scene.trim->line)
                    : file + ": trim";
@@ -20,7 +24,8 @@ LoadedScene load_scene(const std::string& file, const Settings& settings, Detail
     if (trimmed.record && !trimmed.record->reached())
         throw NotTrimmed(fmt::format("{}: {}", where(), trimmed.record->detail));
     Model model = compile(trimmed.scene, detail);
-    return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record)};
+    return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record),
+            std::move(warnings)};
 }
 
 }  // namespace elastocheck::reports

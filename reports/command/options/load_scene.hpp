@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/model.hpp"
@@ -23,9 +24,10 @@ struct LoadedScene {
     Scene scene;  // trimmed
     Model model;
     std::optional<compare::TrimRecord> trim;
+    std::vector<std::string> warnings = {};  // of the reader: "FILE:LINE: field: ..."
 };
 
-// Throws SceneError, also for an ill-posed trim; NotTrimmed.
+// Prints the reader's warnings to standard error. Throws SceneError, also for an ill-posed trim; NotTrimmed.
 LoadedScene load_scene(const std::string& file, const Settings& settings,
                        Detail detail = Detail::required);
 

@@ -1,0 +1,105 @@
+#include "models/reader/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/kinds.hpp"
+#include "models/laws.hpp"
+
+namespace elastocheck::reader {
+namespace {
+
+constexpr double largest_car = 20, smallest_car = 0.02;  // [m]
+constexpr double smallest_bushing = 0.4e-3;              // [m]
+
+std::string at(const Cursor& field, const std::string& what) {
+    return fmt::format("{}:{}: {}: {}", *field.file, field.value->line, field.path, what);
+}
+
+void check_size(const Cursor& scene, const Units& units, const Scene& read,
+                std::vector<std::string>& warnings) {
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
+    for (const auto& point : read.hardpoints)
+        low = low.cwiseMin(point.position), high = high.cwiseMax(point.position);
+    const double extent = (high - low).maxCoeff();
+    const bool huge = extent > largest_car,
+               tiny = !read.wheels.empty() && extent > 0 && extent < smallest_car;
+    if (!huge && !tiny) return;
+    warnings.push_back(at(
+        scene.require("units").require("length"),
+        fmt::format("the hardpoints extend over {:.3g} m, far from the size of a car; are they in "
+                    "{}, not in {}?",
+                    extent, units.length.name == "m" ? "mm" : "m", units.length.name)));
+}
+
+// df/dx at the design position [SI].
+double rate_as_drawn(const ScalarLaw& law) {
+    constexpr double small = 1e-5;  // [m], [rad]
+    return (force(law, small) - force(law, -small)) / (2 * small);
+}
+
+struct Rates {
+    double translational = 0, rotational = 0;  // the largest of each kind [N/m], [N·m/rad]
+};
+Rates rates_of(const SpatialLaw& law) {
+    Rates rates;
+    const auto see = [&](Eigen::Index k, double rate) {
+        double& largest = k < 3 ? rates.translational : rates.rotational;
+        largest = std::max(largest, rate);
+    };
+    std::visit(overloaded{[&](const LinearStiffness& u) {
+                              for (Eigen::Index k = 0; k < 6; ++k) see(k, u.K(k, k));
+                          },
+                          [&](const PerAxis& u) {
+                              for (std::size_t k = 0; k < 6; ++k)
+                                  see(static_cast<Eigen::Index>(k), rate_as_drawn(u.axis[k]));
+                          }},
+               law);
+    return rates;
+}
+
+void check_bushings(const Cursor& scene, const Units& units, const Scene& read,
+                    std::vector<std::string>& warnings) {
+    const auto section = scene.optional("bushings");
+    if (!section) return;
+    std::string first;
+    int others = 0;
+    for (const auto& [name, bushing] : section->entries()) {
+        const auto element = std::ranges::find(read.elastics, name, &Elastic::name);
+        if (element == read.elastics.end()) continue;
+        const auto* law = member<SpatialLaw>(element->kind);
+        if (law == nullptr) continue;
+        const Rates rates = rates_of(*law);
+        const double radius = std::sqrt(rates.rotational / rates.translational);
+        if (!(rates.rotational > 0 && radius < smallest_bushing)) continue;
+        if (!first.empty()) {
+            ++others;
+            continue;
+        }
+        const auto given = bushing.optional("rotational_rates");
+        first = at(
+            given.value_or(bushing),
+            fmt::format("{:.3g} {} beside {:.3g} {} is the rotational stiffness of a bushing "
+                        "with a radius of {:.2g} mm; {}",
+                        units.rotational_rate.written(rates.rotational), units.rotational_rate.name,
+                        units.rate.written(rates.translational), units.rate.name, 1e3 * radius,
+                        scene.require("units").optional("moment")
+                            ? "is it in another unit of moment?"
+                            : "`units` says no moment: is `moment: N·m` meant?"));
+    }
+    if (others > 0) first += fmt::format(" (and so of {} more)", others);
+    if (!first.empty()) warnings.push_back(std::move(first));
+}
+
+}  // namespace
+
+std::vector<std::string> implausible(const Cursor& scene, const Units& units, const Scene& read) {
+    std::vector<std::string> warnings;
+    check_size(scene, units, read, warnings);
+    check_bushings(scene, units, read, warnings);
+    return warnings;
+}
+
+}  // namespace elastocheck::reader
