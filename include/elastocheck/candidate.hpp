@@ -55,7 +55,7 @@ struct Candidate {
     Points points;
     // columns follow from its states: main outputs and forces are judged
     bool every_output = false;
-    bool complete = false;            // whole branches were requested: a missing part is a failure
+    bool complete = false;            // without every part of every branch it cannot pass
     std::vector<Leftover> leftovers;  // of its states
     std::vector<std::string> notes;   // remarks on how the points were read
 };

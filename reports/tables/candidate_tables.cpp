@@ -118,8 +118,16 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                               force, moment);
     if (j.others == 0 && j.has_forces) partly += " No force or moment was compared.";
     const std::string hints = j.hints.empty() ? "" : fmt::format(" {}.", joined(j.hints, 4));
+    const bool incomplete = std::ranges::all_of(j.reasons, [](const std::string& reason) {
+        return reason.starts_with("it does not give ");
+    });
     switch (j.verdict) {
         case Grade::not_judged:
+            if (incomplete)
+                return fmt::format(
+                    "Not judged: it does not give {}; with --partial it is judged on what it "
+                    "gives.{}",
+                    joined(j.not_given, j.not_given.size()), hints);
             return fmt::format("Not judged: {}{}.{}", j.reasons.front(),
                                j.reasons.size() > 1
                                    ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)

@@ -400,22 +400,39 @@ TEST(CandidateCommand, WhatIsNoNumberOrIsNotThereNeverPasses) {
     EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
     const auto line = csv.find("\njounce", csv.size() / 3);
     const std::string part = csv.substr(0, line + 1);
-    const Said partly = judge("--steps 10 --candidate " + folder.write("part.csv", part));
+    const Said partly = judge("--steps 10 --partial --candidate " + folder.write("part.csv", part));
     EXPECT_EQ(partly.code, 0) << partly.out;
     EXPECT_TRUE(contains(partly.out, "It does not give branch 'jounce' from ")) << partly.out;
     EXPECT_TRUE(contains(partly.out, "branch 'rebound'")) << partly.out;
     auto nan = part;
     nan.replace(nan.rfind(',') + 1, nan.size(), "nan\n");
-    const Said no_number = judge("--steps 10 --candidate " + folder.write("nan.csv", nan));
+    const Said no_number =
+        judge("--steps 10 --partial --candidate " + folder.write("nan.csv", nan));
     EXPECT_EQ(no_number.code, 3) << no_number.out;
     EXPECT_TRUE(contains(no_number.out, "is no number at")) << no_number.out;
 }
 
-// States as a table, with another order of rows, give the same result as JSON lines.
-TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
+// The same results as a file and from a command have the same verdict, with --partial and without.
+TEST(CandidateCommand, BranchesThatAreLeftOutAreNamedAndNeedPartialToPass) {
     const Folder folder;
-    const std::string lines =
-        solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
+    std::string csv =
+        text_of(solved(folder, "all.csv", "--steps 10 --method energy --channels toe,camber -o"));
+    const std::string file = folder.write("jounce.csv", csv.substr(0, csv.find("\nrebound") + 1)),
+                      command = "--candidate-command 'cp " + file + " {output}'";
+    for (const auto& how : {"--candidate " + file, command}) {
+        const Said refused = judge("--steps 10 " + how);
+        EXPECT_EQ(refused.code, 3) << how << refused.out;
+        EXPECT_TRUE(contains(refused.out,
+                             "Not judged: it does not give branch 'rebound'; with --partial it is "
+                             "judged on what it gives."))
+            << how << refused.out;
+        const Said passed = judge("--steps 10 --partial " + how);
+        EXPECT_EQ(passed.code, 0) << how << passed.out;
+        EXPECT_TRUE(contains(passed.out, "It does not give branch 'rebound'.")) << passed.out;
+    }
+    EXPECT_EQ(judge("--partial").code, 2);
+}
+
 // A candidate has no |Φ|, so that table is left out.
 TEST(CandidateCommand, ConvergeHasNoTableOfConstraintErrorsOfACandidate) {
     const Folder folder;
@@ -435,6 +452,11 @@ TEST(CandidateCommand, ConvergeHasNoTableOfConstraintErrorsOfACandidate) {
         << said.out;
 }
 
+// States as a table, with another order of rows, give the same result as JSON lines.
+TEST(CandidateCommand, StatesAsATableAreThoseAsLines) {
+    const Folder folder;
+    const std::string lines =
+        solved(folder, "states.jsonl", "--steps 4 --method equilibrium --states");
     std::vector<std::string> rows;
     for (const auto& line : parts_of(text_of(lines), '\n')) {
         const json state = json::parse(line);

@@ -61,6 +61,8 @@ void add_candidate_options(std::vector<Option>& options, CandidateRequest& reque
                        "seconds after which the command is killed (default: 60)"});
     options.push_back({"--map", Text{&request.map, a_file("*.yaml")},
                        "YAML file with the table's column names, units, signs and offsets"});
+    options.push_back({"--partial", Flag{&request.partial},
+                       "let a candidate pass that leaves out branches or parts of them"});
 }
 
 void check(const CandidateRequest& request, const Settings& settings) {
@@ -69,6 +71,8 @@ void check(const CandidateRequest& request, const Settings& settings) {
             throw std::invalid_argument("--map: only with --candidate or --candidate-command");
         (void)read_column_map(read_whole(request.map, largest_baseline), request.map);
     }
+    if (request.partial && !request.wanted())
+        throw std::invalid_argument("--partial: only with --candidate or --candidate-command");
     if (request.command.empty()) return;
     (void)command_words(request.command);
     if (!settings.empty())
@@ -147,7 +151,7 @@ compare::CandidateJudgement judged(const CandidateOutput& output, const Candidat
     try {
         auto candidate = read_candidate(output.content, output.file, output.name, loaded.scene,
                                         loaded.model, comparison, map);
-        candidate.complete = output.of_command;
+        candidate.complete = !request.partial;
         return compare::judge_candidate(loaded.model, comparison, candidate, tolerance, asked);
     } catch (const SheetError& error) {
         if (!output.of_command) throw;

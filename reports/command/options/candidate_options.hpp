@@ -18,6 +18,7 @@ struct CandidateRequest {
     std::string command;             // --candidate-command
     double timeout = 60;             // --candidate-timeout [s]
     std::string map;                 // --map
+    bool partial = false;            // --partial: may pass without some branches or parts of them
 
     bool wanted() const { return !files.empty() || !command.empty(); }
 };
