@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <valarray>
+#include <vector>
 
 #include "compare/outputs/not_a_number.hpp"
 
@@ -55,29 +59,73 @@ struct Line {
     double p_variance = 0, limit_variance = 0;  // for σ = 1; limit_variance at given p
 };
 
-Line line(Levels levels, double p) {
-    const std::size_t n = levels.size();
-    Numbers phi(n), psi(n), value(n);
-    for (std::size_t k = 0; k < n; ++k) {
-        const double l = std::log(levels.back().steps / levels[k].steps);
-        phi[k] = std::abs(p) < 1e-9 ? l : std::expm1(p * l) / p;
-        psi[k] =
-            std::abs(p) < 1e-4 ? l * l * (0.5 + p * l / 3) : (l * std::exp(p * l) - phi[k]) / p;
-        value[k] = levels[k].value;
+// φ and ψ at one p, which depend on the steps alone. φ without its mean, ψ⊥.
+struct Shape {
+    double p = 0, phi_mean = 0, phi_phi = 0;
+    std::vector<double> phi, psi;
+};
+
+double dot(std::span<const double> a, std::span<const double> b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+double take_mean(std::vector<double>& x) {
+    const double average = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+    for (double& value : x) value -= average;
+    return average;
+}
+
+std::vector<double> logarithms(Levels levels) {
+    std::vector<double> l;
+    for (const Level& level : levels) l.push_back(std::log(levels.back().steps / level.steps));
+    return l;
+}
+
+void shape(const std::vector<double>& l, double p, Shape& result) {
+    result.p = p;
+    result.phi.resize(l.size());
+    result.psi.resize(l.size());
+    for (std::size_t k = 0; k < l.size(); ++k) {
+        result.phi[k] = std::abs(p) < 1e-9 ? l[k] : std::expm1(p * l[k]) / p;
+        result.psi[k] = std::abs(p) < 1e-4 ? l[k] * l[k] * (0.5 + p * l[k] / 3)
+                                           : (l[k] * std::exp(p * l[k]) - result.phi[k]) / p;
     }
-    const double phi_mean = mean(phi), value_mean = mean(value);
-    phi -= phi_mean;
-    const double b = dot(value - value_mean, phi) / dot(phi, phi);
-    const Numbers r = value - value_mean - b * phi;
-    psi -= mean(psi);
-    psi -= dot(psi, phi) / dot(phi, phi) * phi;
-    return {.limit = value_mean - b * (phi_mean + 1 / p),
+    result.phi_mean = take_mean(result.phi);
+    result.phi_phi = dot(result.phi, result.phi);
+    (void)take_mean(result.psi);
+    const double along = dot(result.psi, result.phi) / result.phi_phi;
+    for (std::size_t k = 0; k < l.size(); ++k) result.psi[k] -= along * result.phi[k];
+}
+
+// Values without their mean.
+struct Values {
+    std::vector<double> v, r;  // r: residuals of the last line
+    double mean = 0;
+};
+Values values_of(Levels levels) {
+    Values values;
+    for (const Level& level : levels) values.v.push_back(level.value);
+    values.mean = take_mean(values.v);
+    values.r = values.v;
+    return values;
+}
+
+Line line(const Shape& at, Values& values) {
+    const double b = dot(values.v, at.phi) / at.phi_phi, p = at.p;
+    for (std::size_t k = 0; k < values.v.size(); ++k) values.r[k] = values.v[k] - b * at.phi[k];
+    return {.limit = values.mean - b * (at.phi_mean + 1 / p),
             .C = b / p,
-            .R = dot(r, r),
-            .slope = -b * dot(r, psi),
-            .p_variance = 1 / (b * b * dot(psi, psi)),
-            .limit_variance =
-                1 / static_cast<double>(n) + std::pow(phi_mean + 1 / p, 2) / dot(phi, phi)};
+            .R = dot(values.r, values.r),
+            .slope = -b * dot(values.r, at.psi),
+            .p_variance = 1 / (b * b * dot(at.psi, at.psi)),
+            .limit_variance = 1 / static_cast<double>(values.v.size()) +
+                              std::pow(at.phi_mean + 1 / p, 2) / at.phi_phi};
+}
+
+Line line(Levels levels, double p) {
+    Shape at;
+    shape(logarithms(levels), p, at);
+    Values values = values_of(levels);
+    return line(at, values);
 }
 
 struct Fit {
@@ -86,31 +134,79 @@ struct Fit {
 };
 constexpr double lowest = -2, highest = 10;
 
-Fit fit(Levels levels) {
-    constexpr int cells = 240;
-    const auto grid = [](int k) { return lowest + (highest - lowest) * k / cells; };
-    int best = 0;
-    double least = line(levels, grid(0)).R;
-    for (int k = 1; k <= cells; ++k)
-        if (const double R = line(levels, grid(k)).R; R < least) best = k, least = R;
-    double low = grid(std::max(best - 1, 0)), high = grid(std::min(best + 1, cells));
-    for (int halving = 0; halving < 60; ++halving) {
-        const double middle = (low + high) / 2;
-        (line(levels, middle).slope < 0 ? low : high) = middle;
+// Orders between which the best one is searched.
+constexpr int cells = 240;
+double grid(int k) { return lowest + (highest - lowest) * k / cells; }
+
+// The shapes at all of these. A study fits thousands of values with the same steps.
+const std::vector<Shape>& shapes(const std::vector<double>& l) {
+    struct Known {
+        std::vector<double> l;
+        std::vector<Shape> shapes;
+    };
+    constexpr std::size_t most_known = 64;
+    thread_local std::deque<Known> all;
+    for (const Known& known : all)
+        if (known.l == l) return known.shapes;
+    if (all.size() == most_known) all.pop_front();
+    Known& made = all.emplace_back(Known{l, std::vector<Shape>(cells + 1)});
+    for (int k = 0; k <= cells; ++k) shape(l, grid(k), made.shapes[static_cast<std::size_t>(k)]);
+    return made.shapes;
+}
+
+// Zero of a function that rises from below to above it, else the end that is nearer to one: regula
+// falsi, in which an end that stays counts half (Illinois).
+double zero_of(const auto& f, double low, double high) {
+    double at_low = f(low), at_high = f(high);
+    if (!(at_low < 0)) return low;
+    if (at_high < 0) return high;
+    double x = low;
+    for (int side = 0, round = 0; round < 100; ++round) {
+        const double before = x;
+        x = high - at_high * (high - low) / (at_high - at_low);
+        if (!(x > low && x < high)) x = (low + high) / 2;
+        if (std::abs(x - before) <= std::numeric_limits<double>::epsilon() * std::abs(x)) break;
+        const double at_x = f(x);
+        if (at_x < 0) {
+            low = x, at_low = at_x;
+            if (side < 0) at_high /= 2;
+            side = -1;
+        } else {
+            high = x, at_high = at_x;
+            if (side > 0) at_low /= 2;
+            side = 1;
+        }
     }
+    return x;
+}
+
+Fit fit(Levels levels) {
+    const std::vector<double> l = logarithms(levels);
+    Values values = values_of(levels);
+    const auto& on_grid = shapes(l);
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= cells; ++k)
+        if (const double R = line(on_grid[static_cast<std::size_t>(k)], values).R; R < least)
+            best = k, least = R;
+    Shape shape_at;
+    const auto at = [&](double p) {
+        shape(l, p, shape_at);
+        return line(shape_at, values);
+    };
     Fit result;
-    result.p = (low + high) / 2;
-    const Line at = line(levels, result.p);
-    result.limit = at.limit;
-    result.C = at.C;
+    result.p = zero_of([&](double p) { return at(p).slope; }, grid(std::max(best - 1, 0)),
+                       grid(std::min(best + 1, cells)));
+    const Line found = at(result.p);
+    result.limit = found.limit;
+    result.C = found.C;
     if (levels.size() < 4) return result;
-    result.sigma = std::sqrt(at.R / static_cast<double>(levels.size() - 3));
-    result.p_error = result.sigma * std::sqrt(at.p_variance);
+    result.sigma = std::sqrt(found.R / static_cast<double>(levels.size() - 3));
+    result.p_error = result.sigma * std::sqrt(found.p_variance);
     const double delta = 1e-3 * result.p;
-    const double dL_dp =
-        (line(levels, result.p + delta).limit - line(levels, result.p - delta).limit) / (2 * delta);
+    const double dL_dp = (at(result.p + delta).limit - at(result.p - delta).limit) / (2 * delta);
     result.limit_error =
-        std::hypot(result.sigma * std::sqrt(at.limit_variance), dL_dp * result.p_error);
+        std::hypot(result.sigma * std::sqrt(found.limit_variance), dL_dp * result.p_error);
     return result;
 }
 
