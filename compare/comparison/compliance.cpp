@@ -100,7 +100,8 @@ ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
     return freed_case;
 }
 
-std::vector<Disturbance> causes_at(const Model& model) {
+// Unit forces and moments at the wheel centres, then forces at the patches.
+std::vector<Disturbance> causes_at(const Model& model, bool with_patches) {
     std::vector<Disturbance> list;
     for (const Wheel& wheel : model.wheels) {
         const Point centre{wheel.body, wheel.centre_local}, patch{wheel.body, wheel.contact_local};
@@ -108,17 +109,39 @@ std::vector<Disturbance> causes_at(const Model& model) {
             list.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
         for (int k = 0; k < 3; ++k)
             list.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
-        for (int k = 0; k < 3; ++k)
+        for (int k = 0; with_patches && k < 3; ++k)
             list.push_back(UnitWrench{patch, Vector3d::Unit(k), Vector3d::Zero()});
     }
     return list;
 }
 
+// A force f at the patch is f at the centre and the moment d x f, d from centre to patch.
+Motions at_patch_of(const std::array<Motions, causes>& solved, const Vector3d& d, int axis) {
+    const Vector3d moment = d.cross(Vector3d::Unit(axis));
+    Motions sum = solved[static_cast<std::size_t>(at_centre + axis)];
+    for (int k = 0; k < 3; ++k) {
+        const Motions& turn = solved[static_cast<std::size_t>(moment_on + k)];
+        for (std::size_t b = 0; b < sum.size(); ++b) {
+            sum[b].dr += moment[k] * turn[b].dr;
+            sum[b].dpi += moment[k] * turn[b].dpi;
+        }
+    }
+    return sum;
+}
+
 std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& all,
-                                                  std::size_t wheels) {
-    std::vector<std::array<Motions, causes>> list(wheels);
-    for (std::size_t w = 0; w < wheels; ++w)
-        for (std::size_t k = 0; k < causes; ++k) list[w][k] = all[causes * w + k];
+                                                  const Model& model, const Equilibrium& state,
+                                                  bool with_patches) {
+    const std::size_t each = with_patches ? causes : at_patch;
+    std::vector<std::array<Motions, causes>> list(model.wheels.size());
+    for (std::size_t w = 0; w < list.size(); ++w) {
+        const Wheel& wheel = model.wheels[w];
+        for (std::size_t k = 0; k < each; ++k) list[w][k] = all[each * w + k];
+        const Vector3d d = position(state.poses, wheel.body, wheel.contact_local) -
+                           position(state.poses, wheel.body, wheel.centre_local);
+        for (int axis = 0; !with_patches && axis < 3; ++axis)
+            list[w][static_cast<std::size_t>(at_patch + axis)] = at_patch_of(list[w], d, axis);
+    }
     return list;
 }
 
@@ -161,11 +184,13 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     WheelResponse response;
     const std::size_t wheels = side.model.wheels.size();
     const ResponseCase freed_case = freed(side, state);
-    const auto wrenches = causes_at(side.model);
+    // The energy leg iterates for every cause; the others have one factorisation for all.
+    const bool with_patches = solver.leg != Leg::energy;
+    const auto wrenches = causes_at(side.model, with_patches);
     if (const Response free = linear_response(solver, freed_case.model, freed_case.branch,
                                               freed_case.state, wrenches, analyses.free);
         free.outcome == Outcome::converged)
-        response.free = by_wheel(free.increments, wheels);
+        response.free = by_wheel(free.increments, side.model, state, with_patches);
     else {
         response.why_not_free = failure_text(free);
         response.nothing_resists =
@@ -197,7 +222,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         response.steering = std::move(jacked.increments.back());
         jacked.increments.pop_back();
     }
-    response.held = by_wheel(jacked.increments, wheels);
+    response.held = by_wheel(jacked.increments, side.model, state, with_patches);
     response.travel.assign(
         jacked.increments.end() - static_cast<std::ptrdiff_t>(response.tied ? 1 : wheels),
         jacked.increments.end());
