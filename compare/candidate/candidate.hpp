@@ -49,7 +49,6 @@ struct CandidateLevel {
 // Pre: at least three levels, steps increasing; a violation is reported as a reason for
 // inconclusive. Studies the main outputs that every level gives.
 Study study_candidate(const Model& model, const std::string& name,
-                      const std::vector<CandidateLevel>& levels,
-                      const std::function<void(std::string_view)>& progress = {});
+                      const std::vector<CandidateLevel>& levels, const Progress& progress = {});
 
 }  // namespace elastocheck::compare

@@ -40,8 +40,7 @@ Curve curve_on(const Model& model, const BranchSide& way, const std::string& bra
 }  // namespace
 
 Study study_candidate(const Model& model, const std::string& name,
-                      const std::vector<CandidateLevel>& levels,
-                      const std::function<void(std::string_view)>& progress) {
+                      const std::vector<CandidateLevel>& levels, const Progress& progress) {
     Study result;
     for (const auto& level : levels) result.steps.push_back(level.steps);
     const auto refuse = [&](std::string why) {
@@ -72,7 +71,7 @@ Study study_candidate(const Model& model, const std::string& name,
 
     for (const auto& branch : model.branches)
         for (const auto& [way, steps] : ways_with_steps(model, branch, result.steps)) {
-            if (progress) progress(fmt::format("{}: references", way.name));
+            if (progress) progress(fmt::format("{}: references", way.name), nan);
             const References known = references(model, all, way.branch, {way});
             std::ranges::move(unfit(known, way.name), std::back_inserter(result.inconclusive));
             if (!known.failures.empty()) continue;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,6 +10,8 @@
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/deviation/proof.hpp"
+#include "compare/jobs/jobs.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reference/certificate/certificate.hpp"
 
@@ -26,10 +27,9 @@ Residuals worse(const Residuals& a, const Residuals& b) {
 // when other work evicts their data from the caches.
 double seconds_alone(const std::vector<BranchSide>& sides, SolverSettings solver) {
     solver.error_bound = false;
-    using clock = std::chrono::steady_clock;
-    const auto start = clock::now();
+    const double start = processor_time();
     for (const auto& side : sides) walk(side, solver, [](const Equilibrium&) {});
-    return std::chrono::duration<double>(clock::now() - start).count();
+    return processor_time() - start;
 }
 
 bool asks_for_characteristics(const std::vector<Channel>& channels) {
@@ -86,7 +86,7 @@ SolverSettings with_account(const Model& standing, SolverSettings solver) {
 }
 
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
-           const std::vector<BranchSide>& sides, const SolverSettings& solver) {
+           const std::vector<BranchSide>& sides, const SolverSettings& solver, bool times) {
     LegRun run;
     run.leg = solver.leg;
     if (solver.leg == Leg::recursive) run.method = solver.recursion.method.name;
@@ -119,7 +119,9 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
         run.compliance = compliance_of(model, side, solver, run);
-    if (solver.leg == Leg::recursive || solver.leg == Leg::series)
+    if (!times)
+        run.seconds = nan;
+    else if (solver.leg == Leg::recursive || solver.leg == Leg::series)
         run.seconds = seconds_alone(sides, solver);
     return run;
 }
@@ -339,6 +341,44 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     return objections;
 }
 
+namespace {
+
+// Deviations between the runs of one branch, the k-th of the model.
+BranchComparison compare_runs(const Model& model, const std::vector<Channel>& channels,
+                              const std::vector<BranchSide>& sides, std::vector<LegRun> runs,
+                              std::vector<bool> determined, std::size_t k, int asked_abscissa,
+                              const Options& options) {
+    const Branch& branch = model.branches[k];
+    BranchComparison b;
+    b.branch = branch.name;
+    b.unit = unit_of(branch.unit);
+    for (const auto& side : sides) b.steps += side.branch.steps;
+    b.every = options.every;
+    b.determined = std::move(determined);
+    b.runs = std::move(runs);
+    if (const LegRun& energy = run_of(b, Leg::energy); is_not_applicable(energy.outcome))
+        b.second = Leg::series, b.not_asked = energy.detail;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        b.determined[c] = b.determined[c] && !is_undefined_somewhere(channels[c], c, b.runs);
+    const LegRun& truth = run_of(b, Leg::equilibrium);
+    b.abscissa = asked_abscissa >= 0 ? asked_abscissa : default_abscissa(channels, truth.curve);
+    const auto pair = [&](Leg a, Leg c) {
+        const Curve &of_a = run_of(b, a).curve, &of_c = run_of(b, c).curve;
+        return Pair{
+            a, c, at_equal_parameter(of_a, of_c),
+            at_equal_abscissa(of_a, of_c, compare::abscissa(channels, b.abscissa, of_a, of_c))};
+    };
+    b.deviation = pair(Leg::equilibrium, Leg::recursive);
+    b.cross_check = pair(b.second, Leg::recursive);
+    b.uncertainty = pair(Leg::equilibrium, b.second);
+    b.bounds = bounds_of(options.agreement, truth.scale);
+    b.extents = extents_of(channels, truth.curve, truth.scale);
+    b.inconclusive = disagreements(model, channels, branch, b);
+    return b;
+}
+
+}  // namespace
+
 bool Comparison::conclusive() const {
     for (const auto& branch : branches)
         if (!branch.inconclusive.empty()) return false;
@@ -347,7 +387,7 @@ bool Comparison::conclusive() const {
 
 LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion) {
     return run(model, channels(model), branch, sides_of(model, branch, recursion.steps),
-               {.leg = leg, .recursion = recursion});
+               {.leg = leg, .recursion = recursion}, true);
 }
 
 Comparison compare(const Model& model, const Options& options) {
@@ -372,57 +412,44 @@ Comparison compare(const Model& model, const Options& options) {
     }
     std::ranges::move(totals(model, groups), std::back_inserter(result.channels));
 
-    for (std::size_t k = 0; k < model.branches.size(); ++k) {
-        const Branch& branch = model.branches[k];
-        BranchComparison b;
-        b.branch = branch.name;
-        b.unit = unit_of(branch.unit);
-        for (const auto& side : sides[k]) b.steps += side.branch.steps;
-        b.every = options.every;
-        b.determined = determined_channels(result.channels, sides[k].front().model, determined[k]);
-        for (const Leg leg : legs) {
-            if (options.progress)
-                options.progress(fmt::format("{}: {} leg", branch.name, name(leg)));
-            b.runs.push_back(
-                run(model, result.channels, branch, sides[k],
-                    with_account(
-                        sides[k].front().model,
-                        {.leg = leg, .recursion = options.recursion, .every = options.every})));
-        }
-        if (const LegRun& energy = run_of(b, Leg::energy); is_not_applicable(energy.outcome)) {
-            b.second = Leg::series;
-            b.not_asked = energy.detail;
-            if (options.progress) options.progress(fmt::format("{}: series", branch.name));
-            b.runs.push_back(run(model, result.channels, branch, sides[k],
-                                 {.leg = Leg::series, .every = options.every}));
-        }
-        if (options.prove) {
-            if (options.progress) options.progress(fmt::format("{}: proofs", branch.name));
-            for (LegRun& run : b.runs) run.proved = proved(sides[k].front(), run);
-        }
-        for (std::size_t c = 0; c < result.channels.size(); ++c)
-            b.determined[c] =
-                b.determined[c] && !is_undefined_somewhere(result.channels[c], c, b.runs);
-        const LegRun& truth = run_of(b, Leg::equilibrium);
-        b.abscissa = requested >= 0 ? requested : default_abscissa(result.channels, truth.curve);
-        const auto pair = [&](Leg a, Leg c) {
-            const Curve &of_a = run_of(b, a).curve, &of_c = run_of(b, c).curve;
-            return Pair{
-                a, c, at_equal_parameter(of_a, of_c),
-                at_equal_abscissa(of_a, of_c,
-                                  compare::abscissa(result.channels, b.abscissa, of_a, of_c))};
-        };
-        b.deviation = pair(Leg::equilibrium, Leg::recursive);
-        b.cross_check = pair(b.second, Leg::recursive);
-        b.uncertainty = pair(Leg::equilibrium, b.second);
-        b.bounds = bounds_of(options.agreement, truth.scale);
-        b.extents = extents_of(result.channels, truth.curve, truth.scale);
-        b.inconclusive = disagreements(model, result.channels, branch, b);
+    const auto solve = [&](std::size_t k, const SolverSettings& solver) {
+        LegRun found =
+            run(model, result.channels, model.branches[k], sides[k], solver, options.times);
+        if (options.prove) found.proved = proved(sides[k].front(), found);
+        return found;
+    };
+    std::vector<std::vector<LegRun>> runs(model.branches.size(), std::vector<LegRun>(legs.size()));
+    std::vector<std::optional<LegRun>> series(model.branches.size());
+    std::vector<Job> jobs;
+    for (std::size_t k = 0; k < model.branches.size(); ++k)
+        for (const Leg leg : legs)
+            jobs.push_back(
+                {fmt::format("{}: {} leg", model.branches[k].name, name(leg)), [&, k, leg] {
+                     const SolverSettings solver{
+                         .leg = leg, .recursion = options.recursion, .every = options.every};
+                     LegRun& found = runs[k][static_cast<std::size_t>(leg)];
+                     found = solve(k, with_account(sides[k].front().model, solver));
+                     if (leg == Leg::energy && is_not_applicable(found.outcome))
+                         series[k] = solve(k, {.leg = Leg::series, .every = options.every});
+                 }});
+    run_jobs(jobs, options.threads, part(options.progress, 0, 0.9));
+
+    result.branches.resize(model.branches.size());
+    jobs.clear();
+    for (std::size_t k = 0; k < model.branches.size(); ++k)
+        jobs.push_back({fmt::format("{}: deviations", model.branches[k].name), [&, k] {
+                            if (series[k]) runs[k].push_back(std::move(*series[k]));
+                            const auto comparable = determined_channels(
+                                result.channels, sides[k].front().model, determined[k]);
+                            result.branches[k] =
+                                compare_runs(model, result.channels, sides[k], std::move(runs[k]),
+                                             comparable, k, requested, options);
+                        }});
+    run_jobs(jobs, options.threads, part(options.progress, 0.9, 1));
+    for (const BranchComparison& b : result.branches)
         for (const Pair* p : {&b.deviation, &b.cross_check, &b.uncertainty})
             result.compared +=
                 count(p->equal_parameter, b.determined) + count(p->equal_abscissa, b.determined);
-        result.branches.push_back(std::move(b));
-    }
     for (std::size_t c = 0; c < result.channels.size(); ++c) {
         if (!std::holds_alternative<Characteristic>(result.channels[c].reads)) continue;
         double largest = 0;

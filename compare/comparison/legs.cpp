@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/deviation/tolerance.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/energy.hpp"
@@ -43,10 +43,12 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
     options.record = side.branch.steps;
     options.steps = side.branch.steps * refine;
     options.error_bound_every = every;
-    return recursive::solve(side.model, side.branch, options,
-                            [&, k = 0](const Equilibrium& state) mutable {
-                                if (is_requested(side.branch, k++, every)) visit(state);
-                            });
+    const Visit requested = [&, k = 0](const Equilibrium& state) mutable {
+        if (is_requested(side.branch, k++, every)) visit(state);
+    };
+    return side.analysis
+               ? recursive::solve(side.model, side.branch, options, *side.analysis, requested)
+               : recursive::solve(side.model, side.branch, options, requested);
 }
 
 // Runs the leg with extrapolated curves, without a check of their ends.
@@ -74,6 +76,27 @@ EquilibriumPath walk_anywhere(const BranchSide& side, const SolverSettings& solv
     return {};
 }
 
+// Outcome and counts of two sides. Path: EquilibriumPath or PathCurve.
+template <class Path>
+void end_as_both(const std::vector<BranchSide>& sides, Path& first, const Path& second) {
+    const auto tell = [](const BranchSide& side, const std::string& detail) {
+        return fmt::format("{}: {}", side.name, detail);
+    };
+    // A leg that does not apply to one side does not apply to either.
+    if (is_not_applicable(first.outcome) && second.outcome == first.outcome) {
+        first.detail = second.detail, first.counts = second.counts;
+        return;
+    }
+    if (first.outcome != Outcome::converged) first.detail = tell(sides.front(), first.detail);
+    if (second.outcome != Outcome::converged) {
+        first.detail += (first.detail.empty() ? "" : "; ") + tell(sides.back(), second.detail);
+        if (first.outcome == Outcome::converged) first.outcome = second.outcome;
+    }
+    first.counts.factorisations += second.counts.factorisations;
+    first.counts.iterations += second.counts.iterations;
+    first.counts.evaluations += second.counts.evaluations;
+}
+
 // Joins both sides. The points of the reversed side are buffered as `Row` until they can be handed
 // over.
 template <class Row, class Read, class HandOver>
@@ -83,9 +106,6 @@ EquilibriumPath join(const std::vector<BranchSide>& sides, const SolverSettings&
     if (sides.size() == 1)
         return walk(sides.front(), solver,
                     [&](const Equilibrium& state) { hand_over(read(state)); });
-    const auto tell = [](const BranchSide& side, const std::string& detail) {
-        return fmt::format("{}: {}", side.name, detail);
-    };
     // Both sides start at a = 0 in the same settled state: the second side's start is used, if it
     // has one.
     std::optional<Equilibrium> start;
@@ -102,16 +122,7 @@ EquilibriumPath join(const std::vector<BranchSide>& sides, const SolverSettings&
         hand_over(read(state));
     });
     if (start) hand_over(read(*start));
-    // A leg that does not apply to one side does not apply to either.
-    if (is_not_applicable(joined.outcome) && second.outcome == joined.outcome) return second;
-    if (joined.outcome != Outcome::converged) joined.detail = tell(sides.front(), joined.detail);
-    if (second.outcome != Outcome::converged) {
-        joined.detail += (joined.detail.empty() ? "" : "; ") + tell(sides.back(), second.detail);
-        if (joined.outcome == Outcome::converged) joined.outcome = second.outcome;
-    }
-    joined.counts.factorisations += second.counts.factorisations;
-    joined.counts.iterations += second.counts.iterations;
-    joined.counts.evaluations += second.counts.evaluations;
+    end_as_both(sides, joined, second);
     return joined;
 }
 
@@ -222,26 +233,25 @@ EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings&
 PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
                const std::vector<BranchSide>& sides, const SolverSettings& solver,
                const Visit& also) {
-    using clock = std::chrono::steady_clock;
     PathCurve walked;
     walked.curve.unit = unit_of(branch.unit);
-    clock::duration reading{};
+    double reading = 0;
     Analyses analyses;
-    const auto start = clock::now();
+    const double start = processor_time();
     const EquilibriumPath path = walk(
         sides, solver,
         [&](const Equilibrium& state) {
-            const auto found = clock::now();
+            const double found = processor_time();
             if (also) also(state);
             Row row = row_of(model, channels, sides.front(), solver, state, analyses);
-            reading += clock::now() - found;
+            reading += processor_time() - found;
             return row;
         },
         [&](Row row) {
             append(walked.curve, row.load, std::move(row.values));
             walked.constraint_error.push_back(row.constraint_error);
         });
-    walked.seconds = std::chrono::duration<double>(clock::now() - start - reading).count();
+    walked.seconds = processor_time() - start - reading;
     walked.outcome = path.outcome;
     walked.detail = path.detail;
     walked.counts = path.counts;
@@ -311,22 +321,58 @@ std::string nothing_moves(const Model& model, const std::vector<Channel>& channe
     return fmt::format("no requested output changes on branch '{}'", branch.name);
 }
 
+PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves) {
+    if (curves.size() == 1) return curves.front();
+    const PathCurve &first = curves.front(), &second = curves.back();
+    PathCurve all = second;
+    all.outcome = first.outcome, all.detail = first.detail, all.counts = first.counts;
+    all.seconds += first.seconds;
+    end_as_both(sides, all, second);
+    // The start is that of the second side, if it has one.
+    const std::size_t from = second.curve.a.empty() ? 0 : 1, size = first.curve.a.size();
+    const auto before = [&](auto& list, const auto& more) {
+        for (std::size_t k = from; k < size; ++k) list.insert(list.begin(), more[k]);
+    };
+    before(all.curve.a, first.curve.a);
+    before(all.curve.values, first.curve.values);
+    before(all.constraint_error, first.constraint_error);
+    all.curve.start = size > 0 ? size - 1 : 0;
+    return all;
+}
+
+ReferenceRuns run_references(const Model& model, const std::vector<Channel>& channels,
+                             const Branch& branch, const std::vector<BranchSide>& sides) {
+    ReferenceRuns runs;
+    const Model& standing = sides.front().model;
+    runs.scale = scale_of(standing, branch, {});
+    runs.truth = walk(model, channels, branch, sides, {.leg = Leg::equilibrium},
+                      [&](const Equilibrium& state) {
+                          runs.scale = larger(runs.scale, scale_of(standing, branch, {&state, 1}));
+                      });
+    runs.other = walk(model, channels, branch, sides, {.leg = Leg::energy});
+    if (is_not_applicable(runs.other.outcome)) {
+        runs.second_leg = Leg::series;
+        runs.not_asked = runs.other.detail;
+        runs.other = walk(model, channels, branch, sides, {.leg = Leg::series});
+    }
+    return runs;
+}
+
 References references(const Model& model, const std::vector<Channel>& channels,
                       const Branch& branch, const std::vector<BranchSide>& sides) {
+    return references(model, channels, branch, sides,
+                      run_references(model, channels, branch, sides));
+}
+
+References references(const Model& model, const std::vector<Channel>& channels,
+                      const Branch& branch, const std::vector<BranchSide>& sides,
+                      ReferenceRuns runs) {
     References result;
     const Model& standing = sides.front().model;
-    result.scale = scale_of(standing, branch, {});
-    PathCurve equilibrium = walk(
-                  model, channels, branch, sides, {.leg = Leg::equilibrium},
-                  [&](const Equilibrium&state) {
-                      result.scale = larger(result.scale, scale_of(standing, branch, {&state, 1}));
-                  }),
-              second = walk(model, channels, branch, sides, {.leg = Leg::energy});
-    if (is_not_applicable(second.outcome)) {
-        result.second_leg = Leg::series;
-        result.not_asked = second.detail;
-        second = walk(model, channels, branch, sides, {.leg = Leg::series});
-    }
+    PathCurve &equilibrium = runs.truth, &second = runs.other;
+    result.scale = runs.scale;
+    result.second_leg = runs.second_leg;
+    result.not_asked = runs.not_asked;
     for (const auto& [leg, walked] :
          {std::pair{Leg::equilibrium, &equilibrium}, {result.second_leg, &second}})
         if (walked->outcome != Outcome::converged)

@@ -47,6 +47,9 @@ PathCurve walk(const Model& model, std::span<const Channel> channels, const Bran
                const std::vector<BranchSide>& sides, const SolverSettings& solver,
                const Visit& also = {});
 
+// The runs of the sides of a branch as one, as walk() joins them.
+PathCurve joined(const std::vector<BranchSide>& ways, const std::vector<PathCurve>& sides);
+
 // Start of a branch side by this leg: one point, the settled state at a = 0; no point where it does
 // not settle.
 EquilibriumPath rest(const BranchSide& side, Leg leg);
@@ -69,6 +72,18 @@ struct References {
     std::vector<std::string> failures;
 };
 
+// What both find, before it is judged.
+struct ReferenceRuns {
+    PathCurve truth, other;
+    Leg second_leg = Leg::energy;
+    std::string not_asked;
+    Scale scale;
+};
+ReferenceRuns run_references(const Model& model, const std::vector<Channel>& channels,
+                             const Branch& branch, const std::vector<BranchSide>& ways);
+References references(const Model& model, const std::vector<Channel>& channels,
+                      const Branch& branch, const std::vector<BranchSide>& ways,
+                      ReferenceRuns runs);
 References references(const Model& model, const std::vector<Channel>& channels,
                       const Branch& branch, const std::vector<BranchSide>& sides);
 

@@ -50,6 +50,15 @@ Curve curve(const Model& model, std::span<const Channel> channels, const Branch&
     return result;
 }
 
+Curve thinned(const Curve& curve, std::size_t stride) {
+    Curve result{.unit = curve.unit, .a = {}, .start = curve.start / stride, .values = {}};
+    for (std::size_t k = curve.start % stride; k < curve.a.size(); k += stride) {
+        result.a.push_back(curve.a[k]);
+        result.values.push_back(curve.values[k]);
+    }
+    return result;
+}
+
 Trend trend(std::span<const double> x) {
     for (std::size_t k = 0; k < x.size(); ++k)
         if (!std::isfinite(x[k])) return {Course::not_finite, k};

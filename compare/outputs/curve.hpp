@@ -19,6 +19,9 @@ void append(Curve& curve, double load, std::vector<double> values);
 Curve curve(const Model& model, std::span<const Channel> channels, const Branch& branch,
             const std::vector<Equilibrium>& points);
 
+// Every `stride`-th point, counted from the start.
+Curve thinned(const Curve& curve, std::size_t stride);
+
 // Direction of a sequence. Only a rising or falling sequence can be inverted.
 enum class Course { rising, falling, still, turning, not_finite, too_short };
 struct Trend {

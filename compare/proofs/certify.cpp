@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+
+#include "compare/jobs/jobs.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -62,16 +65,20 @@ CertifyStudy certify(const Model& model, const CertifyOptions& options) {
     }
     CertifyStudy study;
     study.tolerance = options.tolerance;
-    for (const Branch& branch : model.branches) {
-        for (const BranchSide& side : sides_of(model, branch)) {
-            for (const SolverSettings& solver : solvers) {
-                if (options.progress)
-                    options.progress(
-                        fmt::format("{}: proving what {} finds", side.name, solver_of(solver)));
-                study.sides.push_back(certify_side(side, solver, options));
-            }
-        }
-    }
+    std::vector<BranchSide> sides;
+    for (const Branch& branch : model.branches)
+        std::ranges::move(sides_of(model, branch), std::back_inserter(sides));
+    study.sides.resize(sides.size() * solvers.size());
+    std::vector<Job> jobs;
+    for (std::size_t w = 0; w < sides.size(); ++w)
+        for (std::size_t s = 0; s < solvers.size(); ++s)
+            jobs.push_back(
+                {fmt::format("{}: proving what {} finds", sides[w].name, solver_of(solvers[s])),
+                 [&, w, s] {
+                     study.sides[w * solvers.size() + s] =
+                         certify_side(sides[w], solvers[s], options);
+                 }});
+    run_jobs(jobs, options.threads, options.progress);
     return study;
 }
 

@@ -43,7 +43,8 @@ struct CertifyOptions {
     Tolerance tolerance;
     // least number of points per branch side besides the start, as far as it has as many steps
     int points = 20;
-    std::function<void(std::string_view)> progress = {};
+    int threads = 1;
+    Progress progress = {};
 };
 
 struct CertifyStudy {

@@ -13,6 +13,7 @@
 
 #include "compare/comparison/legs.hpp"
 #include "compare/deviation/agreement.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "reference/equilibrium/continuation/from_start.hpp"
 
 namespace elastocheck::compare {
@@ -147,7 +148,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     const BranchSide side = side_to(model, branch, a);
     AllEquilibria all{branch.name, unit_of(branch.unit), a};
     const auto say = [&](const std::string& what) {
-        if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what));
+        if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what), nan);
     };
 
     if (model.bodies.size() > most_bodies) {
@@ -233,7 +234,6 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
     std::ranges::stable_sort(all.list, [](const auto& one, const auto& other) {
         return std::pair(!one.on_branch, one.length) < std::pair(!other.on_branch, other.length);
     });
-    say("");
     return all;
 }
 

@@ -31,7 +31,7 @@ struct FindOptions {
     int at_random = 24;      // number of random poses
     int motions = 3;         // number of softest motions tried per equilibrium
     unsigned long seed = 1;  // of the random poses
-    std::function<void(std::string_view)> progress = {};
+    Progress progress = {};
 };
 
 struct FoundEquilibrium {

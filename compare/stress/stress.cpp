@@ -4,15 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <ctime>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "compare/deviation/agreement.hpp"
 #include "compare/deviation/reactions.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
@@ -180,13 +176,6 @@ struct TrialRun {
     std::vector<SideRun> sides;
     double seconds = 0;  // processor time
 };
-
-// Processor time of this thread, independent of other jobs of the machine.
-double processor_time() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // Exact except for rounding.
 ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
@@ -753,32 +742,12 @@ Survival stress(std::span<const Trial> trials, const StressOptions& options) {
 
     // Trials run independently, in parallel, until they are judged.
     std::vector<TrialRun> runs(trials.size());
-    std::atomic<std::size_t> next = 0;
-    std::mutex telling;
-    std::exception_ptr failure;
-    const auto work = [&] {
-        for (std::size_t t = next++; t < trials.size(); t = next++) {
-            if (!trials[t].variant.skipped.empty()) continue;
-            try {
-                if (options.progress) {
-                    const std::lock_guard lock(telling);
-                    options.progress(fmt::format("{} of {}: {}, {}", t + 1, trials.size(),
-                                                 trials[t].scene, trials[t].variant.label));
-                }
-                runs[t] = run(trials[t], who);
-            } catch (...) {
-                const std::lock_guard lock(telling);
-                failure = std::current_exception();
-                next = trials.size();
-            }
-        }
-    };
-    {
-        std::vector<std::jthread> workers;
-        for (int k = 1; k < options.threads; ++k) workers.emplace_back(work);
-        work();
-    }
-    if (failure) std::rethrow_exception(failure);
+    std::vector<Job> jobs;
+    for (std::size_t t = 0; t < trials.size(); ++t)
+        if (trials[t].variant.skipped.empty())
+            jobs.push_back({fmt::format("{}, {}", trials[t].scene, trials[t].variant.label),
+                            [&, t] { runs[t] = run(trials[t], who); }});
+    run_jobs(jobs, options.threads, options.progress);
 
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];

@@ -159,7 +159,7 @@ struct Survival {
 
 struct StressOptions {
     int threads = 2;
-    std::function<void(std::string_view)> progress = {};
+    Progress progress = {};
 };
 
 Survival stress(std::span<const Trial> trials, const StressOptions& options = {});

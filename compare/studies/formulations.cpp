@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
 #include "models/kinds.hpp"
@@ -30,6 +31,15 @@ int axes_resisted(const SpatialLaw& law) {
                            [](const ScalarLaw& law_of_axis) { return !is_flat(law_of_axis); }));
                    }},
         law);
+}
+
+// Formulation of every bushing; two scenes of one study differ in nothing else.
+std::vector<Formulation> formulations_of(const Scene& scene) {
+    std::vector<Formulation> list;
+    for (const auto& elastic : scene.elastics)
+        if (const auto* formulation = member<Formulation>(elastic.kind))
+            list.push_back(*formulation);
+    return list;
 }
 
 struct Solved {
@@ -79,7 +89,7 @@ Scene reformulated(const Scene& scene, const Formulation& formulation) {
 }
 
 FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& scenes, int steps,
-                              int every, const std::function<void(std::string_view)>& progress) {
+                              int every, int threads, const Progress& progress) {
     FormulationStudy study;
     std::vector<std::pair<std::string, Model>> models;
     for (const auto& [name, scene] : scenes) models.emplace_back(name, compile(scene));
@@ -87,6 +97,25 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
         if (channel.main) study.channels.push_back(channel);
 
     const auto& branches = models.front().second.branches;
+    std::vector<std::vector<PathCurve>> curves(branches.size(),
+                                               std::vector<PathCurve>(models.size()));
+    std::vector<Job> jobs;
+    // A formulation that the scene has as it is written is not solved again.
+    const auto repeats_the_first = [&](std::size_t m) {
+        return m > 0 && formulations_of(scenes[m].second) == formulations_of(scenes[0].second);
+    };
+    for (std::size_t b = 0; b < branches.size(); ++b)
+        for (std::size_t m = 0; m < models.size(); ++m)
+            if (!repeats_the_first(m))
+                jobs.push_back(
+                    {fmt::format("{}: {}", branches[b].name, models[m].first), [&, b, m] {
+                         const Model& model = models[m].second;
+                         const Branch& branch = model.branches[b];
+                         curves[b][m] =
+                             walk(model, study.channels, branch, sides_of(model, branch, steps),
+                                  {.leg = Leg::equilibrium, .every = every});
+                     }});
+    run_jobs(jobs, threads, progress);
     for (std::size_t b = 0; b < branches.size(); ++b) {
         BranchSpread spread{.branch = branches[b].name,
                             .unit = unit_of(branches[b].unit),
@@ -94,18 +123,16 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
                             .not_solved = {},
                             .outputs = {}};
         std::vector<Solved> solved;
-        for (const auto& [name, model] : models) {
-            if (progress) progress(fmt::format("{}: {}", branches[b].name, name));
-            const Branch& branch = model.branches[b];
-            PathCurve walked = walk(model, study.channels, branch, sides_of(model, branch, steps),
-                                    {.leg = Leg::equilibrium, .every = every});
+        for (std::size_t m = 0; m < models.size(); ++m) {
+            const std::string& name = models[m].first;
+            const PathCurve& walked = curves[b][repeats_the_first(m) ? 0 : m];
             if (walked.outcome != Outcome::converged) {
                 spread.not_solved.push_back(fmt::format(
                     "{}: {}: {}", name, elastocheck::name(walked.outcome), walked.detail));
                 continue;
             }
             spread.solved.push_back(name);
-            solved.push_back({name, std::move(walked.curve)});
+            solved.push_back({name, walked.curve});
         }
         if (solved.size() < 2)
             study.inconclusive.push_back(fmt::format(
@@ -123,8 +150,8 @@ FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& 
     return study;
 }
 
-FormulationStudy formulation_study(const Scene& scene, int steps, int every,
-                                   const std::function<void(std::string_view)>& progress) {
+FormulationStudy formulation_study(const Scene& scene, int steps, int every, int threads,
+                                   const Progress& progress) {
     std::vector<std::string> bushings;
     for (const auto& elastic : scene.elastics)
         if (is_reformulated(elastic)) bushings.push_back(elastic.name);
@@ -136,7 +163,7 @@ FormulationStudy formulation_study(const Scene& scene, int steps, int every,
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const auto& [name, formulation] : formulations)
         scenes.emplace_back(name, formulation ? reformulated(scene, *formulation) : scene);
-    FormulationStudy study = spread_among(scenes, steps, every, progress);
+    FormulationStudy study = spread_among(scenes, steps, every, threads, progress);
     study.bushings = std::move(bushings);
     return study;
 }

@@ -81,13 +81,13 @@ Conversion converted(const Scene& scene, const Formulation& formulation);
 
 // Spread of the outputs over scenes with the same branches, as below; `bushings` stays empty.
 FormulationStudy spread_among(const std::vector<std::pair<std::string, Scene>>& scenes,
-                              int steps = 0, int every = 1,
-                              const std::function<void(std::string_view)>& progress = {});
+                              int steps = 0, int every = 1, int threads = 1,
+                              const Progress& progress = {});
 
 // Spread over the listed formulations. `scene` is the scene as it is solved, already trimmed. Each
 // branch has `steps` equal increments (0: its own number), of which every `every`-th is compared,
 // up to the first value that one of the formulations does not reach.
 FormulationStudy formulation_study(const Scene& scene, int steps = 0, int every = 1,
-                                   const std::function<void(std::string_view)>& progress = {});
+                                   int threads = 1, const Progress& progress = {});
 
 }  // namespace elastocheck::compare

@@ -1,5 +1,5 @@
 #include "compare/studies/order_study.hpp"
-#include "compare/comparison/legs.hpp"
+#include "compare/jobs/jobs.hpp"
 
 #include <fmt/format.h>
 
@@ -18,55 +18,76 @@ Accuracy apart(const std::vector<Channel>& channels, const References& truth, co
     return distance(channels, truth.truth, curve);
 }
 
-BranchOrders study_way(const Model& model, const std::vector<Channel>& channels,
-                       const BranchSide& way, const OrderOptions& options) {
-    const References truth = references(model, channels, way.branch, {way});
-    BranchOrders orders{
-        way.name, truth.failures.empty() ? "" : truth.failures.front(), truth.uncertainty, {}};
-    for (const double tolerance : options.tolerances)
-        for (const int order : options.orders) {
-            if (options.progress)
-                options.progress(
-                    fmt::format("{}: order {}, {:.0e} mm", way.name, order, 1e3 * tolerance));
-            const auto path = recursive::series::follow(
-                way.model, way.branch,
-                {.order = order, .tolerance = tolerance, .expansions = options.expansions});
-            const auto points =
-                recursive::series::sample(way.model, path, way.branch, way.branch.steps);
-            const Curve found = curve(model, channels, way.branch, points.points);
-            OrderLevel level{.order = order,
-                             .tolerance = tolerance,
-                             .outcome = path.outcome,
-                             .expansions = static_cast<int>(path.expansions.size()),
-                             .rejected = path.rejected,
-                             .work = {.solves = path.counts.iterations,
-                                      .factorisations = path.counts.factorisations,
-                                      .evaluations = path.counts.evaluations},
-                             .nearest = {},
-                             .error = apart(channels, truth, found, points.outcome)};
-            if (!path.expansions.empty()) {
-                level.first_reach = path.expansions.front().reach;
-                level.nearest = path.expansions.front().singularity;
-            }
-            for (const auto& expansion : path.expansions) {
-                const auto& judged = expansion.certificate;
-                level.force = std::max({level.force, judged.force_middle, judged.force_end});
-                level.error_end = std::max(level.error_end, judged.error_end);
-            }
-            orders.levels.push_back(level);
-        }
-    return orders;
+OrderLevel level_of(const Solves& solves, const BranchSide& way, const References& truth,
+                    double tolerance, int order, int expansions) {
+    const auto path = recursive::series::follow(
+        way.model, way.branch, {.order = order, .tolerance = tolerance, .expansions = expansions},
+        *way.analysis);
+    const auto points = recursive::series::sample(way.model, path, way.branch, way.branch.steps);
+    const Curve found = curve(solves.model, solves.channels, way.branch, points.points);
+    OrderLevel level{.order = order,
+                     .tolerance = tolerance,
+                     .outcome = path.outcome,
+                     .expansions = static_cast<int>(path.expansions.size()),
+                     .rejected = path.rejected,
+                     .work = {.solves = path.counts.iterations,
+                              .factorisations = path.counts.factorisations,
+                              .evaluations = path.counts.evaluations},
+                     .nearest = {},
+                     .error = apart(solves.channels, truth, found, points.outcome)};
+    if (!path.expansions.empty()) {
+        level.first_reach = path.expansions.front().reach;
+        level.nearest = path.expansions.front().singularity;
+    }
+    for (const auto& expansion : path.expansions) {
+        const auto& judged = expansion.certificate;
+        level.force = std::max({level.force, judged.force_middle, judged.force_end});
+        level.error_end = std::max(level.error_end, judged.error_end);
+    }
+    return level;
 }
 
 }  // namespace
 
-std::vector<BranchOrders> order_study(const Model& model, const OrderOptions& options) {
-    const auto all = channels(model);
-    std::vector<BranchOrders> result;
-    for (const auto& branch : model.branches)
-        for (const auto& way : sides_of(model, branch, options.points))
-            result.push_back(study_way(model, all, way, options));
+std::vector<BranchOrders> order_study(Solves& solves, const OrderOptions& options) {
+    const int multiple = options.points / solves.base;
+    std::vector<BranchSide> ways;
+    for (const auto& sides : solves.sides)
+        for (const auto& side : sides) ways.push_back(at_points(side, multiple));
+    std::vector<References> truth(ways.size());
+    std::vector<BranchOrders> result(ways.size());
+    std::vector<Job> references, levels;
+    std::size_t k = 0;
+    for (const auto& sides : solves.sides)
+        for (const auto& side : sides) {
+            references.push_back(
+                {fmt::format("{}: references", side.name), [&solves, &side, &truth, multiple, k] {
+                     truth[k] = references_on_side(solves, side, multiple);
+                 }});
+            ++k;
+        }
+    run_jobs(references, options.threads, part(options.progress, 0, 0.3));
+    for (k = 0; k < ways.size(); ++k) {
+        result[k] = {ways[k].name, truth[k].failures.empty() ? "" : truth[k].failures.front(),
+                     truth[k].uncertainty,
+                     std::vector<OrderLevel>(options.tolerances.size() * options.orders.size())};
+        std::size_t l = 0;
+        for (const double tolerance : options.tolerances)
+            for (const int order : options.orders)
+                levels.push_back(
+                    {fmt::format("{}: order {}, {:.0e} m", ways[k].name, order, tolerance),
+                     [&, k, tolerance, order, at = l++] {
+                         result[k].levels[at] = level_of(solves, ways[k], truth[k], tolerance,
+                                                         order, options.expansions);
+                     }});
+    }
+    run_jobs(levels, options.threads, part(options.progress, 0.3, 1));
     return result;
+}
+
+std::vector<BranchOrders> order_study(const Model& model, const OrderOptions& options) {
+    Solves solves(model, options.points);
+    return order_study(solves, options);
 }
 
 bool conclusive(const std::vector<BranchOrders>& orders) {

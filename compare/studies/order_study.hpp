@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/studies/solves.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/model.hpp"
 #include "recursive/series/path.hpp"
@@ -37,10 +38,13 @@ struct OrderOptions {
     std::vector<double> tolerances{1e-6, 1e-9, 1e-12};
     int points = 20;        // compared points per branch
     int expansions = 2000;  // upper limit
-    std::function<void(std::string_view)> progress = {};
+    int threads = 1;
+    Progress progress = {};
 };
 
 std::vector<BranchOrders> order_study(const Model& model, const OrderOptions& options = {});
+// The same from shared solves. Pre: their base divides `points`.
+std::vector<BranchOrders> order_study(Solves& solves, const OrderOptions& options);
 
 // Whether every branch has a level with a finite error.
 bool conclusive(const std::vector<BranchOrders>& orders);

@@ -1,5 +1,4 @@
 #include "compare/studies/precision.hpp"
-#include "compare/comparison/legs.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
@@ -56,22 +56,27 @@ Floor floor_of(const std::vector<int>& steps, const std::vector<double>& values,
 }
 
 PrecisionStudy precision_study(const Model& model, const PrecisionOptions& options) {
+    Solves solves(model);
+    return precision_study(solves, options);
+}
+
+PrecisionStudy precision_study(Solves& solves, const PrecisionOptions& options) {
+    const Model& model = solves.model;
     PrecisionStudy study;
     if (model.branches.empty()) {
         study.inconclusive.push_back("the scene has no branch");
         return study;
     }
-    constexpr int points = 10;  // of the references
-    const BranchSide way = sides_of(model, model.branches.front(), points).back();
+    const BranchSide& way = solves.sides.front().back();
     const Branch& branch = way.branch;
     BranchSide whole = way;  // only its first and last points are recorded
     whole.branch.steps = 1;
     study.branch = way.name;
-    const auto all_channels = channels(model);
+    const auto& all_channels = solves.channels;
     for (const auto& channel : all_channels)
         study.angles = study.angles || (channel.main && channel.unit == Unit::deg);
 
-    const References known = references(model, all_channels, branch, {way});
+    const References known = references_on_side(solves, way, 1);
     study.inconclusive = known.failures;
     study.uncertainty = {nan, nan};
     const Curve end = study.inconclusive.empty() ? end_of(known.truth) : Curve{};
@@ -79,7 +84,18 @@ PrecisionStudy precision_study(const Model& model, const PrecisionOptions& optio
         study.uncertainty =
             worse(distance(all_channels, end, end_of(known.other)), rounding_of(all_channels, end));
 
+    const auto solve = [&](PrecisionLevel& level, const recursive::Method& method,
+                           recursive::Precision precision) {
+        const auto path = walk(whole, {.recursion = {.method = method, .precision = precision},
+                                       .refine = level.steps});
+        level.outcome = path.outcome;
+        if (path.outcome != Outcome::converged) return;
+        level.constraint = path.points.back().constraint_error;
+        level.error =
+            distance(all_channels, end, end_of(curve(model, all_channels, branch, path.points)));
+    };
     const double per_step = std::pow(coordinates(model) + constraint_rows(model), 3);
+    std::vector<Job> jobs;
     for (const auto& label : options.methods) {
         const auto method = recursive::find_method(label);
         if (!method || !recursive::has_steps(*method))
@@ -89,35 +105,33 @@ PrecisionStudy precision_study(const Model& model, const PrecisionOptions& optio
               recursive::Precision::extended}) {
             PrecisionSeries series{
                 .method = label, .precision = precision, .levels = {}, .constraint = {}, .mm = {}};
-            std::vector<int> steps;
-            std::vector<double> constraint, mm;
             for (long N = options.fewest_steps;
                  N <= options.most_steps &&
                  (series.levels.empty() ||
                   static_cast<double>(N) * per_step <= options.work_budget);
                  N *= 4) {
-                if (options.progress)
-                    options.progress(fmt::format("{} in {}, {} steps", label, name(precision), N));
-                PrecisionLevel level{
-                    .steps = static_cast<int>(N), .constraint = nan, .error = {nan, nan}};
-                const auto path =
-                    walk(whole, {.recursion = {.method = *method, .precision = precision},
-                                 .refine = level.steps});
-                level.outcome = path.outcome;
-                if (path.outcome == Outcome::converged) {
-                    level.constraint = path.points.back().constraint_error;
-                    level.error = distance(all_channels, end,
-                                           end_of(curve(model, all_channels, branch, path.points)));
-                }
-                series.levels.push_back(level);
-                steps.push_back(level.steps);
-                constraint.push_back(level.constraint);
-                mm.push_back(level.error.mm);
+                series.levels.push_back(
+                    {.steps = static_cast<int>(N), .constraint = nan, .error = {nan, nan}});
+                jobs.push_back(
+                    {fmt::format("{} in {}, {} steps", label, name(precision), N),
+                     [&, method, precision, s = study.series.size(), l = series.levels.size() - 1] {
+                         solve(study.series[s].levels[l], *method, precision);
+                     }});
             }
-            series.constraint = floor_of(steps, constraint);
-            series.mm = floor_of(steps, mm, study.uncertainty.mm);
             study.series.push_back(std::move(series));
         }
+    }
+    run_jobs(jobs, options.threads, options.progress);
+    for (auto& series : study.series) {
+        std::vector<int> steps;
+        std::vector<double> constraint, mm;
+        for (const auto& level : series.levels) {
+            steps.push_back(level.steps);
+            constraint.push_back(level.constraint);
+            mm.push_back(level.error.mm);
+        }
+        series.constraint = floor_of(steps, constraint);
+        series.mm = floor_of(steps, mm, study.uncertainty.mm);
     }
     return study;
 }

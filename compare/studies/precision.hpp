@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/studies/solves.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/recursive.hpp"
 
@@ -53,7 +54,8 @@ struct PrecisionOptions {
     int fewest_steps = 10;
     int most_steps = 1'000'000;  // increased by factors of four
     double work_budget = 1e9;    // of one level: steps · (unknowns)³
-    std::function<void(std::string_view)> progress = {};
+    int threads = 1;
+    Progress progress = {};
 };
 
 struct PrecisionStudy {
@@ -66,6 +68,7 @@ struct PrecisionStudy {
 
 // Throws std::invalid_argument for an unknown method or one that chooses its own steps.
 PrecisionStudy precision_study(const Model& model, const PrecisionOptions& options = {});
+PrecisionStudy precision_study(Solves& solves, const PrecisionOptions& options);
 
 // Floor of values over increasing steps. Values that are not finite are skipped; those below the
 // uncertainty count as equal.

@@ -1,5 +1,7 @@
 #include "compare/studies/profile.hpp"
 
+#include <algorithm>
+
 namespace elastocheck::compare {
 
 ConfigurationProfile profile(const Model& model, const Branch& branch,
@@ -12,6 +14,14 @@ ConfigurationProfile profile(const Model& model, const Branch& branch,
     return {profile_at_equal_parameter(all, curve(model, all, branch, truth.points),
                                        curve(model, all, branch, path.points)),
             path.outcome};
+}
+
+ConfigurationProfile profile(Solves& solves, std::size_t branch, const TradePoint& configuration) {
+    const int steps = configuration.steps / solves.base,
+              points = steps > 0 ? std::min(steps, solves.finest) : solves.finest;
+    const References known = references_on_branch(solves, branch, points);
+    const PathCurve path = run(solves, branch, configuration, points);
+    return {profile_at_equal_parameter(solves.channels, known.truth, path.curve), path.outcome};
 }
 
 }  // namespace elastocheck::compare

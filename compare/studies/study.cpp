@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
-#include "compare/comparison/legs.hpp"
 #include "compare/deviation/agreement.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "models/branch.hpp"
 
@@ -189,29 +190,60 @@ std::vector<std::size_t> main_channels(const std::vector<Channel>& all) {
     return list;
 }
 
+// One side of a branch with its share of every number of steps.
+struct StudiedSide {
+    BranchSide way;
+    std::vector<int> steps;
+    References known;
+};
+
+std::vector<StudiedSide> studied_sides(Solves& solves, const std::vector<int>& steps, int threads,
+                                       const Progress& progress) {
+    std::vector<StudiedSide> sides;
+    for (std::size_t b = 0; b < solves.model.branches.size(); ++b) {
+        if (solves.finest == 1) {
+            for (auto& [way, shares] :
+                 ways_with_steps(solves.model, solves.model.branches[b], steps))
+                sides.push_back({std::move(way), std::move(shares), {}});
+            continue;
+        }
+        for (const auto& way : solves.sides[b]) {
+            StudiedSide& side = sides.emplace_back(way);
+            for (const int N : steps) side.steps.push_back(N / solves.base * way.branch.steps);
+        }
+    }
+    std::vector<Job> jobs;
+    for (auto& side : sides)
+        jobs.push_back({fmt::format("{}: references", side.way.name),
+                        [&] { side.known = references_on_side(solves, side.way, solves.finest); }});
+    run_jobs(jobs, threads, progress);
+    return sides;
+}
+
 std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
     const int by = default_abscissa(all, truth);
     return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
 }
 
-PathCurve walk_with_steps(const Model& model, const std::vector<Channel>& channels, BranchSide way,
-                          int steps, const recursive::Method& method) {
+// One level: with so many steps of the side. Where the studies share their points, it is recorded
+// at these, else at every step.
+PathCurve level_of(Solves& solves, const StudiedSide& side, const recursive::Method& method,
+                   int steps) {
+    if (solves.finest > 1) return solved(solves, side.way, method, steps / side.way.branch.steps);
+    BranchSide way = side.way;
     way.branch.steps = steps;
-    return walk(model, channels, way.branch, {way}, {.recursion = {.method = method}});
+    return walk(solves.model, solves.channels, way.branch, {way},
+                {.recursion = {.method = method}});
 }
 
 // All levels of one method on one branch side.
-MethodStudy study_method(const Model& model, const std::vector<Channel>& channels,
-                         const BranchSide& way, const References& references,
-                         const recursive::Method& method, const std::vector<int>& steps,
-                         const std::function<void(std::string_view)>& progress) {
+MethodStudy study_method(Solves& solves, const StudiedSide& side, const recursive::Method& method) {
     MethodStudy m;
     m.method = method.name;
     std::vector<Curve> levels;
     std::vector<Level> Phi;
-    for (const int N : steps) {
-        if (progress) progress(fmt::format("{}: {} with {} steps", way.name, method.name, N));
-        PathCurve walked = walk_with_steps(model, channels, way, N, method);
+    for (const int N : side.steps) {
+        PathCurve walked = level_of(solves, side, method, N);
         m.outcomes.push_back(walked.outcome);
         if (walked.outcome != Outcome::converged) {
             m.not_studied = fmt::format("with {} steps: {}: {}", N,
@@ -226,7 +258,7 @@ MethodStudy study_method(const Model& model, const std::vector<Channel>& channel
     m.constraint_order = order_of(Phi, 1e-12);
     if (!m.not_studied.empty()) return m;
 
-    study_levels(m, channels, main_channels(channels), steps, levels, references,
+    study_levels(m, solves.channels, main_channels(solves.channels), side.steps, levels, side.known,
                  std::max(method.formal_order, 1.0));  // to its own limit
     return m;
 }
@@ -292,38 +324,50 @@ bool Study::conclusive() const {
     return false;
 }
 
-Study study(const Model& model, const StudyOptions& options) {
+Study study(Solves& solves, const StudyOptions& options) {
     if (options.steps.size() < 5 || options.steps.front() < 1 ||
         std::ranges::adjacent_find(options.steps, std::greater_equal<>{}) != options.steps.end())
         throw std::invalid_argument(
             "step counts: at least five are needed, positive and increasing");
     Study result;
     result.steps = options.steps;
-    const auto all = motion(model);
+    const auto& all = solves.channels;
     for (const std::size_t c : main_channels(all)) result.channels.push_back(all[c]);
 
-    for (const auto& branch : model.branches)
-        for (const auto& [way, steps] : ways_with_steps(model, branch, options.steps)) {
-            if (options.progress) options.progress(fmt::format("{}: references", way.name));
-            const References known = references(model, all, way.branch, {way});
-            std::ranges::move(unfit(known, way.name), std::back_inserter(result.inconclusive));
-            if (!known.failures.empty()) continue;
-            if (std::ranges::adjacent_find(steps, std::greater_equal<>{}) != steps.end()) {
-                result.inconclusive.push_back(
-                    fmt::format("{}: its share of the steps is too small for levels", way.name));
-                continue;
-            }
-            BranchStudy b{
-                way.name, branch.name, unit_of(branch.unit), abscissa_name(all, known.truth),
-                steps,    {}};
-            for (const auto& method : options.methods) {
-                if (!recursive::has_steps(method)) continue;  // has no steps
-                b.methods.push_back(
-                    study_method(model, all, way, known, method, steps, options.progress));
-            }
-            result.branches.push_back(std::move(b));
-        }
+    auto sides =
+        studied_sides(solves, options.steps, options.threads, part(options.progress, 0, 0.3));
+    std::vector<recursive::Method> methods = options.methods;
+    std::erase_if(methods, [](const auto& method) { return !recursive::has_steps(method); });
+    std::erase_if(sides, [&](const StudiedSide& side) {
+        std::ranges::move(unfit(side.known, side.way.name),
+                          std::back_inserter(result.inconclusive));
+        if (!side.known.failures.empty()) return true;
+        const bool few =
+            std::ranges::adjacent_find(side.steps, std::greater_equal<>{}) != side.steps.end();
+        if (few)
+            result.inconclusive.push_back(
+                fmt::format("{}: its share of the steps is too small for levels", side.way.name));
+        return few;
+    });
+    std::vector<Job> jobs;
+    for (const auto& side : sides)
+        result.branches.push_back({side.way.name, side.way.branch.name,
+                                   unit_of(side.way.branch.unit),
+                                   abscissa_name(all, side.known.truth), side.steps,
+                                   std::vector<MethodStudy>(methods.size())});
+    for (std::size_t b = 0; b < sides.size(); ++b)
+        for (std::size_t m = 0; m < methods.size(); ++m)
+            jobs.push_back({fmt::format("{}: {}", sides[b].way.name, methods[m].name), [&, b, m] {
+                                result.branches[b].methods[m] =
+                                    study_method(solves, sides[b], methods[m]);
+                            }});
+    run_jobs(jobs, options.threads, part(options.progress, 0.3, 1));
     return result;
+}
+
+Study study(const Model& model, const StudyOptions& options) {
+    Solves solves(model, reference_points);
+    return study(solves, options);
 }
 
 namespace {
@@ -331,14 +375,14 @@ namespace {
 // Gaps of a branch side with every combination of following forces; bit 0 lever, 1 axis, 2 load.
 constexpr unsigned combinations = 8;
 
-BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& channels,
-                                const BranchSide& way, const std::string& branch,
-                                const std::vector<int>& steps) {
+BranchAttribution attribute_way(Solves& solves, const StudiedSide& side) {
+    const auto& channels = solves.channels;
+    const auto& steps = side.steps;
+    const References& known = side.known;
     BranchAttribution attribution;
-    attribution.branch = way.name;
-    attribution.belongs_to = branch;
-    attribution.unit = unit_of(way.branch.unit);
-    const References known = references(model, channels, way.branch, {way});
+    attribution.branch = side.way.name;
+    attribution.belongs_to = side.way.branch.name;
+    attribution.unit = unit_of(side.way.branch.unit);
     if (!known.failures.empty()) {
         attribution.not_attributed = known.failures.front();
         return attribution;
@@ -351,7 +395,7 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
             .kind =
                 recursive::Linear{.follow = {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0}}};
         for (const int N : steps) {
-            PathCurve walked = walk_with_steps(model, channels, way, N, method);
+            PathCurve walked = level_of(solves, side, method, N);
             if (walked.outcome != Outcome::converged) {
                 attribution.not_attributed = fmt::format(
                     "with {} steps: {}: {}", N, elastocheck::name(walked.outcome), walked.detail);
@@ -402,17 +446,22 @@ BranchAttribution attribute_way(const Model& model, const std::vector<Channel>& 
 
 }  // namespace
 
-std::vector<BranchAttribution> attribute_gap(
-    const Model& model, const std::function<void(std::string_view)>& progress) {
-    const std::vector<int> steps{300, 600, 1200, 2400};
-    const auto all = motion(model);
-    std::vector<BranchAttribution> result;
-    for (const auto& branch : model.branches)
-        for (const auto& [way, shares] : ways_with_steps(model, branch, steps)) {
-            if (progress) progress(fmt::format("{}: gap attribution", way.name));
-            result.push_back(attribute_way(model, all, way, branch.name, shares));
-        }
+std::vector<BranchAttribution> attribute_gap(Solves& solves, const std::vector<int>& steps,
+                                             int threads, const Progress& progress) {
+    const auto sides = studied_sides(solves, steps, threads, part(progress, 0, 0.3));
+    std::vector<BranchAttribution> result(sides.size());
+    std::vector<Job> jobs;
+    for (std::size_t b = 0; b < sides.size(); ++b)
+        jobs.push_back({fmt::format("{}: gap attribution", sides[b].way.name),
+                        [&, b] { result[b] = attribute_way(solves, sides[b]); }});
+    run_jobs(jobs, threads, part(progress, 0.3, 1));
     return result;
+}
+
+std::vector<BranchAttribution> attribute_gap(const Model& model, int threads,
+                                             const Progress& progress) {
+    Solves solves(model, reference_points);
+    return attribute_gap(solves, {300, 600, 1200, 2400}, threads, progress);
 }
 
 }  // namespace elastocheck::compare

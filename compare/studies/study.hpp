@@ -17,6 +17,7 @@
 
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/convergence.hpp"
+#include "compare/studies/solves.hpp"
 #include "elastocheck/channels.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
@@ -28,7 +29,8 @@ struct StudyOptions {
     std::vector<recursive::Method> methods{recursive::Method{}};  // with fixed steps
     // per branch, shared by its sides; increasing, at least five
     std::vector<int> steps{75, 150, 300, 600, 1200, 2400};
-    std::function<void(std::string_view)> progress = {};
+    int threads = 1;
+    Progress progress = {};
 };
 
 // One channel of one method over one branch, in the channel's unit.
@@ -80,6 +82,9 @@ struct Study {
 
 // Throws std::invalid_argument when the step counts are not at least five, positive and increasing.
 Study study(const Model& model, const StudyOptions& options = {});
+// The same from shared solves. Pre: where these share points (Solves::finest > 1), the step counts
+// are their base times powers of two.
+Study study(Solves& solves, const StudyOptions& options);
 
 // Studies one method on one branch side from given levels: curves of `all` channels in the order of
 // `steps`, made by any solver. `studied`: positions in `all` of the main channels to study. Formal
@@ -130,7 +135,9 @@ struct BranchAttribution {
     std::string no_abscissa;     // reason why there is no equal abscissa
 };
 
-std::vector<BranchAttribution> attribute_gap(
-    const Model& model, const std::function<void(std::string_view)>& progress = {});
+std::vector<BranchAttribution> attribute_gap(const Model& model, int threads = 1,
+                                             const Progress& progress = {});
+std::vector<BranchAttribution> attribute_gap(Solves& solves, const std::vector<int>& steps,
+                                             int threads, const Progress& progress);
 
 }  // namespace elastocheck::compare

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/jobs/jobs.hpp"
+#include "compare/outputs/curve.hpp"
 #include "compare/outputs/not_a_number.hpp"
+#include "compare/studies/solves.hpp"
 #include "compare/studies/timing.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/overloaded.hpp"
@@ -29,16 +33,6 @@ Accuracy plus(const Accuracy& a, const Accuracy& b) {
 std::vector<BranchSide> refined(std::vector<BranchSide> ways, int factor) {
     for (auto& way : ways) way.branch.steps *= factor;
     return ways;
-}
-
-// Every `stride`-th point.
-Curve every(const Curve& curve, std::size_t stride) {
-    Curve result{.unit = curve.unit, .a = {}, .start = curve.start / stride, .values = {}};
-    for (std::size_t k = curve.start % stride; k < curve.a.size(); k += stride) {
-        result.a.push_back(curve.a[k]);
-        result.values.push_back(curve.values[k]);
-    }
-    return result;
 }
 
 // Curve of a complete path; of an incomplete one an empty curve, whose errors are NaN.
@@ -195,51 +189,61 @@ void band(const Trade& trade, Recommendation& found) {
 }
 
 // Runs the configuration again at output points that were not used for its selection: finer ones,
-// and those of branches that end half a step earlier, against a reference with three times as many
-// points.
-Accuracy confirm(const Model& model, const std::vector<Channel>& channels,
-                 const std::vector<std::vector<double>>& extents, const TradePoint& point,
-                 int points, int& compared) {
-    int finer = 7;  // refinement factor of the output points
+// and those of branches that end half a step earlier.
+Accuracy confirm(const Solves& solves, const std::vector<std::vector<double>>& extents,
+                 const TradePoint& point, int& compared, int threads, const Progress& progress) {
+    const Model& model = solves.model;
+    const auto& channels = solves.channels;
+    int finer = 3;  // refinement factor of the output points
     if (point.steps > 0) {
         finer = 1;
-        while (2 * finer * points <= std::min(point.steps, 100)) finer *= 2;
+        while (2 * finer * solves.base <= std::min(point.steps, 100)) finer *= 2;
     }
     const TradePoint reference{.leg =
                                    point.leg == Leg::equilibrium ? Leg::energy : Leg::equilibrium};
+    const std::array ends{1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer * solves.base)};
+    struct Confirmed {
+        Accuracy error;
+        int compared = 0;
+    };
+    std::vector<Confirmed> all(ends.size() * model.branches.size());
+    std::vector<Job> jobs;
+    for (std::size_t k = 0; k < all.size(); ++k)
+        jobs.push_back({"the recommendation, again", [&, k] {
+                            const std::size_t b = k / ends.size();
+                            Branch shorter = model.branches[b];
+                            shorter.to *= ends[k % ends.size()];
+                            shorter.from *= ends[k % ends.size()];
+                            const auto ways = refined(sides_of(model, shorter, solves.base), finer);
+                            const auto curve_by = [&](const std::vector<BranchSide>& points,
+                                                      const TradePoint& by) {
+                                return curve_of(model, channels, shorter,
+                                                walk(points, gait_of(by, finer * solves.base)));
+                            };
+                            const Curve truth = curve_by(ways, reference),
+                                        found = curve_by(ways, point);
+                            all[k].error = distance(channels, truth, found, extents[b]);
+                            for (std::size_t c = 0; c < channels.size(); ++c)
+                                if (channels[c].main ||
+                                    (!is_motion(channels[c]) && std::isfinite(extents[b][c])))
+                                    all[k].compared += static_cast<int>(found.a.size());
+                        }});
+    run_jobs(jobs, threads, progress);
     Accuracy worst;
-    for (std::size_t b = 0; b < model.branches.size(); ++b) {
-        const Branch& branch = model.branches[b];
-        std::size_t outputs = 0;
-        for (std::size_t c = 0; c < channels.size(); ++c)
-            outputs +=
-                channels[c].main || (!is_motion(channels[c]) && std::isfinite(extents[b][c]));
-        for (const double end : {1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer * points)}) {
-            Branch shorter = branch;
-            shorter.to *= end;
-            shorter.from *= end;
-            const auto ways = refined(sides_of(model, shorter, points), finer);
-            const Curve truth = curve_of(model, channels, shorter,
-                                         walk(refined(ways, 3), gait_of(reference, points))),
-                        found = curve_of(model, channels, shorter,
-                                         walk(ways, gait_of(point, finer * points)));
-            worst = worse(worst, distance(channels, every(truth, 3), found, extents[b]));
-            compared += static_cast<int>(outputs * found.a.size());
-        }
-    }
+    for (const auto& one : all) worst = worse(worst, one.error), compared += one.compared;
     return worst;
 }
 
-void recommend(const Model& model, const std::vector<Channel>& channels,
-               const std::vector<std::vector<double>>& extents, Trade& trade) {
+void recommend(const Solves& solves, const std::vector<std::vector<double>>& extents, Trade& trade,
+               int threads, const Progress& progress) {
     std::vector<std::size_t> candidates;
     for (std::size_t k = 0; k < trade.points.size(); ++k)
         if (eligible(trade, k)) candidates.push_back(k);
     while (const auto k = cheapest(trade, candidates)) {
         Recommendation found;
         found.point = *k;
-        found.confirmed = confirm(model, channels, extents, trade.points[*k],
-                                  trade.points_per_branch, found.confirmed_numbers);
+        found.confirmed =
+            confirm(solves, extents, trade.points[*k], found.confirmed_numbers, threads, progress);
         band(trade, found);
         const bool holds = found.confirmed_numbers > 0 && good_enough(trade, found.confirmed);
         if (holds && good_enough(trade, found.high)) {
@@ -262,6 +266,22 @@ double share_of(const Tolerance& tolerance, const Accuracy& error) {
     const double mm = std::isinf(tolerance.mm) ? 0 * error.mm : error.mm / tolerance.mm;
     const double deg = std::isinf(tolerance.deg) ? 0 * error.deg : error.deg / tolerance.deg;
     return worse(mm, deg);
+}
+
+PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int multiple) {
+    std::vector<PathCurve> sides;
+    for (const auto& side : solves.sides[branch]) {
+        SolverSettings solver = gait_of(point, solves.base);
+        if (point.steps == 0) {
+            sides.push_back(solved(solves, at_points(side, multiple), solver));
+            continue;
+        }
+        const int steps = point.steps / solves.base;
+        sides.push_back(solved(solves, side, solver.recursion.method, steps));
+        const int stride = std::min(steps, solves.finest) / multiple;
+        sides.back().curve = thinned(sides.back().curve, static_cast<std::size_t>(stride));
+    }
+    return joined(solves.sides[branch], sides);
 }
 
 SolverSettings gait_of(const TradePoint& point, int points) {
@@ -304,12 +324,17 @@ std::vector<bool> pareto_front(std::span<const WorkError> points) {
 }
 
 Trade trade(const Model& model, const TradeOptions& options) {
-    if (options.points < 1 || options.rounds < 0)
+    if (options.points < 1)
         throw std::invalid_argument("trade: points must be positive and rounds not negative");
-    const auto tell = [&](std::string_view what) {
-        if (options.progress) options.progress(what);
-    };
-    const auto all_channels = channels(model);
+    Solves solves(model, options.points);
+    return trade(solves, options);
+}
+
+Trade trade(Solves& solves, const TradeOptions& options) {
+    if (options.points != solves.base || options.rounds < 0)
+        throw std::invalid_argument("trade: points must be positive and rounds not negative");
+    const Model& model = solves.model;
+    const auto& all_channels = solves.channels;
     Trade result;
     result.points_per_branch = options.points;
     result.rounds = options.rounds;
@@ -325,53 +350,60 @@ Trade trade(const Model& model, const TradeOptions& options) {
                                           : "neither a position nor an angle is asked for");
     if (!result.inconclusive.empty()) return result;
 
-    std::vector<std::vector<BranchSide>> ways;
-    std::vector<Curve> truth;
+    std::vector<References> known(model.branches.size());
+    std::vector<Job> jobs;
+    for (std::size_t b = 0; b < model.branches.size(); ++b)
+        for (const auto& side : solves.sides[b])
+            jobs.push_back({fmt::format("{}: the references", side.name),
+                            [&] { (void)references_on_side(solves, side, 1); }});
+    run_jobs(jobs, options.threads, part(options.progress, 0, 0.2));
     std::vector<std::vector<double>> extents;  // per branch
-    for (const auto& branch : model.branches) {
-        tell(fmt::format("{}: the references", branch.name));
-        ways.push_back(sides_of(model, branch, options.points));
-        References known = references(model, all_channels, branch, ways.back());
-        for (const auto& why : known.failures)
-            result.inconclusive.push_back(fmt::format("{}: {}", branch.name, why));
-        result.uncertainty = worse(result.uncertainty, known.uncertainty);
-        truth.push_back(known.truth_ended == Outcome::converged ? std::move(known.truth) : Curve{});
-        extents.push_back(std::move(known.extents));
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        known[b] = references_on_branch(solves, b, 1);
+        for (const auto& why : known[b].failures)
+            result.inconclusive.push_back(fmt::format("{}: {}", model.branches[b].name, why));
+        result.uncertainty = worse(result.uncertainty, known[b].uncertainty);
+        if (known[b].truth_ended != Outcome::converged) known[b].truth = {};
+        extents.push_back(std::move(known[b].extents));
     }
 
     result.points = configurations(model, options);
-    const double unknowns = coordinates(model) + constraint_rows(model);
-    std::vector<std::function<void()>> jobs;
-    std::vector<std::size_t> timed;
-    for (std::size_t k = 0; k < result.points.size(); ++k) {
-        TradePoint& point = result.points[k];
-        tell(describe(point));
+    const auto price = [&](TradePoint& point) {
         for (std::size_t b = 0; b < model.branches.size(); ++b) {
-            const auto path = walk(ways[b], gait_of(point, options.points));
+            const PathCurve path = run(solves, b, point, 1);
             point.work.solves += path.counts.iterations;
             point.work.factorisations += path.counts.factorisations;
             point.work.evaluations += path.counts.evaluations;
-            point.error =
-                worse(point.error,
-                      distance(all_channels, truth[b],
-                               curve_of(model, all_channels, model.branches[b], path), extents[b]));
-            if (path.outcome != Outcome::converged && point.outcome == Outcome::converged) {
+            const bool complete = path.outcome == Outcome::converged;
+            point.error = worse(point.error, distance(all_channels, known[b].truth,
+                                                      complete ? path.curve : Curve{}, extents[b]));
+            if (!complete && point.outcome == Outcome::converged) {
                 point.outcome = path.outcome;
                 point.detail = path.detail;
             }
         }
+        const double unknowns = coordinates(model) + constraint_rows(model);
         point.work.price = unknowns / 3 * static_cast<double>(point.work.factorisations) +
                            static_cast<double>(point.work.solves + point.work.evaluations);
-        if (point.outcome != Outcome::converged) continue;
+    };
+    jobs.clear();
+    for (TradePoint& point : result.points)
+        jobs.push_back({describe(point), [&] { price(point); }});
+    run_jobs(jobs, options.threads, part(options.progress, 0.2, options.rounds > 0 ? 0.3 : 0.8));
+
+    std::vector<std::function<void()>> timings;  // alone
+    std::vector<std::size_t> timed;
+    for (std::size_t k = 0; k < result.points.size(); ++k) {
+        if (result.points[k].outcome != Outcome::converged) continue;
         timed.push_back(k);
-        jobs.emplace_back([&ways, &options, point] {
-            for (const auto& way : ways) (void)walk(way, gait_of(point, options.points));
+        timings.emplace_back([&, k] {
+            for (const auto& sides : solves.sides)
+                (void)walk(sides, gait_of(result.points[k], solves.base));
         });
     }
-
     if (options.rounds > 0 && result.points.front().outcome == Outcome::converged) {
-        tell("times");
-        const Times times = take_turns(jobs, options.rounds);
+        if (options.progress) options.progress("times", 0.3);
+        const Times times = take_turns(timings, options.rounds);
         for (std::size_t j = 0; j < timed.size(); ++j) {
             TradePoint& point = result.points[timed[j]];
             point.work.seconds = median(times[j]);
@@ -380,8 +412,8 @@ Trade trade(const Model& model, const TradeOptions& options) {
         result.noise = noise_of(ratios(times.back(), times.front()));
     }
     rank(result);
-    tell("the recommendation, again");
-    if (result.inconclusive.empty()) recommend(model, all_channels, extents, result);
+    if (result.inconclusive.empty())
+        recommend(solves, extents, result, options.threads, part(options.progress, 0.8, 1));
     return result;
 }
 

@@ -90,7 +90,8 @@ struct TradeOptions {
     int most_steps = 2560;
     double work_budget = 5e8;  // limit for one configuration: steps · branches · (unknowns)³
     int rounds = 7;            // timing rounds; 0: no times
-    std::function<void(std::string_view)> progress = {};
+    int threads = 1;
+    Progress progress = {};
 };
 
 struct Trade {
@@ -108,6 +109,12 @@ struct Trade {
 };
 
 Trade trade(const Model& model, const TradeOptions& options = {});
+// The same from shared solves, whose base is `points`.
+struct Solves;
+Trade trade(Solves& solves, const TradeOptions& options);
+
+// A configuration along a branch by shared solves, at `multiple` points for each of their base.
+PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int multiple);
 
 // Solver settings of a configuration that records `points` equal increments of the parameter. Pre:
 // `points` divides its steps.

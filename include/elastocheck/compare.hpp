@@ -33,7 +33,7 @@ struct PathCurve {
     Counts counts = {};
     Curve curve = {};
     std::vector<double> constraint_error = {};  // per point, as in Equilibrium
-    double seconds = 0;                         // of the leg alone
+    double seconds = 0;                         // processor time of the leg alone
 };
 
 // ---- Deviation between two curves, at equal parameter and at equal abscissa (for a suspension:
@@ -229,6 +229,9 @@ struct Comparison {
     bool conclusive() const;
 };
 
+// Told what runs now, and the share of the computation that is done, 0 to 1. Calls do not overlap.
+using Progress = std::function<void(std::string_view what, double done)>;
+
 struct Options {
     recursive::Options recursion = {};  // method, steps (0: as each branch says) and the like
     int every = 1;                      // compares every `every`-th step (SolverSettings)
@@ -237,8 +240,9 @@ struct Options {
     // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark is an
     // objection
     bool prove = true;
-    // called with a text about the current solve
-    std::function<void(std::string_view)> progress = {};
+    bool times = true;  // measure LegRun::seconds, else NaN
+    int threads = 1;    // legs and branches are solved at once; the results are the same
+    Progress progress = {};
 };
 
 // Throws std::invalid_argument for an abscissa that is no channel of the model.

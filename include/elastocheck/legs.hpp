@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct BranchSide {
     std::string name;  // "jounce"; "bounce to -80 mm" for one side of a two-sided branch
     Model model;
     Branch branch;  // `steps`: number of recorded equal increments of a
+    // of the model, for many runs of the recursion; empty: each run makes it
+    std::shared_ptr<const recursive::Analysis> analysis = {};
 };
 
 // Sides of a branch. They share `points` recorded equal increments of a over the whole branch; 0:

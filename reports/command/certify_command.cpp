@@ -9,6 +9,7 @@
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/certify_tables.hpp"
 
@@ -21,6 +22,7 @@ struct Request {
     int points = compare::CertifyOptions{}.points;
     Settings settings;
     bool as_json = false;
+    Running running;
 };
 
 compare::SolverSettings settings_of(const std::string& solver) {
@@ -37,6 +39,7 @@ int certify(const Request& request, const std::string& command) {
     if (!request.folder.empty()) Staging::check(request.folder);
     for (const auto& solver : request.solvers) options.solvers.push_back(settings_of(solver));
     options.points = request.points;
+    options.threads = threads_of(request.running);
     options.progress = progress;
     const Delivery delivery{
         .folder = request.folder, .as_json = request.as_json, .command = command};
@@ -78,7 +81,9 @@ Command certify_command() {
              {"--points", Integer{&request->points, 1, most_steps},
               "points of each direction of a branch, besides its start (default: 20)"},
              output_option(request->folder, "folder for result.json and certify.csv"),
-             json_option(request->as_json)},
+             json_option(request->as_json),
+             jobs_option(request->running),
+             quiet_option(request->running)},
             [request](const std::string& line) { return certify(*request, line); }};
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "compare/comparison/changes.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -19,6 +20,7 @@
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/gate/baseline.hpp"
@@ -38,7 +40,8 @@ struct GateOptions {
     CandidateRequest candidate;  // external solver, judged on every scene
     std::string folder, junit, summary, kind, from, reason;
     bool accept = false, as_json = false;
-    std::function<void(std::string_view)> progress;
+    Running running;
+    compare::Progress progress;  // of the scene that is measured
 };
 
 bool says_yes(const char* variable) {
@@ -113,14 +116,14 @@ BaselineFile measured(const Task& task, const GateOptions& options) {
     const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
     compare::Options how;
-    if (options.progress)
-        how.progress = [&](std::string_view what) {
-            options.progress(fmt::format("{}: {}", task.scene.filename().string(), what));
-        };
+    how.times = false;
+    how.threads = threads_of(options.running);
+    how.progress = [&](std::string_view what, double done) {
+        options.progress(fmt::format("{}: {}", task.scene.filename().string(), what), done);
+    };
     BaselineFile file;
     file.scene_file = name_beside(task);
     file.baseline.accepted = compare::measure(model, compare::compare(model, how));
-    if (options.progress) options.progress("");
     file.input_hash = input_hash(read_whole(task.scene));
     file.numbers = loaded.scene.numbers;
     file.provenance = provenance();
@@ -220,6 +223,8 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     compare::Options how;
     how.prove = false;
+    how.times = false;
+    how.threads = threads_of(options.running);
     how.progress = options.progress;
     const auto comparison = compare::compare(loaded.model, how);
     for (const auto& output : outputs_of(options.candidate, task.scene, {steps_of(loaded.model)})) {
@@ -250,6 +255,14 @@ void judge_candidate(const Task& task, const GateOptions& options, GatedScene& s
         scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(),
                                       offences.end());
     }
+}
+
+// The options for the k-th of several scenes.
+GateOptions at_scene(GateOptions options, std::size_t k, std::size_t scenes) {
+    const double each = 1 / static_cast<double>(scenes);
+    options.progress =
+        compare::part(progress, static_cast<double>(k) * each, static_cast<double>(k + 1) * each);
+    return options;
 }
 
 GatedScene gate_scene(const Task& task, const GateOptions& options) {
@@ -369,8 +382,8 @@ int accept(const GateOptions& options) {
     if (!options.settings.empty()) throw std::invalid_argument("--accept: not with --set");
     int code = fine;
     const auto all = tasks(options);
-    for (const auto& task : all) {
-        const int of_scene = accept_scene(task, options);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const int of_scene = accept_scene(all[k], at_scene(options, k, all.size()));
         if (code == fine || of_scene == limit_broken) code = of_scene;
     }
     return all.empty() ? could_not_judge : code;
@@ -394,8 +407,9 @@ int gate(const GateOptions& options) {
     if (!options.junit.empty()) check_may_write(options.junit, junit_file);
     if (!options.summary.empty() && !to_append) check_may_write(options.summary, summary_file);
     std::vector<GatedScene> scenes;
-    for (const auto& task : tasks(options)) {
-        scenes.push_back(gate_scene(task, options));
+    const auto all = tasks(options);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        scenes.push_back(gate_scene(all[k], at_scene(options, k, all.size())));
         delivery.print_text(gate_table(scenes.back()));
     }
     delivery.print_text(gate_conclusion(scenes) + "\n");
@@ -415,7 +429,6 @@ int gate(const GateOptions& options) {
 
 Command gate_command() {
     const auto options = std::make_shared<GateOptions>();
-    options->progress = progress;
     std::vector<std::string> kinds;
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
     std::vector<Option> list{
@@ -433,6 +446,8 @@ Command gate_command() {
          "judge this measurement (a file like a baseline) without solving"}};
     add_candidate_options(list, options->candidate);
     list.push_back(json_option(options->as_json));
+    list.push_back(jobs_option(options->running));
+    list.push_back(quiet_option(options->running));
     list.push_back(
         {"--accept", Flag{&options->accept}, "print the changes and write the new baseline"});
     list.push_back(

@@ -95,7 +95,7 @@ bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
         scene, target == "chrono" ? importer::chrono_bushing : importer::adams_bushing);
     if (conversion.bushings.empty()) return true;
     const auto study = compare::spread_among({{"as written", scene}, {target, conversion.scene}},
-                                             steps_of_conversion, 1, progress);
+                                             steps_of_conversion, 1, 1, progress);
     progress("");
     scene = conversion.scene;
     std::string effect = apart(study);

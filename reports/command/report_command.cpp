@@ -4,16 +4,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
 #include "compare/studies/precision.hpp"
 #include "compare/studies/profile.hpp"
+#include "compare/studies/solves.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "models/reader/document/suggestions.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/browser.hpp"
 #include "reports/command/delivery.hpp"
@@ -22,6 +26,7 @@
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/document/against.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/candidate_file.hpp"
@@ -60,6 +65,10 @@ struct Request {
     std::string alarms;                    // JSON, results of `./dev mutate`
     std::string stress;                    // JSON, results of `elastocheck stress`
     std::string tolerance = "0.01mm,0.001deg,1%";
+    std::vector<std::string> branches;  // the others are left out
+    std::string only;                   // kc, evidence; empty: both
+    bool quick = false;
+    Running running;
     bool archive = false;
     bool against = false;  // compare the second of two scenes with the first
     bool as_json = false;  // write the answers as a document to standard output
@@ -67,16 +76,18 @@ struct Request {
 };
 
 // Error of the recommended configuration over the whole branch, for the figure with the tolerance.
-json recommended(const Model& model, const compare::Trade& trade) {
+json recommended(compare::Solves& solves, const compare::Trade& trade) {
     if (!trade.recommendation) return nullptr;
     const auto& point = trade.points[trade.recommendation->point];
     json branches = json::array();
-    for (const auto& branch : model.branches) {
-        const auto profile = compare::profile(model, branch, point).profile;
+    for (std::size_t b = 0; b < solves.sides.size(); ++b) {
+        const auto profile = compare::profile(solves, b, point).profile;
         json mm = json::array(), deg = json::array();
         for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
-        branches.push_back(
-            {{"name", branch.name}, {"a", profile.a}, {"error_mm", mm}, {"error_deg", deg}});
+        branches.push_back({{"name", solves.model.branches[b].name},
+                            {"a", profile.a},
+                            {"error_mm", mm},
+                            {"error_deg", deg}});
     }
     json result = {{"method", point.method}};
     if (point.steps > 0) result["steps"] = point.steps;
@@ -108,59 +119,109 @@ std::string add_measured(json& document, const Request& request) {
                : fmt::format("no point of {} is within the range of the legs", request.measured);
 }
 
-json solve_scene(const std::string& file, const Request& request) {
-    const LoadedScene loaded = load_scene(file, request.settings);
-    const Scene& scene = loaded.scene;
-    const Model& model = loaded.model;
-    const auto report_progress = [&](std::string_view what) {
-        progress(fmt::format("{}: {}", file, what));
+// The branches that are asked for, in the order of the scene.
+void select_branches(Scene& scene, Model& model, const std::vector<std::string>& asked) {
+    if (asked.empty()) return;
+    std::vector<std::string> names;
+    for (const auto& branch : model.branches) names.push_back(branch.name);
+    for (const auto& name : asked)
+        if (std::ranges::find(names, name) == names.end())
+            throw std::invalid_argument(fmt::format("--branch: {} has no branch {}{}", scene.source,
+                                                    reader::quote(name),
+                                                    reader::did_you_mean(name, names, "branches")));
+    const auto left_out = [&](const Branch& branch) {
+        return std::ranges::find(asked, branch.name) == asked.end();
     };
-    json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
-    if (loaded.trim) add_trim(document, *loaded.trim);
+    std::erase_if(scene.branches, left_out);
+    std::erase_if(model.branches, left_out);
+}
 
-    compare::Options options;
-    options.progress = report_progress;
-    const auto comparison = compare::compare(model, options);
-    add_comparison(document, scene, model, comparison);
-    auto reasons = reasons_of(comparison);
-    if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
-        add_formulations(document, compare::formulation_study(scene, 0, 1, report_progress),
-                         comparison);
-    if (!request.measured.empty())
-        if (const std::string why = add_measured(document, request); !why.empty())
-            reasons.push_back(why);
+// Every so many points of a branch show the spread over formulations.
+int points_of_spread(const Model& model) {
+    constexpr int points = 10;  // of a branch, at least
+    int every = std::numeric_limits<int>::max();
+    for (const auto& branch : model.branches) every = std::min(every, branch.steps / points);
+    return std::max(1, every);
+}
 
-    compare::StudyOptions study_options;
-    study_options.methods.clear();
+// What the studies find of the recursion's error, and what it costs. All of them read the same
+// solves; the numbers of steps are such that they can.
+void add_studies(json& document, const Model& model, const compare::Comparison& comparison,
+                 const compare::Tolerance& tolerance, int threads,
+                 const compare::Progress& progress_of_scene, std::vector<std::string>& reasons) {
+    constexpr int base = 10, finest = 4;
+    compare::Solves solves(model, base, finest);
+    const auto part = [&](double from, double to) {
+        return compare::part(progress_of_scene, from, to);
+    };
+    compare::StudyOptions study_options{.methods = {},
+                                        .steps = {40, 80, 160, 320, 640},
+                                        .threads = threads,
+                                        .progress = part(0, 0.35)};
     for (const auto& method : recursive::methods)
         if (recursive::has_steps(method)) study_options.methods.push_back(method);
-    study_options.progress = report_progress;
-    const auto study = compare::study(model, study_options);
+    const auto study = compare::study(solves, study_options);
     add_gap(document, comparison, study);
-    document["convergence"] = study_json(study, compare::attribute_gap(model, report_progress));
+    document["convergence"] = study_json(
+        study, compare::attribute_gap(solves, {40, 80, 160, 320}, threads, part(0.35, 0.6)));
     for (const auto& reason : study.inconclusive)
         if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 
-    compare::TradeOptions trade_options;
-    trade_options.tolerance =
-        compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
-    if (request.archive) trade_options.rounds = 0;
-    trade_options.progress = report_progress;
-    const auto trade = compare::trade(model, trade_options);
+    // The price is counted, so that the report is the same in every run; `trade` measures times.
+    const auto trade = compare::trade(solves, {.tolerance = tolerance,
+                                               .points = base,
+                                               .rounds = 0,
+                                               .threads = threads,
+                                               .progress = part(0.6, 0.8)});
     document["trade"] = trade_json(trade);
-    if (const json profile = recommended(model, trade); !profile.is_null())
+    if (const json profile = recommended(solves, trade); !profile.is_null())
         document["recommended"] = profile;
-
-    document["orders"] =
-        table_json(order_table(compare::order_study(model, {.progress = report_progress})));
-
+    document["orders"] = table_json(order_table(compare::order_study(
+        solves,
+        {.orders = {4, 8, 12, 16, 20, 24}, .threads = threads, .progress = part(0.8, 0.95)})));
     // `elastocheck trade` uses a million steps, which shows more round-off but takes half a minute.
-    document["precision"] = precision_json(compare::precision_study(
-        model, {.most_steps = 50'000, .work_budget = 1.5e8, .progress = report_progress}));
+    document["precision"] =
+        precision_json(compare::precision_study(solves, {.most_steps = 50'000,
+                                                         .work_budget = 1.5e8,
+                                                         .threads = threads,
+                                                         .progress = part(0.95, 1)}));
+}
+
+json solve_scene(const std::string& file, const Request& request, int threads,
+                 const compare::Progress& progress_of_scene) {
+    LoadedScene loaded = load_scene(file, request.settings);
+    select_branches(loaded.scene, loaded.model, request.branches);
+    const Scene& scene = loaded.scene;
+    const Model& model = loaded.model;
+    json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+    if (loaded.trim) add_trim(document, *loaded.trim);
+    if (!request.only.empty()) document["only"] = request.only;
+    const bool studies = !request.quick && request.only != "kc";
+
+    const double after_legs = studies ? 0.25 : 1;
+    compare::Options options;
+    options.times = false;
+    options.threads = threads;
+    options.progress = compare::part(progress_of_scene, 0, after_legs);
+    const auto comparison = compare::compare(model, options);
+    add_comparison(document, scene, model, comparison);
+    auto reasons = reasons_of(comparison);
+    if (!request.measured.empty())
+        if (const std::string why = add_measured(document, request); !why.empty())
+            reasons.push_back(why);
+    const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
+    if (studies) {
+        if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
+            add_formulations(
+                document,
+                compare::formulation_study(scene, 0, points_of_spread(model), threads,
+                                           compare::part(progress_of_scene, after_legs, 0.35)),
+                comparison);
+        add_studies(document, model, comparison, tolerance, threads,
+                    compare::part(progress_of_scene, 0.35, 1), reasons);
+    }
     if (request.candidate.wanted()) {
         document["candidates"] = json::array();
-        const auto tolerance =
-            compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
         for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
             const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
                                           request.tolerance != Request{}.tolerance);
@@ -169,8 +230,8 @@ json solve_scene(const std::string& file, const Request& request) {
         }
     }
     add_verdict(document, comparison.compared, reasons);
-    auto judgement = compare::assess(model, comparison, trade_options.tolerance,
-                                     request.tolerance != Request{}.tolerance);
+    auto judgement =
+        compare::assess(model, comparison, tolerance, request.tolerance != Request{}.tolerance);
     if (!reasons.empty())
         judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
@@ -275,6 +336,7 @@ int report(const Request& request, const std::string& reproduce) {
     if (!request.measured.empty()) asked.map.clear();  // it is of the measurement
     check(asked, request.settings);
     const auto start = std::chrono::steady_clock::now();
+    const int threads = threads_of(request.running);
     // Invalid requests are rejected before the work.
     if (request.open && request.archive)
         throw std::invalid_argument("--open: not with --archive, which has no page");
@@ -291,6 +353,11 @@ int report(const Request& request, const std::string& reproduce) {
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
         throw std::invalid_argument("report: --alarms: not with --from");
+    if (!request.from.empty() &&
+        (request.quick || !request.only.empty() || !request.branches.empty()))
+        throw std::invalid_argument("report: --quick, --only and --branch: not with --from");
+    if (request.quick && request.only == "evidence")
+        throw std::invalid_argument("report: --quick leaves out what --only evidence shows");
     if (!request.stress.empty() && !request.from.empty())
         throw std::invalid_argument("report: --stress: not with --from");
     const json stress = request.stress.empty() ? json() : read_stress(request.stress);
@@ -303,11 +370,18 @@ int report(const Request& request, const std::string& reproduce) {
     } else {
         file = "result.json";
         result = document(reproduce, provenance());
-        for (const auto& scene : request.scenes)
-            result["scenes"].push_back(solve_scene(scene, request));
+        constexpr double solved = 0.95;  // the rest: the page
+        for (std::size_t k = 0; k < request.scenes.size(); ++k) {
+            const double each = solved / static_cast<double>(request.scenes.size());
+            const auto of_scene = [&, at = static_cast<double>(k)](std::string_view what,
+                                                                   double done) {
+                progress(fmt::format("{}: {}", request.scenes[k], what), (at + done) * each);
+            };
+            result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
+        }
         if (!stress.is_null()) result["stress"] = stress;
         if (!alarms.is_null()) result["alarms"] = alarms;
-        if (request.archive) remove_times(result);
+        remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
     if (request.against) {
@@ -320,8 +394,10 @@ int report(const Request& request, const std::string& reproduce) {
                 scene.erase("judgement");
         result = json::parse(result.dump());
     }
-    const auto answers = write_report(result, file, request.folder,
-                                      {.archive = request.archive, .progress = progress});
+    const auto answers =
+        write_report(result, file, request.folder,
+                     {.archive = request.archive,
+                      .progress = [](std::string_view what) { progress(what, 0.95); }});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
@@ -373,7 +449,15 @@ Command report_command() {
         {"--branch-column", Text{&request->branch_column},
          "column of --measured with the branch of a point (default: branch)"},
         {"--case", TextList{&request->cases, TextList::Form::separate},
-         "NAME=BRANCH: a name in that column and its branch of the scene; repeatable"}};
+         "NAME=BRANCH: a name in that column and its branch of the scene; repeatable"},
+        {"--branch", TextList{&request->branches, TextList::Form::separate},
+         "only these branches of the scene"},
+        {"--only", Text{&request->only, one_of({"kc", "evidence"})},
+         "one part of the page: kinematics and compliance (without studies), or the evidence"},
+        {"--quick", Flag{&request->quick},
+         "without studies: the references, kinematics and compliance"},
+        jobs_option(request->running),
+        quiet_option(request->running)};
     add_candidate_options(options, request->candidate);
     options.insert(
         options.end(),

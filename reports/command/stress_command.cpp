@@ -15,6 +15,7 @@
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/command/templates.hpp"
 #include "reports/document/document.hpp"
 #include "reports/extremes/extremes.hpp"
@@ -31,6 +32,7 @@ struct Request {
     Settings settings;
     std::string folder;
     bool as_json = false;
+    Running running;
 };
 
 void add(std::vector<compare::Trial>& trials, std::vector<compare::Trial> more) {
@@ -64,7 +66,8 @@ int stress(const Request& request, const Delivery& delivery) {
             throw std::invalid_argument("stress: --set changes a scene; give one");
         trials = built_in();
     }
-    const compare::Survival survival = compare::stress(trials, {.progress = progress});
+    const compare::Survival survival =
+        compare::stress(trials, {.threads = threads_of(request.running), .progress = progress});
     progress("");
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     delivery.print_text(
@@ -101,7 +104,9 @@ Command stress_command() {
               "scene files (YAML); default: all built-in scenes and those with extreme geometry"},
              set_option(request->settings),
              output_option(request->folder, "folder for stress.json and cells.csv"),
-             json_option(request->as_json)},
+             json_option(request->as_json),
+             jobs_option(request->running),
+             quiet_option(request->running)},
             [request](const std::string& line) {
                 return stress(
                     *request,

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
 #include "compare/studies/precision.hpp"
@@ -22,6 +23,7 @@
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/recursion_options.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/inspection.hpp"
@@ -50,6 +52,7 @@ struct CompareRequest {
     bool verdict = false;             // asked for by a method or a tolerance
     CandidateRequest candidate = {};  // external solver, beside the legs
     bool formulations = false;        // adds the spread over bushing formulations
+    int threads = 1;
 };
 
 json document_of(const LoadedScene& loaded, const std::string& file) {
@@ -174,12 +177,13 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
     compare::Options options;
     options.recursion = request.recursion;
     options.every = request.every;
+    options.threads = request.threads;
     options.progress = progress;
     const compare::Comparison comparison = compare::compare(model, options);
     std::optional<compare::FormulationStudy> study;
     if (request.formulations)
         study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every,
-                                           progress);
+                                           request.threads, progress);
     progress("");
     delivery.print_text(tables(model, comparison));
     if (study) delivery.print_text(formulation_text(*study, comparison));
@@ -226,7 +230,7 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
 
 int converge(const std::string& file, const Settings& settings,
              const std::vector<std::string>& names, const std::vector<int>& steps,
-             const CandidateRequest& candidate, const Delivery& delivery) {
+             const CandidateRequest& candidate, int threads, const Delivery& delivery) {
     check(candidate, settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(file, settings);
@@ -235,18 +239,20 @@ int converge(const std::string& file, const Settings& settings,
     compare::StudyOptions options;
     options.methods = methods_named(names);
     if (!steps.empty()) options.steps = steps;
-    options.progress = progress;
+    options.threads = threads;
+    options.progress = compare::part(progress, 0, 0.4);
     std::optional<compare::Study> of_candidate;
     if (candidate.wanted()) of_candidate = study_of(candidate, file, loaded, options.steps);
     compare::Study study;
     std::vector<compare::BranchAttribution> attribution;
     if (!options.methods.empty()) {
         study = compare::study(model, options);
-        attribution = compare::attribute_gap(model, progress);
+        attribution = compare::attribute_gap(model, threads, compare::part(progress, 0.4, 0.7));
     }
     std::vector<compare::BranchOrders> orders;
     if (names.front() == "all" || std::ranges::find(names, "series") != names.end())
-        orders = compare::order_study(model, {.progress = progress});
+        orders = compare::order_study(
+            model, {.threads = threads, .progress = compare::part(progress, 0.7, 1)});
     progress("");
     if (!options.methods.empty()) delivery.print_text(study_text(model, study, attribution));
     delivery.print_text(order_text(order_table(orders)));
@@ -284,7 +290,7 @@ int converge(const std::string& file, const Settings& settings,
 }
 
 int trade(const std::string& file, const Settings& settings, const std::string& tolerance,
-          const CandidateRequest& candidate, const Delivery& delivery) {
+          const CandidateRequest& candidate, int threads, const Delivery& delivery) {
     check(candidate, settings);
     if (!candidate.files.empty())
         throw std::invalid_argument(
@@ -294,10 +300,11 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     const Model& model = loaded.model;
     compare::TradeOptions options;
     options.tolerance = compare::parse_tolerance(tolerance, compare::Asks::shares_too);
-    options.progress = progress;
+    options.threads = threads;
+    options.progress = compare::part(progress, 0, 0.7);
     const compare::Trade trade = compare::trade(model, options);
-    const compare::PrecisionStudy precision =
-        compare::precision_study(model, {.progress = progress});
+    const compare::PrecisionStudy precision = compare::precision_study(
+        model, {.threads = threads, .progress = compare::part(progress, 0.7, 1)});
     progress("");
     delivery.print_text(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
     std::optional<compare::Table> of_candidate;
@@ -325,12 +332,19 @@ struct Common {
     std::string scene, folder;
     Settings settings;
     bool as_json = false;
+    Running running;
 
     Delivery delivery(const std::string& line) const {
         return {.folder = folder, .as_json = as_json, .command = line};
     }
     std::vector<Option> options() {
         return {scene_option(scene), set_option(settings), json_option(as_json)};
+    }
+    std::vector<Option> options_of_a_run() {
+        auto list = options();
+        list.push_back(jobs_option(running));
+        list.push_back(quiet_option(running));
+        return list;
     }
 };
 
@@ -362,7 +376,7 @@ Command compare_command() {
     const auto given = std::make_shared<Given>();
     std::vector<std::string> methods;
     for (const auto& method : recursive::methods) methods.emplace_back(method.name);
-    std::vector<Option> options = given->options();
+    std::vector<Option> options = given->options_of_a_run();
     options.push_back(keep_all_option(given->keep_all));
     options.push_back({"--formulations", Flag{&given->request.formulations},
                        "add the spread of the outputs over the bushing formulations of tools"});
@@ -383,6 +397,7 @@ Command compare_command() {
                 request.verdict = !method.method.empty();
                 if (!request.verdict) method.method = RecursionRequest{}.method;
                 request.recursion = recursion(method);
+                request.threads = threads_of(given->running);
                 request.detail = given->keep_all ? Detail::everything : Detail::required;
                 return compare_legs(given->scene, given->settings, request, given->delivery(line));
             }};
@@ -399,7 +414,7 @@ Command converge_command() {
     for (const auto& method : recursive::methods)
         if (!std::holds_alternative<recursive::Adaptive>(method.kind))
             known.emplace_back(method.name);
-    std::vector<Option> options = given->options();
+    std::vector<Option> options = given->options_of_a_run();
     options.push_back(
         {"--method", TextList{&given->methods, TextList::Form::commas, one_of(known)},
          "published (default), closed, balanced, tangent, chord, midpoint, series, or all"});
@@ -415,7 +430,8 @@ Command converge_command() {
             "reference uncertainty",
             std::move(options), [given](const std::string& line) {
                 return converge(given->scene, given->settings, given->methods, given->steps,
-                                given->candidate, given->delivery(line));
+                                given->candidate, threads_of(given->running),
+                                given->delivery(line));
             }};
 }
 
@@ -425,7 +441,7 @@ Command trade_command() {
         CandidateRequest candidate;
     };
     const auto given = std::make_shared<Given>();
-    std::vector<Option> options = given->options();
+    std::vector<Option> options = given->options_of_a_run();
     options.push_back({"--tolerance", Text{&given->tolerance},
                        "required accuracy (default: 0.01mm,0.001deg,1%)"});
     options.push_back(
@@ -434,7 +450,7 @@ Command trade_command() {
     return {"trade", "Cost of accuracy: every method against both references, and a recommendation",
             std::move(options), [given](const std::string& line) {
                 return trade(given->scene, given->settings, given->tolerance, given->candidate,
-                             given->delivery(line));
+                             threads_of(given->running), given->delivery(line));
             }};
 }
 

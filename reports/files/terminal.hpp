@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+#include <string>
 #include <string_view>
 
 namespace elastocheck::reports {
@@ -26,8 +28,15 @@ void print_error(fmt::format_string<First, Rest...> format, First&& first, Rest&
         fmt::format(format, std::forward<First>(first), std::forward<Rest>(rest)...)));
 }
 
-// One line that is overwritten by the next, where standard error is a terminal.
-void progress(std::string_view what);
+// Tells on standard error what runs, and the share of the work that is done, 0 to 1: on a terminal
+// by a bar that is rewritten in place, else by a line every ten seconds. Empty: the work has ended.
+// May be called by any thread.
+void progress(std::string_view what, double done = std::numeric_limits<double>::quiet_NaN());
+void hide_progress();  // from now on
+
+// What is told after so many seconds: "[######------]  50 %, 12 s left: jounce: energy leg", cut
+// to the width of the terminal; without a bar for a width of zero.
+std::string progress_line(std::string_view what, double done, double seconds, int width);
 
 // Flushes all output, or throws one of these: a full disk is detected only here.
 void finish_printing();

@@ -60,7 +60,8 @@ const Line lines[] = {
      "$E solve $SCENES/two_spring_arch.yaml --method series --rates rates.csv -o curves.csv"},
     {"solve", "$E solve $SCENES/pendulum.yaml --method energy --account --set points.tip.x=0.3125"},
     {"compare",
-     "$E compare $SCENES/pendulum.yaml -o compared --formulations --within 0.02mm,0.002deg"},
+     "$E compare $SCENES/pendulum.yaml --jobs 1 -o compared --formulations --within "
+     "0.02mm,0.002deg"},
     {"converge", "$E converge $SCENES/parallel_springs.yaml -o converged"},
     {"trade", "$E trade $SCENES/single_bushing.yaml -o traded --tolerance 0.015mm,0.0015deg"},
     {"new", "$E new double_wishbone"},

@@ -24,7 +24,12 @@ void check_words(int argc, char** argv) {
 
 std::string command_line(int argc, char** argv) {
     std::string line = "elastocheck";
-    for (int k = 1; k < argc; ++k) line += " " + for_shell(argv[k]);
+    for (int k = 1; k < argc; ++k) {
+        const std::string_view word = argv[k];
+        if (word == "--jobs") ++k;
+        if (word == "--quiet" || word == "--jobs" || word.starts_with("--jobs=")) continue;
+        line += " " + for_shell(word);
+    }
     return line;
 }
 

@@ -10,7 +10,8 @@ namespace elastocheck::reports {
 // lines.
 void check_words(int argc, char** argv);
 
-// The command as it was given, for a shell.
+// The command as it was given, for a shell; without what does not change a result (--jobs,
+// --quiet).
 std::string command_line(int argc, char** argv);
 
 }  // namespace elastocheck::reports

@@ -11,9 +11,14 @@ std::vector<Section> sections_of(const JsonCursor& scene) {
         references_section,  deviation_section,  price_section,      convergence_section,
         attribution_section, orders_section,     arithmetic_section, formulations_section,
         matrices_section,    model_section};
+    const auto only = scene.find("only");
+    const auto left_out = [&](Part part) {
+        return only && part == (only->text() == "kc" ? Part::evidence : Part::behaviour);
+    };
     std::vector<Section> sections;
     for (const auto make : makers)
-        if (auto section = make(scene)) sections.push_back(std::move(*section));
+        if (auto section = make(scene); section && !left_out(section->part))
+            sections.push_back(std::move(*section));
     return sections;
 }
 

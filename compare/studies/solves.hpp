@@ -1,0 +1,54 @@
+// Solves of one model that several studies read. Each is run once, by the first that asks.
+//
+// The points of all studies are multiples of one base: `base` equal increments of the parameter
+// over a branch, divided among its sides. N steps are recorded at most at `finest` points for each
+// of these, so that the points of one curve are among those of a finer one.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "compare/comparison/legs.hpp"
+
+namespace elastocheck::compare {
+
+struct Solves {
+    explicit Solves(const Model& of, int base_points = 10, int finest_multiple = 1);
+
+    const Model& model;
+    const int base, finest;
+    const std::vector<Channel> channels;              // channels(model)
+    std::vector<std::vector<BranchSide>> sides = {};  // per branch, at the base points
+
+    // One for each side of a branch, its points and solver.
+    struct Run {
+        std::once_flag once = {};
+        PathCurve curve = {};
+        ReferenceRuns references = {};
+    };
+    std::mutex lock = {};  // of the map, not of its runs
+    std::map<std::string, Run> runs = {};
+    std::atomic<int> asked = 0;
+};
+
+// The side at `multiple` points for each of the base.
+BranchSide at_points(BranchSide side, int multiple);
+
+// A solver along a side, at the points that `side` records. Threads that ask for the same run wait
+// for it.
+const PathCurve& solved(Solves& solves, const BranchSide& side, const SolverSettings& solver);
+
+// A method along a side with `steps` for each of the base points. Pre: steps <= finest, or a
+// multiple of it.
+const PathCurve& solved(Solves& solves, const BranchSide& side, const recursive::Method& method,
+                        int steps);
+
+// The references on a branch, or on one of its sides, at `multiple` points for each of the base:
+// solved at the finest, and read at these. Pre: `multiple` divides finest.
+References references_on_branch(Solves& solves, std::size_t branch, int multiple);
+References references_on_side(Solves& solves, const BranchSide& side, int multiple);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,125 @@
+// Threads, progress and parts of a report, from the command line.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "reports/files/terminal.hpp"
+#include "tests/reports/command.hpp"
+
+namespace elastocheck {
+namespace {
+
+using reports::progress_line;
+using support::contains;
+using support::Folder;
+using support::Said;
+using support::text_of;
+using json = nlohmann::ordered_json;
+
+const std::string strut = scenes + "/chrono_mcpherson.yaml";
+
+json scene_of(const Folder& folder, const std::string& arguments) {
+    const std::string to = (folder.path / "report").string();
+    const Said said = elastocheck_says("report " + strut + " -o " + to + " " + arguments);
+    EXPECT_EQ(said.code, 0) << said.err;
+    return json::parse(text_of(to + "/result.json"))["scenes"][0];
+}
+
+TEST(Running, AReportIsTheSameWithAnyNumberOfThreads) {
+    const Folder folder;
+    const std::string to = (folder.path / "report").string();
+    std::vector<std::string> results, pages;
+    for (const char* jobs : {"--jobs 1", "--jobs=3 --quiet"}) {
+        const Said said = elastocheck_says("report " + strut + " -o " + to + " " + jobs);
+        ASSERT_EQ(said.code, 0) << said.err;
+        results.push_back(text_of(to + "/result.json"));
+        pages.push_back(text_of(to + "/report.html"));
+    }
+    EXPECT_GT(results.front().size(), 10000u);
+    EXPECT_FALSE(contains(results.front(), "--jobs"));
+    for (std::size_t k = 1; k < results.size(); ++k) {
+        EXPECT_TRUE(results[k] == results.front()) << k;
+        EXPECT_TRUE(pages[k] == pages.front()) << k;
+    }
+}
+
+TEST(Running, OtherCommandsAreTheSameWithAnyNumberOfThreads) {
+    for (const char* command : {"certify", "converge", "gate"}) {
+        const std::string call = std::string(command) + " " + scenes + "/pinned_bar.yaml --jobs ";
+        const Said one = elastocheck_says(call + "1"), three = elastocheck_says(call + "3");
+        EXPECT_EQ(one.code, 0) << one.err;
+        EXPECT_EQ(one.out, three.out) << command;
+    }
+    EXPECT_EQ(elastocheck_says("compare " + strut + " --jobs 0").code, 2);
+}
+
+TEST(Running, KinematicsAndComplianceNeedNoStudy) {
+    const Folder folder;
+    for (const char* arguments : {"--only kc", "--quick"}) {
+        const json scene = scene_of(folder, arguments);
+        for (const char* study : {"convergence", "trade", "orders", "precision", "formulations"})
+            EXPECT_FALSE(scene.contains(study)) << arguments << ": " << study;
+        for (const char* part : {"branches", "characteristics", "drawing", "forces", "verdict"})
+            EXPECT_TRUE(scene.contains(part)) << arguments << ": " << part;
+        for (const auto& branch : scene["branches"])
+            for (const auto& leg : branch["legs"]) EXPECT_GT(leg["proof"]["proved"], 0);
+    }
+    EXPECT_TRUE(scene_of(folder, "--only evidence").contains("convergence"));
+    const std::string to = (folder.path / "report").string();
+    const std::string again = (folder.path / "again").string();
+    EXPECT_EQ(elastocheck_says("report --from " + to + "/result.json -o " + again).code, 0);
+    EXPECT_EQ(text_of(to + "/report.html"), text_of(again + "/report.html"));
+    EXPECT_EQ(elastocheck_says("report " + strut + " --only kinematics -o " + again).code, 2);
+    EXPECT_EQ(elastocheck_says("report --from " + to + "/result.json --quick -o " + again).code, 2);
+}
+
+TEST(Running, AReportOfSomeBranchesHasTheseAlone) {
+    const Folder folder;
+    const json scene = scene_of(folder, "--quick --branch rebound");
+    ASSERT_EQ(scene["branches"].size(), 1u);
+    EXPECT_EQ(scene["branches"][0]["name"], "rebound");
+    const Said said = elastocheck_says("report " + strut + " -o " +
+                                       (folder.path / "none").string() + " --branch reboud");
+    EXPECT_EQ(said.code, 2);
+    EXPECT_TRUE(contains(said.err, "has no branch 'reboud', did you mean 'rebound'")) << said.err;
+}
+
+TEST(Running, ALineOfProgressSaysShareTimeAndWork) {
+    EXPECT_EQ(progress_line("jounce", 0.5, 12, 80),
+              "[##########----------]  50 %, 12 s left: jounce");
+    EXPECT_EQ(progress_line("jounce", 0.5, 12, 0), " 50 %, 12 s left: jounce");
+    EXPECT_EQ(progress_line("jounce", 0, 0, 80), "[--------------------]   0 %: jounce");
+    EXPECT_EQ(progress_line("a command", NAN, 30, 80), "30 s: a command");
+    EXPECT_EQ(progress_line("prüfen", 1, 3, 43), "[####################] 100 %, 0 s left: pr");
+    EXPECT_EQ(progress_line("prüfen", 1, 3, 44), "[####################] 100 %, 0 s left: prü");
+}
+
+TEST(Running, ATerminalShowsABarUnlessQuiet) {
+    const std::string call =
+        std::string(ELASTOCHECK_COMMAND) + " compare " + scenes + "/pinned_bar.yaml";
+    const auto on_a_terminal = [](const std::string& line) {
+        return support::says("script -qec '" + line + "' /dev/null").out;
+    };
+    const std::string shown = on_a_terminal(call);
+    EXPECT_TRUE(contains(shown, "\r\033[K[")) << shown;
+    EXPECT_TRUE(contains(shown, " leg")) << shown;
+    // The bar is gone before the first line of the result.
+    EXPECT_TRUE(contains(
+        shown,
+        "\r\033[K" + elastocheck_says("compare " + scenes + "/pinned_bar.yaml").out.substr(0, 20)))
+        << shown;
+    EXPECT_FALSE(contains(on_a_terminal(call + " --quiet"), "\033[K"));
+}
+
+TEST(Running, WithoutATerminalALineIsWrittenEveryTenSeconds) {
+    const std::string call =
+        "compare " + scenes + "/pinned_bar.yaml --candidate-command \"sh -c 'sleep 12' {output}\"";
+    const Said said = elastocheck_says(call);
+    EXPECT_TRUE(contains(said.err, "10 s: sh with ")) << said.err;
+    EXPECT_EQ(std::ranges::count(said.err, '\r'), 0);
+    EXPECT_FALSE(contains(elastocheck_says(call + " --quiet").err, "10 s"));
+}
+
+}  // namespace
+}  // namespace elastocheck
