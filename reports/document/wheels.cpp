@@ -48,26 +48,32 @@ std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
     return std::nullopt;
 }
 
+bool is_effort_of(const compare::Channel& channel, int joint) {
+    const auto* effort = std::get_if<compare::Effort>(&channel.reads);
+    return effort != nullptr && effort->joint == joint;
+}
+
 // What the parameter does to the wheels.
 struct Effects {
     std::vector<double> lift;  // per wheel, vertical motion or force per unit of the parameter
     bool steers = false, across = false, along = false, turns = false, other = false;
 };
 
-void add(Effects& effects, const Model& model, const Load& load, double rate) {
-    std::visit(overloaded{[&](const DeadForce& force) {
-                              const auto wheel = wheel_at(model, force.at);
-                              const Eigen::Vector3d f = force.f.cwiseAbs();
-                              if (!wheel)
-                                  effects.other = true;
-                              else if (f.z() > f.x() && f.z() > f.y())
-                                  effects.lift[*wheel] += rate * force.f.z();
-                              else
-                                  (f.y() > f.x() ? effects.across : effects.along) = true;
-                          },
-                          [&](const DeadMoment&) { effects.turns = true; },
-                          [&](const auto&) { effects.other = true; }},
-               load.kind);
+void add(Effects& effects, const Model& model, const LoadKind& load, double rate) {
+    if (is_follower(load)) {
+        effects.other = true;
+    } else if (is_moment(load)) {
+        effects.turns = true;
+    } else {
+        const auto wheel = wheel_at(model, *member<Point>(load));
+        const Eigen::Vector3d f = load_vector(load).cwiseAbs();
+        if (!wheel)
+            effects.other = true;
+        else if (f.z() > f.x() && f.z() > f.y())
+            effects.lift[*wheel] += rate * load_vector(load).z();
+        else
+            (f.y() > f.x() ? effects.across : effects.along) = true;
+    }
 }
 
 Effects effects_of(const Model& model, const Branch& branch) {
@@ -81,15 +87,12 @@ Effects effects_of(const Model& model, const Branch& branch) {
             else
                 otherwise = true;
         };
-        std::visit(overloaded{[&](const Load& load) { add(effects, model, load, driver.rate); },
-                              [&](const Motion& motion) {
-                                  raise(wheel_on_jack(model, motion.joint), effects.steers);
-                              },
-                              [&](const Preload& preload) {
-                                  raise(wheel_on_tyre(model, preload.elastic), effects.other);
-                              },
-                              [&](const FreeLength&) { effects.other = true; }},
-                   driver.what);
+        if (const Load* load = driven_load(driver.what))
+            add(effects, model, load->kind, driver.rate);
+        else if (const int joint = driven_joint(driver.what); joint >= 0)
+            raise(wheel_on_jack(model, joint), effects.steers);
+        else
+            raise(wheel_on_tyre(model, driven_element(driver.what)), effects.other);
     }
     return effects;
 }
@@ -104,33 +107,26 @@ struct WheelForce {
 std::vector<WheelForce> wheel_forces(const Model& model, const Branch& branch,
                                      const std::vector<compare::Channel>& channels) {
     std::vector<WheelForce> wheels(model.wheels.size());
-    const auto load = [&](const Load& l, double start, double rate) {
-        if (const auto* dead = std::get_if<DeadForce>(&l.kind)) {
-            if (const auto w = wheel_at(model, dead->at)) {
-                wheels[*w].force += start * dead->f.z();
-                wheels[*w].slope += rate * dead->f.z();
-            }
-        } else if (const auto* follower = std::get_if<FollowerForce>(&l.kind)) {
-            if (const auto w = wheel_at(model, follower->at)) wheels[*w].known = false;
-        }
+    const auto add = [&](const LoadKind& load, double start, double rate) {
+        if (is_moment(load)) return;
+        const auto w = wheel_at(model, *member<Point>(load));
+        if (!w) return;
+        wheels[*w].known = wheels[*w].known && !is_follower(load);
+        wheels[*w].force += start * load_vector(load).z();
+        wheels[*w].slope += rate * load_vector(load).z();
     };
-    for (const auto& l : model.static_loads) load(l, 1, 0);
-    for (const auto& driver : branch.drivers)
-        std::visit(overloaded{[&](const Load& l) { load(l, driver.start, driver.rate); },
-                              [&](const Motion& motion) {
-                                  const auto w = wheel_on_jack(model, motion.joint);
-                                  for (std::size_t c = 0; w && c < channels.size(); ++c)
-                                      if (const auto* effort =
-                                              std::get_if<compare::Effort>(&channels[c].reads);
-                                          effort != nullptr && effort->joint == motion.joint)
-                                          wheels[*w].efforts.push_back(c);
-                              },
-                              [&](const Preload& preload) {
-                                  if (const auto w = wheel_on_tyre(model, preload.elastic))
-                                      wheels[*w].known = false;
-                              },
-                              [](const FreeLength&) {}},
-                   driver.what);
+    for (const auto& load : model.static_loads) add(load.kind, 1, 0);
+    for (const auto& driver : branch.drivers) {
+        if (const Load* load = driven_load(driver.what)) {
+            add(load->kind, driver.start, driver.rate);
+        } else if (const int joint = driven_joint(driver.what); joint >= 0) {
+            if (const auto w = wheel_on_jack(model, joint))
+                for (std::size_t c = 0; c < channels.size(); ++c)
+                    if (is_effort_of(channels[c], joint)) wheels[*w].efforts.push_back(c);
+        } else if (const auto w = wheel_on_tyre(model, driven_element(driver.what))) {
+            wheels[*w].known = false;
+        }
+    }
     return wheels;
 }
 
@@ -151,8 +147,8 @@ const compare::Curve& truth_of(const compare::BranchComparison& branch) {
 
 bool holds_a_wheel(const Model& model, const Branch& branch) {
     return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
-        const auto* motion = std::get_if<Motion>(&driver.what);
-        return motion != nullptr && wheel_on_jack(model, motion->joint);
+        const int joint = driven_joint(driver.what);
+        return joint >= 0 && wheel_on_jack(model, joint);
     });
 }
 
@@ -175,12 +171,9 @@ const char* load_case(const Model& model, const Branch& branch) {
 json efforts_json(const Branch& branch, const std::vector<compare::Channel>& channels) {
     json efforts = json::array();
     for (const auto& driver : branch.drivers)
-        if (const auto* motion = std::get_if<Motion>(&driver.what);
-            motion != nullptr && driver.rate != 0)
+        if (const int joint = driven_joint(driver.what); joint >= 0 && driver.rate != 0)
             for (const auto& channel : channels)
-                if (const auto* effort = std::get_if<compare::Effort>(&channel.reads);
-                    effort != nullptr && effort->joint == motion->joint)
-                    efforts.push_back(channel.name);
+                if (is_effort_of(channel, joint)) efforts.push_back(channel.name);
     return efforts;
 }
 

@@ -186,7 +186,7 @@ std::pair<std::string, int> stem(const std::string& name) {
 }  // namespace
 
 std::optional<double> clearance_of(const ScalarLaw& law) {
-    const auto* curve = std::get_if<Curve>(&law);
+    const Curve* curve = curve_of(law);
     const auto contact = curve != nullptr ? contact_of(*curve) : std::nullopt;
     return contact ? std::optional(std::abs(contact->touches)) : std::nullopt;
 }
