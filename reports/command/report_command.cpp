@@ -194,6 +194,7 @@ json solve_scene(const std::string& file, const Request& request, int threads,
     const Scene& scene = loaded.scene;
     const Model& model = loaded.model;
     json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
+    if (!loaded.warnings.empty()) document["warnings"] = loaded.warnings;
     if (loaded.trim) add_trim(document, *loaded.trim);
     if (!request.only.empty()) document["only"] = request.only;
     const bool studies = !request.quick && request.only != "kc";

@@ -470,5 +470,14 @@ TEST(ParseResult, RefusesWhatItCannotRead) {
               "result.json: scenes: it has no scene");
 }
 
+TEST(Sections, WarningsOfTheReaderStandBelowTheFirstSentence) {
+    json result = sample_result();
+    EXPECT_FALSE(contains(said(result, "first"), "Warning"));
+    result["scenes"][0]["warnings"] = {"a.yaml:3: too large", "a.yaml:9: too soft"};
+    const std::string text = said(result, "first");
+    EXPECT_TRUE(contains(text, "\n\nWarning: a.yaml:3: too large")) << text;
+    EXPECT_TRUE(contains(text, "\n\nWarning: a.yaml:9: too soft")) << text;
+}
+
 }  // namespace
 }  // namespace elastocheck::reports

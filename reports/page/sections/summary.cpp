@@ -93,6 +93,7 @@ void add_changes(Table& table, const JsonCursor& scene) {
 std::optional<Section> first_section(const JsonCursor& scene) {
     Section section{.id = "first", .title = "At a glance"};
     section.words["trust"] = trust_sentence(scene);
+    if (const auto warnings = scene.find("warnings")) section.words["warnings"] = warnings->texts();
     section.mark = Mark::open;
     if (auto table = alignment(scene)) section.tables.push_back(std::move(*table));
     Table key = key_rates(scene);
