@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,8 @@ inline OneWay walked(const Scene& scene, const Branch& branch) {
 }
 
 inline Model found(const std::string& name) {
-    return compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/../../tests/recursive/found/" +
-                              name + ".yaml"));
+    const std::filesystem::path scenes = ELASTOCHECK_SCENES;
+    return compile(read_scene(scenes / "../../tests/recursive/found" / (name + ".yaml")));
 }
 
 // Largest distance of origins, and of points 0.1 m beside them [m]; for bodies with idle rotation
