@@ -60,10 +60,11 @@ const Line lines[] = {
      "$E solve $SCENES/two_spring_arch.yaml --method series --rates rates.csv -o curves.csv"},
     {"solve", "$E solve $SCENES/pendulum.yaml --method energy --account --set points.tip.x=0.3125"},
     {"compare",
-     "$E compare $SCENES/pendulum.yaml --jobs 1 -o compared --formulations --within "
+     "$E compare $SCENES/pendulum.yaml --quiet --jobs 1 -o compared --formulations --within "
      "0.02mm,0.002deg"},
-    {"converge", "$E converge $SCENES/parallel_springs.yaml -o converged"},
-    {"trade", "$E trade $SCENES/single_bushing.yaml -o traded --tolerance 0.015mm,0.0015deg"},
+    {"converge", "$E converge $SCENES/parallel_springs.yaml --quiet -o converged"},
+    {"trade",
+     "$E trade $SCENES/single_bushing.yaml --quiet -o traded --tolerance 0.015mm,0.0015deg"},
     {"new", "$E new double_wishbone"},
     {"import",
      "$E import $SAMPLES/generic__DoubleWishbone.json -o wishbone.yaml && $E inspect "
@@ -75,7 +76,7 @@ const Line lines[] = {
     {"gate",
      "cp $SCENES/single_bushing.yaml . && $E gate single_bushing.yaml --accept --reason first && "
      "$E gate single_bushing.yaml --junit gate.xml --summary gate.md --json"},
-    {"certify", "$E certify $SCENES/pendulum.yaml -o proved"},
+    {"certify", "$E certify $SCENES/pendulum.yaml --quiet -o proved"},
     {"judge",
      "$E solve $SCENES/pendulum.yaml --method midpoint --steps 150 -o mine.csv && "
      "$E judge $SCENES/pendulum.yaml --candidate mine.csv --tolerance 0.01mm,0.001deg -o judged"},
@@ -83,7 +84,8 @@ const Line lines[] = {
      "$E judge $SCENES/pendulum.yaml --candidate-timeout 30.5 --candidate-command "
      "\"$E solve {scene} --method published --steps {steps} -o {output}\""},
     {"report",
-     "$E report $SCENES/single_bushing.yaml -o page && $E report --from page/result.json -o again"},
+     "$E report $SCENES/single_bushing.yaml --quiet -o page && $E report --from page/result.json "
+     "-o again"},
     // Its joints are inconsistent, so no solver takes the requested million steps.
     {"stress",
      "$E stress $SCENES/../extremes/redundant_link.yaml --set joints.link.length=500.25 -o "
