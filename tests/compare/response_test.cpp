@@ -94,7 +94,7 @@ TEST(Response, TheLegsAgreeOnEverySceneWhereItBeginsAndEnds) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(trim(support::scene(name)).scene);
         for (const auto& branch : model.branches)
-            for (const auto& [way_name, on_way, way] : sides_of(model, branch, 1))
+            for (const auto& [way_name, on_way, way, analysis] : sides_of(model, branch, 1))
                 for (const double a : {0.0, way.to}) {
                     const OneWay here{on_way, way};
                     const Equilibrium state = state_at(here, a);

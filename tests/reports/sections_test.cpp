@@ -369,8 +369,8 @@ TEST(First, ShowsTheStaticAlignmentAsDrawnAndAsSettled) {
     json result = compared_result("front_axle");
     const std::string text = said(result, "first");
     EXPECT_TRUE(contains(text,
-                         "| drawn, left | drawn, right | settled after trim, left | settled "
-                         "after trim, right "))
+                         "settled after the trim (toe-in, top outwards positive)\n| of the wheel | "
+                         "drawn left | drawn right | settled left | settled right "))
         << text;
     EXPECT_TRUE(contains(text, "| wheel load [N] | – | – | 3800 | 3800 |")) << text;
     EXPECT_TRUE(contains(text, "| springs.coil_left.preload | +18.02 N |")) << text;

@@ -115,13 +115,11 @@ struct Page {
         json groups = single;
         for (const auto& entry : several) groups.push_back(entry);
         const json all = paragraphs(section);
-        const bool judged =
-            section.mark == Mark::pass || section.mark == Mark::fail || section.id == "candidate";
         return {{"id", unique(fmt::format("{}-{}", part.id, section.id))},
                 {"title", section.title},
                 {"first", section.part == Part::first},
                 {"glance", section.id == "first"},
-                {"mark", !judged                      ? json(nullptr)
+                {"mark", section.mark == Mark::none   ? json(nullptr)
                          : section.mark == Mark::pass ? json{{"class", "pass"}, {"text", "pass"}}
                          : section.mark == Mark::fail
                              ? json{{"class", "fail"}, {"text", "fail"}}

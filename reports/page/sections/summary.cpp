@@ -26,13 +26,14 @@ std::optional<Table> alignment(const JsonCursor& scene) {
     if (!part) return std::nullopt;
     const auto wheels = wheels_of(scene);
     const compare::Table values = read_table((*part)["static"], static_table());
-    const bool trimmed = scene.find("trim").has_value();
-    Table table{.caption = "Static alignment", .columns = {{"of the wheel", true}}};
+    Table table{.caption = fmt::format(
+                    "Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
+                    scene.find("trim") ? " after the trim" : ""),
+                .columns = {{"of the wheel", true}}};
     for (const char* state : {"drawn", "settled"})
         for (const auto& wheel : wheels)
-            table.columns.push_back({fmt::format(
-                "{}{}{}{}", state, trimmed && state == std::string("settled") ? " after trim" : "",
-                wheel.name.empty() ? "" : ", ", wheel.name)});
+            table.columns.push_back(
+                {fmt::format("{}{}{}", state, wheel.name.empty() ? "" : " ", wheel.name)});
     for (const auto& output : distinct(values, "output")) {
         const auto rows = where(values, "output", output);
         if (rows.rows.empty()) continue;
@@ -94,7 +95,6 @@ std::optional<Section> first_section(const JsonCursor& scene) {
     Section section{.id = "first", .title = "At a glance"};
     section.words["trust"] = trust_sentence(scene);
     if (const auto warnings = scene.find("warnings")) section.words["warnings"] = warnings->texts();
-    section.mark = Mark::open;
     if (auto table = alignment(scene)) section.tables.push_back(std::move(*table));
     Table key = key_rates(scene);
     if (!key.columns.empty()) add_changes(key, scene);
