@@ -29,8 +29,8 @@ std::string curves_header(const std::vector<compare::Channel>& channels) {
 
 std::string curves_row(const std::string& branch, compare::Leg leg, compare::Unit unit,
                        const compare::Row& row) {
-    return fmt::format("{},{},{},{}{}\n", for_csv(branch), name(leg),
-                       parameter_in(unit, row.load), symbol(unit), numbers(row.values));
+    return fmt::format("{},{},{},{}{}\n", for_csv(branch), name(leg), parameter_in(unit, row.load),
+                       symbol(unit), numbers(row.values));
 }
 
 std::string rates_header(const std::vector<compare::Channel>& channels) {

@@ -51,8 +51,7 @@ std::optional<Contact> contact_of(const Curve& u) {
     const bool open_short = is_free(u.pieces.front()), open_long = is_free(u.pieces.back());
     if (open_short == open_long) return std::nullopt;
     std::size_t n = 0;  // end of the force-free side
-    while (n < u.knots.size() &&
-           is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
+    while (n < u.knots.size() && is_free(open_short ? u.pieces[n] : u.pieces[u.knots.size() - n]))
         ++n;
     return open_short ? Contact{u.knots[n - 1], true, u.pieces[n]}
                       : Contact{u.knots[u.knots.size() - n], false, u.pieces[u.knots.size() - n]};
@@ -60,18 +59,17 @@ std::optional<Contact> contact_of(const Curve& u) {
 
 std::string spring_words(const ScalarLaw& law) {
     return std::visit(
-        overloaded{
-            [](const LinearRate& u) { return "axial spring, " + rate_words(u.k, lengths); },
-            [](const Curve& u) {
-                const auto contact = contact_of(u);
-                if (!contact) return "axial spring, " + range_words(u, lengths);
-                const auto& [touches, longer, piece] = *contact;
-                const bool straight = piece[2] == 0 && piece[3] == 0;
-                return fmt::format(
-                    "stop, touches when {:.4g} mm {}, {}", 1e3 * std::abs(touches),
-                    longer ? "longer" : "shorter",
-                    straight ? rate_words(std::abs(piece[1]), lengths) : range_words(u, lengths));
-            }},
+        overloaded{[](const LinearRate& u) { return "axial spring, " + rate_words(u.k, lengths); },
+                   [](const Curve& u) {
+                       const auto contact = contact_of(u);
+                       if (!contact) return "axial spring, " + range_words(u, lengths);
+                       const auto& [touches, longer, piece] = *contact;
+                       const bool straight = piece[2] == 0 && piece[3] == 0;
+                       return fmt::format("stop, touches when {:.4g} mm {}, {}",
+                                          1e3 * std::abs(touches), longer ? "longer" : "shorter",
+                                          straight ? rate_words(std::abs(piece[1]), lengths)
+                                                   : range_words(u, lengths));
+                   }},
         law);
 }
 

@@ -22,7 +22,6 @@ struct ElementLine {
 // are those of the scene.
 std::vector<ElementLine> elements(const Scene& scene, const Model& model);
 
-
 // Clearance [m] of a stop, of which the law has no force on one side; none of another law.
 std::optional<double> clearance_of(const ScalarLaw& law);
 

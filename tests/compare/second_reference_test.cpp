@@ -155,7 +155,8 @@ TEST(SecondReference, TheWitnessSeesAMicrometre) {
     const Objections objections =
         disagreements(chain(), compared_chain().channels, chain().branches[0], branch);
     ASSERT_EQ(objections.count, 1);
-    EXPECT_TRUE(objections.worst[0].what.starts_with("the equilibrium leg's states have residuals of "))
+    EXPECT_TRUE(
+        objections.worst[0].what.starts_with("the equilibrium leg's states have residuals of "))
         << objections.worst[0].what;
     EXPECT_NE(objections.worst[0].what.find("in the energy leg's equations"), std::string::npos)
         << objections.worst[0].what;
