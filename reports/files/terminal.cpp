@@ -40,10 +40,18 @@ bool write(std::FILE* stream, std::string_view lines) {
     throw FileError(fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
 }
 
-// The work that is told. A thread repeats it while the work says nothing new.
+// isatty() sets errno, which has to keep the reason of a failed write.
+bool is_terminal(int file) {
+    const int before = errno;
+    const bool is = ::isatty(file) == 1;
+    errno = before;
+    return is;
+}
+
+// The displayed progress. A thread repeats it while the work reports nothing new.
 struct Display {
     std::mutex lock;  // of all below, and of both streams
-    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    const bool terminal = is_terminal(STDERR_FILENO);
     bool hidden = false, works = false, on_screen = false;
     std::string what;
     double done = 0;

@@ -6,13 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/text/escape.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -156,7 +156,7 @@ double shown(double value, const std::string& unit) {
     const std::string text = own != decimals.end()    ? fmt::format("{:.{}f}", value, own->second)
                              : std::abs(value) < 1e-6 ? "0"
                                                       : fmt::format("{:.4g}", value);
-    return std::strtod(text.c_str(), nullptr) + 0.0;
+    return parsed_number(text) + 0.0;  // + 0.0: no negative zero
 }
 
 json figures_json(const compare::Measurement& measurement) {

@@ -255,7 +255,8 @@ namespace {
 // With as many digits as entered, up to six.
 std::string given(double value) {
     int digits = 1;
-    while (digits < 6 && std::stod(fmt::format("{:.{}e}", value, digits - 1)) != value) ++digits;
+    while (digits < 6 && parsed_number(fmt::format("{:.{}e}", value, digits - 1)) != value)
+        ++digits;
     return number(value, digits);
 }
 

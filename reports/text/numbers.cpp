@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace elastocheck::reports {
 namespace {
@@ -42,10 +44,16 @@ std::string signed_number(double value, int digits) {
     return fmt::format("{}{}", std::isfinite(value) && value > 0 ? "+" : "", number(value, digits));
 }
 
+double parsed_number(std::string_view text) {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
 std::string short_number(double value) {
     int digits = 1;
-    while (digits < 4 && std::stod(fmt::format("{:.{}e}", value, digits - 1)) !=
-                             std::stod(fmt::format("{:.3e}", value)))
+    while (digits < 4 && parsed_number(fmt::format("{:.{}e}", value, digits - 1)) !=
+                             parsed_number(fmt::format("{:.3e}", value)))
         ++digits;
     return std::isfinite(value) ? number(value, digits) : dash;
 }

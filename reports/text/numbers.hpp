@@ -11,6 +11,9 @@ namespace elastocheck::reports {
 std::string number(double value, int digits = 3);
 std::string signed_number(double value, int digits = 3);  // with a plus
 
+// The number at the start of a text, with a decimal point in any locale. NaN without one.
+double parsed_number(std::string_view text);
+
 // Up to four significant digits, as few as needed: "−80", "21.33".
 std::string short_number(double value);
 

@@ -202,7 +202,7 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {replaced(curves, " [mm]", " [inch]"), "the unit 'inch' is not known"},
              {replaced(curves, "\"recursive\"", "\"recursiv\""), "'recursiv' is not known"},
              {replaced(curves, "centre_", "x\\n::error::"), "control character U+000A"},
-             {replaced(curves, "centre_", "\xE2\x80\xAE"), "turns the direction of writing"},
+             {replaced(curves, "centre_", "\xE2\x80\xAE"), "changes the direction of writing"},
          })
         refused({review, text}, answer);
 }

@@ -42,7 +42,7 @@ void read_number(const std::string& option, const std::string& word, const RealN
     const auto [end, error] = std::from_chars(first, last, number);
     if (error != std::errc{} || end != last || !std::isfinite(number) ||
         !(number >= target.low && number <= target.high))
-        throw CLI::ValidationError(option, fmt::format("'{}' is no number{}", word, range));
+        throw CLI::ValidationError(option, fmt::format("'{}' is not a number{}", word, range));
 }
 
 // One overload per kind of variable.

@@ -88,6 +88,14 @@ bool is_visible(const JsonCursor& curve) {
     return low != y.end() && std::abs(curve["largest"].number()) >= 0.01 * (*high - *low);
 }
 
+// Axis of the parameter of a branch, as on the other figures of the page: "load [N]".
+std::string parameter_of(const JsonCursor& scene, const JsonCursor& compared) {
+    for (const auto& branch : scene["branches"].items())
+        if (branch["name"].text() == compared["name"].text())
+            return sweep_of(scene, branch).parameter();
+    compared["name"].fail("no such branch");
+}
+
 // What an engineer notices: on the first branch every output, on the others the angles.
 FigureGroup figures(const JsonCursor& scene, const JsonCursor& against) {
     constexpr std::size_t most = 12;
@@ -98,7 +106,7 @@ FigureGroup figures(const JsonCursor& scene, const JsonCursor& against) {
     for (const auto& branch : against["branches"].items()) {
         const std::string name = branch["name"].text();
         if (first.empty()) first = name;
-        const Sweep sweep{name, branch["unit"].text(), "", {}};
+        const std::string x_axis = parameter_of(scene, branch);
         for (const auto& c : branch["curves"].items()) {
             const std::string unit = c["unit"].text(), output = as_words(c["output"].text());
             if (!(c["noticed"].number() > 1) || (name != first && unit != "deg") || !is_visible(c))
@@ -110,7 +118,7 @@ FigureGroup figures(const JsonCursor& scene, const JsonCursor& against) {
                  .description =
                      fmt::format("{} of both variants, {}; they differ by up to {} {}", output,
                                  name, number(std::abs(c["largest"].number()), 2), unit),
-                 .x = sweep.parameter(),
+                 .x = x_axis,
                  .y = fmt::format("{} [{}]", output, unit),
                  .series = {curve(c["base"], "base", false),
                             curve(c["variant"], "variant", true)}});

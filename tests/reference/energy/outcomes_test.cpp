@@ -21,8 +21,8 @@ TEST(Outcomes, MessagesGiveTheParameterInItsUnit) {
     const std::pair<ParameterUnit, const char*> texts[] = {
         {ParameterUnit::newton, "at inf N:"},
         {ParameterUnit::newton_metre, "at inf N·m:"},
-        {ParameterUnit::metre, "at inf m:"},
-        {ParameterUnit::radian, "at inf rad:"},
+        {ParameterUnit::metre, "at inf mm:"},
+        {ParameterUnit::radian, "at inf deg:"},
         {ParameterUnit::none, "at inf:"}};
     for (const auto& [unit, text] : texts) {
         scene.branches[0].unit = unit;
