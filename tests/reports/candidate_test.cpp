@@ -267,9 +267,9 @@ TEST(CandidateCommand, AnUnusableTemporaryFolderIsNamedWithItsVariable) {
 
 TEST(CandidateCommand, TradeOfRunsThatCouldNotBeJudgedIsNoSuccess) {
     const Folder folder;
-    const Said said = elastocheck_says("trade " + scenes +
-                                       "/pinned_bar.yaml --candidate-command 'false {output}' -o " +
-                                       (folder.path / "out").string());
+    const Said said = elastocheck_says(
+        "trade " + scenes + "/single_bushing.yaml --candidate-command 'false {output}' -o " +
+        (folder.path / "out").string());
     EXPECT_EQ(said.code, 3) << said.out << said.err;
     EXPECT_TRUE(contains(said.out, "told [mm]")) << "tolerances are in mm\n" << said.out;
     EXPECT_FALSE(contains(said.out, " m,") || contains(said.out, " m\n") ||
