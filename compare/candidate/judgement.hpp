@@ -15,7 +15,7 @@ struct Assessment {
     std::string method;                // of the recursion
     Tolerance tolerance = default_tolerance;
     bool asked = false;  // the tolerance was given, not the default
-    // A verdict was asked for, by a method or a tolerance; else only the deviations are told.
+    // A verdict was asked for, by a method or a tolerance; else only the deviations are given.
     bool requested = true;
     // Largest deviations by reading; empty where nothing is compared. They are taken from the main
     // outputs, unless these are within their limits and another position or angle takes a larger

@@ -1,11 +1,12 @@
-// Memory in which BLAS rounds alike whatever the threads do.
+// Memory alignment for reproducible results of BLAS, whatever the number of threads.
 #pragma once
 
 namespace elastocheck::compare {
 
 // Lets SuiteSparse allocate at multiples of 64 bytes. BLAS (ATLAS) takes other kernels, which round
 // otherwise, for memory at other multiples of 16 bytes, and on which of these malloc places a block
-// depends on what other threads allocate. May be called at any time, by any thread.
+// depends on what other threads allocate. It acts once, for the whole process; no other thread may be
+// inside SuiteSparse at the first call.
 void align_suitesparse();
 
 }  // namespace elastocheck::compare

@@ -11,7 +11,7 @@
 namespace elastocheck::compare {
 
 struct Job {
-    std::string what;  // told when it begins
+    std::string what;  // reported when it begins
     std::function<void()> run;
 };
 

@@ -31,7 +31,7 @@ double parameter_in(Unit unit, double load) {
     const std::string digits = fmt::format("{:.15g}", in_unit(unit) * load);
     double rounded = load;
     std::from_chars(digits.data(), digits.data() + digits.size(), rounded);
-    return rounded;
+    return rounded + 0.0;  // no negative zero at the start of a negative side
 }
 
 void append(Curve& curve, double load, std::vector<double> values) {

@@ -1,4 +1,4 @@
-// Solves of one model that several studies read. Each is run once, by the first that asks.
+// Solves of one model that several studies read. Each is run once, by the first study that needs it.
 //
 // The points of all studies are multiples of one base: `base` equal increments of the parameter
 // over a branch, divided among its sides. N steps are recorded at most at `finest` points for each
@@ -37,8 +37,8 @@ struct Solves {
 // The side at `multiple` points for each of the base.
 BranchSide at_points(BranchSide side, int multiple);
 
-// A solver along a side, at the points that `side` records. Threads that ask for the same run wait
-// for it.
+// A solver along a side, at the points that `side` records. Threads that need the same run
+// wait for it.
 const PathCurve& solved(Solves& solves, const BranchSide& side, const SolverSettings& solver);
 
 // A method along a side with `steps` for each of the base points. Pre: steps <= finest, or a

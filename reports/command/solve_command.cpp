@@ -187,7 +187,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             : std::nullopt;
     compare::SolverSettings solver = request.solver;
     solver.error_bound = error_bound || promise;
-    // A method with equal steps promises no accuracy, so its error is told.
+    // A method with equal steps has no error bound: its error at the end is reported.
     const bool approximate = leg == compare::Leg::recursive && recursive::has_steps(how.method);
     for (const auto& branch : model.branches) {
         compare::BranchErrorBounds said{promise};

@@ -34,7 +34,7 @@ void print_error(fmt::format_string<First, Rest...> format, First&& first, Rest&
 void progress(std::string_view what, double done = std::numeric_limits<double>::quiet_NaN());
 void hide_progress();  // from now on
 
-// What is told after so many seconds: "[######------]  50 %, 12 s left: jounce: energy leg", cut
+// Line of progress after so many seconds: "[######------]  50 %, 12 s left: jounce: energy leg", cut
 // to the width of the terminal; without a bar for a width of zero.
 std::string progress_line(std::string_view what, double done, double seconds, int width);
 

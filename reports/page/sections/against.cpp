@@ -81,7 +81,7 @@ Series curve(const JsonCursor& line, const std::string& title, bool variant) {
     return series;
 }
 
-// Whether two lines can be told apart: by a hundredth of the range of the curve.
+// Whether two lines can be distinguished: by a hundredth of the range of the curve.
 bool is_visible(const JsonCursor& curve) {
     const auto y = curve["base"]["y"].numbers();
     const auto [low, high] = std::ranges::minmax_element(y);
