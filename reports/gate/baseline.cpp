@@ -159,11 +159,50 @@ double shown(double value, const std::string& unit) {
     return parsed_number(text) + 0.0;  // + 0.0: no negative zero
 }
 
+// Figures that say the same of several wheels or springs, on one line:
+// "left, right: toe [deg]". A name of a scene has neither comma nor colon.
+struct FigureLine {
+    std::vector<std::string> channels;
+    std::string unit;
+    json values;
+};
+
+// "left" and "toe" of "left.toe"; no owner without a point.
+std::pair<std::string, std::string> owner_and_output(const std::string& channel) {
+    const auto point = channel.rfind('.');
+    if (point == channel.npos) return {"", channel};
+    return {channel.substr(0, point), channel.substr(point + 1)};
+}
+
+std::string figure_key(const FigureLine& line) {
+    std::string owners;
+    for (const auto& channel : line.channels)
+        owners += (owners.empty() ? "" : ", ") + owner_and_output(channel).first;
+    return fmt::format("{} [{}]",
+                       line.channels.size() == 1
+                           ? line.channels.front()
+                           : owners + ": " + owner_and_output(line.channels.front()).second,
+                       line.unit);
+}
+
+// The channels of a name made by figure_key.
+std::vector<std::string> channels_of(const std::string& name) {
+    const auto colon = name.find(": ");
+    if (colon == name.npos) return {name};
+    std::vector<std::string> channels;
+    for (std::size_t from = 0; from < colon;) {
+        const auto to = std::min(name.find(", ", from), colon);
+        channels.push_back(name.substr(from, to - from) + "." + name.substr(colon + 2));
+        from = to + 2;
+    }
+    return channels;
+}
+
 json figures_json(const compare::Measurement& measurement) {
     json all = json::object();
     for (const auto& branch : measurement.branches) {
         const auto at = compare::stations(branch.a);
-        json lines = json::object();
+        std::vector<FigureLine> lines;
         for (const auto& s : measurement.series) {
             if (!s.main || s.branch != branch.name) continue;
             json values = json::array();
@@ -171,12 +210,22 @@ json figures_json(const compare::Measurement& measurement) {
                 const std::size_t place = s.values.size() == at.size() ? k : at[k];
                 if (place < s.values.size()) values.push_back(shown(s.values[place], s.unit));
             }
-            lines[heading(s)] = values;
+            const auto [owner, output] = owner_and_output(s.channel);
+            const auto same = std::ranges::find_if(lines, [&](const FigureLine& line) {
+                const auto [other, of_other] = owner_and_output(line.channels.front());
+                return !owner.empty() && !other.empty() && output == of_other &&
+                       s.unit == line.unit && values == line.values;
+            });
+            if (same == lines.end())
+                lines.push_back({{s.channel}, s.unit, values});
+            else
+                same->channels.push_back(s.channel);
         }
-        json parameters = json::array();
+        if (lines.empty()) continue;
+        json parameters = json::array(), figures = json::object();
         for (const std::size_t k : at) parameters.push_back(branch.a[k]);
-        if (!lines.empty())
-            all[branch.name] = {{"at", parameters}, {"unit", branch.unit}, {"figures", lines}};
+        for (const auto& line : lines) figures[figure_key(line)] = line.values;
+        all[branch.name] = {{"at", parameters}, {"unit", branch.unit}, {"figures", figures}};
     }
     return all;
 }
@@ -186,14 +235,16 @@ void mark_main(const JsonCursor& figures, compare::Measurement& measurement) {
     for (const auto& [branch, of_branch] : figures.entries()) {
         of_branch.only_keys({"at", "unit", "figures"});
         for (const auto& [key, field] : of_branch["figures"].entries()) {
-            const auto [channel, unit] = channel_and_unit(key, field);
-            bool found = false;
-            for (auto& s : measurement.series)
-                if (s.branch == branch && s.channel == channel && s.unit == unit &&
-                    (s.quantity == Quantity::equilibrium ||
-                     s.quantity == Quantity::characteristic_equilibrium))
-                    s.main = found = true;
-            if (!found) field.fail("is not among the curves");
+            const auto [name, unit] = channel_and_unit(key, field);
+            for (const auto& channel : channels_of(name)) {
+                bool found = false;
+                for (auto& s : measurement.series)
+                    if (s.branch == branch && s.channel == channel && s.unit == unit &&
+                        (s.quantity == Quantity::equilibrium ||
+                         s.quantity == Quantity::characteristic_equilibrium))
+                        s.main = found = true;
+                if (!found) field.fail("is not among the curves");
+            }
         }
     }
 }

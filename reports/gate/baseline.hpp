@@ -20,7 +20,7 @@
 namespace elastocheck::reports {
 
 // Incremented when a field changes its meaning or is removed.
-inline constexpr const char* baseline_schema = "elastocheck/baseline/3";
+inline constexpr const char* baseline_schema = "elastocheck/baseline/4";
 inline constexpr const char* baseline_curves_schema = "elastocheck/baseline-curves/3";
 inline constexpr FileKind baseline_curves_file{"curves of a baseline",
                                                R"({"schema": "elastocheck/baseline-curves/)"};

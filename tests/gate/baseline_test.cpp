@@ -86,6 +86,30 @@ TEST(Baseline, ASmallChangeOfTheSceneRewritesTensOfLines) {
     EXPECT_LT(changed, 90u);
 }
 
+// Both wheels of a symmetric axle are on one line, on two where they differ.
+TEST(Baseline, EqualFiguresShareALine) {
+    BaselineFile file = read_baseline(committed("front_axle"));
+    const auto lines_with = [&](const std::string& key) {
+        const std::string text = baseline_text(file).review;
+        std::size_t count = 0;
+        for (auto at = text.find('"' + key + " [deg]\""); at != text.npos;
+             at = text.find('"' + key + " [deg]\"", at + 1))
+            ++count;
+        return count;
+    };
+    const std::size_t branches = file.baseline.accepted.branches.size();
+    const std::size_t shared = lines_with("left, right: toe");
+    EXPECT_GT(shared, 0u);
+    EXPECT_EQ(lines_with("left.toe"), branches - shared);
+    EXPECT_EQ(lines_with("right.toe"), branches - shared);
+    for (auto& s : file.baseline.accepted.series)
+        if (s.channel == "right.toe" && s.main)
+            for (auto& value : s.values) value += 0.01;
+    EXPECT_EQ(lines_with("left, right: toe"), 0u);
+    EXPECT_EQ(lines_with("left.toe"), branches);
+    EXPECT_EQ(lines_with("right.toe"), branches);
+}
+
 TEST(Baseline, HoldsEveryNumberOfAMeasurement) {
     const Model model = compile(support::scene("pendulum"));
     const auto measurement = compare::measure(model, compare::compare(model));
@@ -164,8 +188,8 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
              {review.substr(0, review.size() / 2), "is not the JSON of a baseline"},
              {review.substr(0, review.size() - 3), "is not the JSON of a baseline"},
              {review + "x", "is not the JSON of a baseline"},
-             {replaced(review, "baseline/3", "baseline/2"),
-              "'elastocheck/baseline/2' cannot be read by this version"},
+             {replaced(review, "baseline/4", "baseline/3"),
+              "'elastocheck/baseline/3' cannot be read by this version"},
              {replaced(review, "\"limits\"", "\"limit\""), "limits: missing"},
              {replaced(review, "\"limits\": []", "\"limits\": [], \"more\": 1"),
               "'more' is not known"},
@@ -190,7 +214,7 @@ TEST(Baseline, WhatIsNotOneIsRefusedWithItsPlace) {
     for (const auto& [text, answer] : std::vector<Damage>{
              {"", "the file is empty"},
              {curves.substr(0, curves.size() / 2), "is not the JSON of a baseline"},
-             {review, "'elastocheck/baseline/3' cannot be read by this version"},
+             {review, "'elastocheck/baseline/4' cannot be read by this version"},
              {replaced(curves, "\"numbers\": [", "\"numbers\": [[\"a\", 1],"),
               "numbers[0]: is not [path, value, unit]"},
              {replaced(curves, "\"numbers\": [", R"("numbers": [["a", "1", "m"],)"),

@@ -99,7 +99,7 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
                            s.values != moving.values)
                            return std::swap(s.values, moving.values);
                }),
-               older = replaced("baseline/3", "baseline/2"),
+               older = replaced("baseline/4", "baseline/3"),
                nothing =
                    edited([](auto&f) { series(f).clear(), f.baseline.accepted.branches.clear(); }),
                other_scene = edited([](auto&f) { f.baseline.accepted.scene = "another"; }),
