@@ -5,7 +5,7 @@
 
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/proofs/certify.hpp"
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -15,32 +15,38 @@ constexpr double degrees = 180 / std::numbers::pi;
 }  // namespace
 
 Table certify_table(const CertifyStudy& study) {
+    using enum Digits;
+    const auto text = [](const char* name, const char* description, Digits digits = words) {
+        return Column{name, "", description, true, digits};
+    };
     Table table{
-        "certify",
-        {{"branch", "", "a side of a branch, from a = 0", true},
-         {"solver", "", "whose points are tested", true},
-         {"outcome", "", "how the solver ended", true},
-         {"points", "", "looked at"},
-         {"proved", "", "a true equilibrium is within the tolerance, and no other near it"},
-         {"excluded", "", "there is provably none within the tolerance"},
-         {"open", "", "neither could be shown"},
-         {"stable", "", "of the proved points: all stiffnesses positive in the whole box"},
-         {"error", "mm", "of the proved points: bound of the error of a body's origin"},
-         {"angle error", "deg", "likewise of its orientation"},
-         {"force error", "N", "likewise of a joint's reaction force"},
+        {text("branch", "a side of a branch, from a = 0", hidden),
+         text("solver", "whose points are tested"),
+         text("outcome", "how the solver ended"),
+         {"points", "", "looked at", false, whole},
+         {"proved", "", "a true equilibrium is within the tolerance, and no other near it", false,
+          whole},
+         {"excluded", "", "there is provably none within the tolerance", false, whole},
+         {"open", "", "neither could be shown", false, whole},
+         {"stable", "", "of the proved points: all stiffnesses positive in the whole box", false,
+          whole},
+         {"error", "mm", "of the proved points: bound of the error of a body's origin", false, size,
+          "off at most"},
+         {"angle error", "deg", "likewise of its orientation", false, size, "at most"},
+         {"force error", "N", "likewise of a joint's reaction force", false, size, "at most"},
          {"moment error", "N·m", "likewise of its moment, about the joint"},
-         {"alone", "mm", "no other equilibrium is within this distance of a proved one"},
+         {"alone", "mm", "no other equilibrium is within this distance of a proved one", false,
+          size, "alone within"},
          {"held", "N, N·m", "bound of the wrench that holds idle modes in the proved equilibria"},
          {"gap", "mm, rad", "bound of the gap of redundant constraints in them"},
-         {"curve", "", "whether one connected curve of equilibria from start to end is proved",
-          true},
-         {"curve pieces", "", "of the tube around the path"},
-         {"tube", "mm", "the curve is within this of the path"},
-         {"limit", "", "whether the limit point that ends the path is proved", true},
+         text("curve", "whether one connected curve of equilibria from start to end is proved"),
+         {"curve pieces", "", "of the tube around the path", false, whole, "pieces"},
+         {"tube", "mm", "the curve is within this of the path", false, size},
+         text("limit", "whether the limit point that ends the path is proved"),
          {"limit from", "", "it lies between this value of the branch's parameter ..."},
          {"limit to", "", "... and this"},
-         {"remark", "", "the first point that is not proved; further statements of the theorem",
-          true}},
+         text("remark", "the first point that is not proved; further statements of the theorem",
+              hidden)},
         {}};
     for (const CertifiedSide& side : study.sides) {
         const Tally& t = side.tally;

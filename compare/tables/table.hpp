@@ -1,64 +1,114 @@
-// One table per study, from which text, CSV, JSON and HTML are rendered, so that all formats agree.
+// A table: what text, CSV, JSON and page are made from, so that all formats agree. Rows of a study
+// are structs, and describe() says once which columns their fields are.
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
-#include "compare/comparison/elements.hpp"
-#include "compare/proofs/certify.hpp"
-#include "compare/studies/findings.hpp"
-#include "compare/studies/formulations.hpp"
-#include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
-#include "compare/studies/study.hpp"
-#include "compare/studies/work_precision.hpp"
-#include "elastocheck/compare.hpp"
+#include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
 
 using Cell = std::variant<double, std::string>;  // a missing number is NaN
 
-struct Column {
-    std::string name;
+// How readers see the cells of a column.
+enum class Digits {
+    hidden,
+    words,
+    whole,    // 120
+    given,    // 1e-06: as entered
+    size,     // 2.6e-13: an error, of which the magnitude matters
+    three,    // 0.137
+    percent,  // 13.7 %, of a share
+};
+
+// What a description says of a field besides its name.
+struct About {
     // "" without a unit, or where it differs from row to row (given in a column `unit`)
-    std::string unit = {};
-    std::string description = {};
+    const char* unit = "";
+    const char* description = "";
+    Digits digits = Digits::hidden;
+    const char* heading = "";  // for readers, instead of the name
+    int place = -1;  // for readers: beside the column at this place of the table; -1: its own
+};
+
+struct Column {
+    std::string name, unit{}, description{};
     bool words = false;  // its cells are texts, not numbers
+    Digits digits = Digits::hidden;
+    std::string heading{};
+    int place = -1;
 };
 
 struct Table {
-    std::string name;  // "deviation", "curves", ...
     std::vector<Column> columns;
     std::vector<std::vector<Cell>> rows;  // one cell per column, of the column's kind
 };
 
-Table channel_table(const std::vector<Channel>& channels);  // definition and sign of every output
-Table settled_table(const std::vector<Channel>& channels, const std::vector<Settled>& settled);
-Table curve_table(const Comparison& comparison);      // every leg, branch and point, all channels
-Table deviation_table(const Comparison& comparison);  // per branch, reading and channel
-Table agreement_table(const Comparison& comparison);  // bounds and objections per branch
-// Kinematics and compliance at the design position, with the error of the recursion; empty without
-// a wheel.
-Table characteristic_table(const Comparison& comparison);
-// Compliance per branch, landmark, leg and point: one row per displacement component, one column
-// per cause.
-Table compliance_table(const Model& model, const Comparison& comparison);
-Table rate_table(const std::vector<RateError>& errors);  // wheel rates
-Table force_table(
-    const std::vector<ElementValue>& values);  // elements and links at the ends of the branches
-// Per branch and main output: the formulation spread beside the deviations in the same scene's
-// comparison.
-Table formulation_table(const FormulationStudy& study, const Comparison& comparison);
-Table study_table(const Study& study);  // per branch side, method, reading and channel
-Table step_table(const Study& study);   // ... and level
-Table gap_table(const std::vector<Channel>& main,
-                const std::vector<BranchAttribution>& attribution);
-Table order_table(const std::vector<BranchOrders>& orders);
-Table precision_table(const PrecisionStudy& study);
-// step counts beyond which refinement gains nothing
-Table floor_table(const PrecisionStudy& study);
-Table trade_table(const Trade& trade);
-Table certify_table(const CertifyStudy& study);  // per branch side and solver
+// The description of a struct S is a function
+//     void describe(auto& field, Described<S> auto& s)
+// that calls field(name, member, About) for every field, in order.
+template <class T, class S>
+concept Described = std::same_as<std::remove_const_t<T>, S>;
+
+inline Cell cell_of(double value) { return value; }
+inline Cell cell_of(const std::string& value) { return value; }
+inline Cell cell_of(bool value) { return std::string(value ? "yes" : ""); }
+inline void set(double& value, const Cell& cell) { value = std::get<double>(cell); }
+inline void set(std::string& value, const Cell& cell) { value = std::get<std::string>(cell); }
+inline void set(bool& value, const Cell& cell) { value = cell == Cell("yes"); }
+
+template <class Row>
+Table table_of(const std::vector<Row>& rows) {
+    Table table;
+    const auto column = [&](const char* name, const auto& value, const About& about = {}) {
+        table.columns.push_back({name, about.unit, about.description,
+                                 !std::is_same_v<decltype(value), const double&>, about.digits,
+                                 about.heading, about.place});
+    };
+    const Row none{};
+    describe(column, none);
+    for (const auto& row : rows) {
+        auto& cells = table.rows.emplace_back();
+        const auto cell = [&](const char*, const auto& value, const About& = {}) {
+            cells.push_back(cell_of(value));
+        };
+        describe(cell, row);
+    }
+    return table;
+}
+
+// Pre: the columns of the table are those of table_of<Row>.
+template <class Row>
+std::vector<Row> rows_of(const Table& table) {
+    std::vector<Row> rows(table.rows.size());
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        auto cell = table.rows[r].begin();
+        const auto take = [&](const char*, auto& value, const About& = {}) { set(value, *cell++); };
+        describe(take, rows[r]);
+    }
+    return rows;
+}
+
+// Distinct values of a field, in the order of the rows.
+template <class Row, class Field>
+std::vector<Field> distinct(const std::vector<Row>& rows, Field Row::*field) {
+    std::vector<Field> all;
+    for (const auto& row : rows)
+        if (std::ranges::find(all, row.*field) == all.end()) all.push_back(row.*field);
+    return all;
+}
+
+// The rows with this value.
+template <class Row, class Field>
+std::vector<Row> where(std::vector<Row> rows, Field Row::*field,
+                       const std::type_identity_t<Field>& value) {
+    std::erase_if(rows, [&](const Row& row) { return row.*field != value; });
+    return rows;
+}
 
 }  // namespace elastocheck::compare

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "compare/proofs/certify.hpp"
+#include "compare/tables/rows.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
@@ -12,6 +13,7 @@
 #include "reports/command/options/running.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/certify_tables.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -15,6 +15,7 @@
 #include "compare/studies/solves.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
+#include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -176,7 +177,7 @@ void add_studies(json& document, const Model& model, const compare::Comparison& 
     document["trade"] = trade_json(trade);
     if (const json profile = recommended(solves, trade); !profile.is_null())
         document["recommended"] = profile;
-    document["orders"] = table_json(order_table(compare::order_study(
+    document["orders"] = table_json(order_rows(compare::order_study(
         solves,
         {.orders = {4, 8, 12, 16, 20, 24}, .threads = threads, .progress = part(0.8, 0.95)})));
     // `elastocheck trade` uses a million steps, which shows more round-off but takes half a minute.

@@ -8,12 +8,14 @@
 #include <optional>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
 #include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
+#include "compare/tables/rows.hpp"
 #include "elastocheck/recursive.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
@@ -33,6 +35,7 @@
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
+#include "reports/tables/render.hpp"
 #include "reports/tables/studies/formulation_tables.hpp"
 #include "reports/tables/studies/order_tables.hpp"
 #include "reports/tables/studies/precision_tables.hpp"
@@ -201,11 +204,11 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
         json part = document_of(loaded, file);
         add_comparison(part, loaded.scene, model, comparison);
         std::vector<NamedContent> files{
-            {"forces.csv", csv(force_table(element_values(model, comparison)))}};
+            {"forces.csv", csv(force_rows(element_values(model, comparison)))}};
         auto reasons = reasons_of(comparison);
         if (study) {
             add_formulations(part, *study, comparison);
-            files.push_back({"formulations.csv", csv(formulation_table(*study, comparison))});
+            files.push_back({"formulations.csv", csv(formulation_rows(*study, comparison))});
             for (const auto& reason : study->inconclusive)
                 reasons.push_back("formulations: " + reason);
         }
@@ -255,7 +258,7 @@ int converge(const std::string& file, const Settings& settings,
             model, {.threads = threads, .progress = compare::part(progress, 0.7, 1)});
     progress("");
     if (!options.methods.empty()) delivery.print_text(study_text(model, study, attribution));
-    delivery.print_text(order_text(order_table(orders)));
+    delivery.print_text(order_text(order_rows(orders)));
     if (of_candidate)
         delivery.print_text("\nthe candidate: " + study_text(model, *of_candidate, {}));
     const bool conclusive = (!of_candidate || of_candidate->conclusive()) &&
@@ -266,19 +269,19 @@ int converge(const std::string& file, const Settings& settings,
         std::vector<NamedContent> files;
         if (!options.methods.empty()) {
             part["convergence"] = study_json(study, attribution);
-            files.push_back({"convergence.csv", csv(study_table(study))});
-            files.push_back({"step_errors.csv", csv(step_table(study))});
-            files.push_back({"attribution.csv", csv(gap_table(study.channels, attribution))});
+            files.push_back({"convergence.csv", csv(study_rows(study))});
+            files.push_back({"step_errors.csv", csv(step_rows(study))});
+            files.push_back({"attribution.csv", csv(gap_rows(study.channels, attribution))});
         }
         if (!orders.empty()) {
-            part["orders"] = table_json(order_table(orders));
-            files.push_back({"orders.csv", csv(order_table(orders))});
+            part["orders"] = table_json(order_rows(orders));
+            files.push_back({"orders.csv", csv(order_rows(orders))});
         }
         auto reasons = study.inconclusive;
         if (of_candidate) {
             part["candidate_convergence"] = study_json(*of_candidate, {});
-            files.push_back({"candidate_convergence.csv", csv(study_table(*of_candidate))});
-            files.push_back({"candidate_step_errors.csv", csv(step_table(*of_candidate))});
+            files.push_back({"candidate_convergence.csv", csv(study_rows(*of_candidate))});
+            files.push_back({"candidate_step_errors.csv", csv(step_rows(*of_candidate))});
             std::ranges::copy(of_candidate->inconclusive, std::back_inserter(reasons));
         }
         if (!conclusive && reasons.empty())
@@ -311,7 +314,7 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     auto reasons = trade.inconclusive;
     if (candidate.wanted()) {
         of_candidate = price_of(candidate, file, loaded, options.tolerance, reasons);
-        delivery.print_text("\nthe candidate\n" + candidate_trade_text(*of_candidate));
+        delivery.print_text("\nthe candidate\n" + text(*of_candidate));
     }
     if (delivery.wants_document()) {
         json part = document_of(loaded, file);
@@ -321,8 +324,8 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     reasons);
         deliver(delivery, std::move(part),
-                {{"trade.csv", csv(trade_table(trade))},
-                 {"precision.csv", csv(precision_table(precision))}});
+                {{"trade.csv", csv(trade_rows(trade))},
+                 {"precision.csv", csv(precision_rows(precision))}});
     }
     return trade.recommendation && reasons.empty() ? fine : could_not_judge;
 }

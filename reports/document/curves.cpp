@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compare/tables/rows.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/tables/render.hpp"
 #include "reports/text/escape.hpp"
@@ -39,18 +40,25 @@ std::string curves_csv(const nlohmann::ordered_json& result, const std::string& 
     return csv;
 }
 
+namespace {
+
+struct SceneForce {
+    std::string scene{};
+    compare::ForceRow force{};
+};
+void describe(auto& field, compare::Described<SceneForce> auto& r) {
+    field("scene", r.scene);
+    describe(field, r.force);
+}
+
+}  // namespace
+
 std::string forces_csv(const nlohmann::ordered_json& result, const std::string& file) {
-    const compare::Table one = compare::force_table({});
-    compare::Table all = one;
-    all.columns.insert(all.columns.begin(), compare::Column{.name = "scene", .words = true});
-    for (const auto& scene : JsonCursor{&result, "", &file}["scenes"].items()) {
-        const auto forces = scene.find("forces");
-        if (!forces) continue;
-        for (auto row : read_table(*forces, one).rows) {
-            row.insert(row.begin(), compare::Cell(scene["name"].text()));
-            all.rows.push_back(std::move(row));
-        }
-    }
+    std::vector<SceneForce> all;
+    for (const auto& scene : JsonCursor{&result, "", &file}["scenes"].items())
+        if (const auto forces = scene.find("forces"))
+            for (const auto& row : read_rows<compare::ForceRow>(*forces))
+                all.push_back({scene["name"].text(), row});
     return csv(all);
 }
 

@@ -4,9 +4,11 @@
 #include <numbers>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
+#include "compare/tables/rows.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "reports/document/drawing.hpp"
@@ -333,12 +335,12 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     scene_document["rate_errors"] = rate_errors_json(compare::rate_errors(model, comparison));
     if (!model.wheels.empty())
         scene_document["characteristics"] = {
-            {"design", table_json(compare::characteristic_table(comparison))},
-            {"compliance", table_json(compare::compliance_table(model, comparison))}};
+            {"design", table_json(characteristic_rows(comparison))},
+            {"compliance", table_json(compliance_rows(model, comparison))}};
     if (!model.wheels.empty() && !comparison.branches.empty())
         scene_document["wheels"] = wheels_json(model, comparison);
     scene_document["elements"] = elements_json(model);
-    scene_document["forces"] = table_json(force_table(element_values(model, comparison)));
+    scene_document["forces"] = table_json(force_rows(element_values(model, comparison)));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 
@@ -423,7 +425,7 @@ void add_formulations(json& scene_document, const compare::FormulationStudy& stu
         for (const auto& why : branch.not_solved) not_solved.push_back(branch.branch + ": " + why);
     scene_document["formulations"] = {{"formulations", formulations},
                                       {"bushings", study.bushings},
-                                      {"spread", table_json(formulation_table(study, comparison))},
+                                      {"spread", table_json(formulation_rows(study, comparison))},
                                       {"not_solved", not_solved},
                                       {"inconclusive", study.inconclusive}};
 }

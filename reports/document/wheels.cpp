@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "compare/outputs/curve.hpp"
+#include "compare/tables/rows.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 #include "reports/tables/elements.hpp"
@@ -187,17 +188,6 @@ json wheel_loads_json(const Model& model, const Branch& branch,
     return loads;
 }
 
-compare::Table static_table() {
-    return {
-        "static alignment",
-        {{.name = "wheel", .words = true},
-         {.name = "output", .words = true},
-         {.name = "unit", .words = true},
-         {.name = "drawn", .description = "in the design position, as the file has it"},
-         {.name = "settled", .description = "in equilibrium, after the trim where there is one"}},
-        {}};
-}
-
 json wheels_json(const Model& model, const compare::Comparison& comparison) {
     json names = json::array(), vehicle = nullptr;
     for (const auto& wheel : model.wheels)
@@ -211,7 +201,7 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
     const compare::Curve& curve = truth_of(comparison.branches[on]);
     const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
     const auto forces = wheel_forces(model, model.branches[on], comparison.channels);
-    compare::Table table = static_table();
+    std::vector<compare::StaticRow> rows;
     for (std::size_t w = 0; w < model.wheels.size(); ++w) {
         const std::string& wheel = model.wheels[w].name;
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
@@ -223,20 +213,19 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
                                       [](const auto&) { return false; }},
                            channel.reads);
             if (mine)
-                table.rows.push_back({wheel,
-                                      channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
-                                      symbol(channel.unit), drawn[c],
-                                      curve.a.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                      : curve.values[curve.start][c]});
+                rows.push_back({wheel, channel.name.substr(wheel.empty() ? 0 : wheel.size() + 1),
+                                symbol(channel.unit), drawn[c],
+                                curve.a.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                : curve.values[curve.start][c]});
         }
         if (const auto loads = loads_of(forces[w], curve); !loads.empty())
-            table.rows.push_back({wheel, "wheel_load", "N",
-                                  std::numeric_limits<double>::quiet_NaN(), loads[curve.start]});
+            rows.push_back({wheel, "wheel_load", "N", std::numeric_limits<double>::quiet_NaN(),
+                            loads[curve.start]});
     }
     return {{"names", names},
             {"vehicle", vehicle},
             {"settled_on", model.branches[on].name},
-            {"static", table_json(table)}};
+            {"static", table_json(rows)}};
 }
 
 json elements_json(const Model& model) {

@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "compare/tables/table.hpp"
 #include "elastocheck/compare.hpp"
 #include "elastocheck/scene.hpp"
 
@@ -24,10 +23,7 @@ nlohmann::ordered_json wheel_loads_json(const Model& model, const Branch& branch
                                         const std::vector<compare::Channel>& channels,
                                         const compare::Curve& curve);
 
-// Columns of "static": an output of a wheel as drawn and as settled at the start of a branch.
-compare::Table static_table();
-
-// "wheels": names and sides, "vehicle", and "static", settled on the first branch that holds no
+// "wheels": names and sides, "vehicle", and "static": rows of compare::StaticRow, settled on the first branch that holds no
 // wheel, else on the first.
 nlohmann::ordered_json wheels_json(const Model& model, const compare::Comparison& comparison);
 

@@ -7,10 +7,9 @@
 #include <map>
 
 #include "compare/outputs/readings.hpp"
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -31,7 +30,7 @@ double worse(double a, double b) {
 
 // Largest error at equal abscissa of a method at the ends of the branches, with as many steps a branch
 // or, as the study has them, fewer. A side of a two-sided branch takes half of them.
-void add_across(MethodRow& row, const JsonCursor& scene, const compare::Table& steps,
+void add_across(MethodRow& row, const JsonCursor& scene, const std::vector<compare::StepRow>& steps,
                 double count) {
     std::map<std::string, double> taken;  // of each side, the most that are not more
     const auto allowed = [&](const std::string& side) {
@@ -39,28 +38,23 @@ void add_across(MethodRow& row, const JsonCursor& scene, const compare::Table& s
             if (branch["name"].text() == side) return count;
         return count / 2;
     };
-    const auto across = [&](std::size_t r) {
-        const std::string& reading = words(steps, r, "reading");
-        return words(steps, r, "method") == row.method &&
-               reading != compare::parameter_reading("N") &&
-               reading != compare::parameter_reading("");
+    const auto across = [&](const compare::StepRow& r) {
+        return r.method == row.method && r.reading != compare::parameter_reading("N") &&
+               r.reading != compare::parameter_reading("");
     };
-    for (std::size_t r = 0; r < steps.rows.size(); ++r)
+    for (const auto& r : steps)
         if (across(r)) {
-            const double n = number(steps, r, "steps");
-            double& most = taken[words(steps, r, "branch")];
-            if (n <= allowed(words(steps, r, "branch"))) most = std::max(most, n);
+            double& most = taken[r.branch];
+            if (r.steps <= allowed(r.branch)) most = std::max(most, r.steps);
         }
     for (const auto& [side, n] : taken)
         if (n == 0) return;  // not all branches were studied with so few steps
     double mm = -1, deg = -1;
-    for (std::size_t r = 0; r < steps.rows.size(); ++r) {
-        const auto n = taken.find(words(steps, r, "branch"));
-        if (!across(r) || n == taken.end() || number(steps, r, "steps") != n->second) continue;
-        const double error = std::abs(number(steps, r, "error"));
-        const std::string& unit = words(steps, r, "unit");
-        if (unit == "mm") mm = worse(mm, error);
-        if (unit == "deg") deg = worse(deg, error);
+    for (const auto& r : steps) {
+        const auto n = taken.find(r.branch);
+        if (!across(r) || n == taken.end() || r.steps != n->second) continue;
+        if (r.unit == "mm") mm = worse(mm, std::abs(r.error));
+        if (r.unit == "deg") deg = worse(deg, std::abs(r.error));
     }
     if (mm >= 0) row.mm_across = mm;
     if (deg >= 0) row.deg_across = deg;
@@ -103,52 +97,47 @@ std::string trust_sentence(const JsonCursor& scene) {
 
 namespace {
 
+using compare::TradeRow;
+
 // Of every method in the study of their cost.
 std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade) {
     std::vector<MethodRow> rows;
-    const auto points = read_table(trade["points"], compare::trade_table({}));
+    const auto points = read_rows<TradeRow>(trade["points"]);
     const auto study = scene.find("convergence");
-    const auto steps = study ? read_table((*study)["step_errors"], compare::step_table({}))
-                             : compare::step_table({});
-    double full = NAN;
-    for (std::size_t r = 0; r < points.rows.size() && std::isnan(full); ++r)
-        if (words(points, r, "leg") == "equilibrium") full = number(points, r, "price");
-    for (const auto& method : distinct(points, "method")) {
+    const auto steps = study ? read_rows<compare::StepRow>((*study)["step_errors"])
+                             : std::vector<compare::StepRow>{};
+    const auto equilibrium = std::ranges::find(points, "equilibrium", &TradeRow::leg);
+    const double full = equilibrium == points.end() ? NAN : equilibrium->price;
+    const auto share = [&](const TradeRow& r) {  // no looser than what is asked
+        return 1e3 * r.told > trade["tolerance"]["mm"].number() ? INFINITY : r.share;
+    };
+    for (const auto& method : distinct(points, &TradeRow::method)) {
+        auto wanted = where(where(points, &TradeRow::method, method), &TradeRow::leg, "recursive");
+        std::erase_if(wanted, [&](const TradeRow& r) { return !std::isfinite(share(r)); });
         // the recommended one, else the cheapest that is good enough, else the cheapest of the most
         // accurate
-        std::optional<std::size_t> best;
+        const TradeRow* best = nullptr;
         double least = INFINITY;
-        const auto share = [&](std::size_t r) {
-            const double own = number(points, r, "told");  // no looser than what is asked
-            return 1e3 * own > trade["tolerance"]["mm"].number() ? INFINITY
-                                                                 : number(points, r, "share");
-        };
-        const auto good = [&](std::size_t r) { return share(r) <= 1; };
-        const auto wanted = [&](std::size_t r) {
-            return words(points, r, "method") == method && words(points, r, "leg") == "recursive" &&
-                   std::isfinite(share(r));
-        };
-        for (std::size_t r = 0; r < points.rows.size(); ++r)
-            if (wanted(r)) least = std::min(least, share(r));
-        for (std::size_t r = 0; r < points.rows.size(); ++r) {
-            if (!wanted(r) || share(r) > std::max(1.0, 1.1 * least)) continue;
-            if (!best || number(points, r, "price") < number(points, *best, "price")) best = r;
-        }
-        for (std::size_t r = 0; r < points.rows.size(); ++r)
-            if (wanted(r) && words(points, r, "recommended") == "yes") best = r;
-        if (!best) continue;
-        const double count = number(points, *best, "steps"), own = number(points, *best, "told");
+        for (const auto& r : wanted) least = std::min(least, share(r));
+        for (const auto& r : wanted)
+            if (share(r) <= std::max(1.0, 1.1 * least) &&
+                (best == nullptr || r.price < best->price))
+                best = &r;
+        for (const auto& r : wanted)
+            if (r.recommended) best = &r;
+        if (best == nullptr) continue;
         MethodRow row{.method = method,
-                      .setting = std::isfinite(count)
-                                     ? whole_number(std::lround(count)) + "\u00a0steps"
-                                 : std::isfinite(own) ? "tolerance " + setting(1e3 * own, "mm")
-                                                      : "",
-                      .mm = number(points, *best, "error"),
-                      .deg = number(points, *best, "angle error"),
-                      .cost = number(points, *best, "price") / full,
-                      .within = good(*best),
-                      .chosen = words(points, *best, "recommended") == "yes"};
-        add_across(row, scene, steps, count);
+                      .setting = std::isfinite(best->steps)
+                                     ? whole_number(std::lround(best->steps)) + "\u00a0steps"
+                                 : std::isfinite(best->told)
+                                     ? "tolerance " + setting(1e3 * best->told, "mm")
+                                     : "",
+                      .mm = best->error,
+                      .deg = best->angle_error,
+                      .cost = best->price / full,
+                      .within = share(*best) <= 1,
+                      .chosen = best->recommended};
+        add_across(row, scene, steps, best->steps);
         rows.push_back(row);
     }
     return rows;

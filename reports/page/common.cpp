@@ -7,7 +7,6 @@
 
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -269,24 +268,20 @@ std::string written(double value, Digits digits) {
         case Digits::size: return number(value, 2);
         case Digits::three: return number(value, 3);
         case Digits::percent: return percent(value);
+        case Digits::hidden:
+        case Digits::words: break;
     }
     return {};
 }
 
 }  // namespace
 
-Table page_table(std::string caption, const compare::Table& table,
-                 const std::vector<ShownColumn>& shown) {
+Table page_table(std::string caption, const compare::Table& table) {
     Table page{.caption = std::move(caption),
                .rows = std::vector<std::vector<std::string>>(table.rows.size())};
-    for (const auto& s : nonempty_columns(table, shown)) {
-        const std::size_t c = column(table, s.column);
-        page.columns.push_back({heading(table, s), table.columns[c].words});
-        for (std::size_t r = 0; r < table.rows.size(); ++r) {
-            const auto* value = std::get_if<double>(&table.rows[r][c]);
-            page.rows[r].push_back(value != nullptr ? written(*value, s.digits)
-                                                    : std::get<std::string>(table.rows[r][c]));
-        }
+    for (const auto& column : shown_columns(table, written)) {
+        page.columns.push_back({column.heading, column.words});
+        for (std::size_t r = 0; r < page.rows.size(); ++r) page.rows[r].push_back(column.cells[r]);
     }
     return page;
 }

@@ -98,9 +98,12 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
 
 double largest(const std::vector<double>& values);  // largest absolute value; NaN if any is NaN
 
-// Columns of a study's table as a table of the page, without empty columns.
-Table page_table(std::string caption, const compare::Table& table,
-                 const std::vector<ShownColumn>& shown);
+// A study's table as a table of the page, without empty columns.
+Table page_table(std::string caption, const compare::Table& table);
+template <class Row>
+Table page_table(std::string caption, const std::vector<Row>& rows) {
+    return page_table(std::move(caption), compare::table_of(rows));
+}
 
 // "tangent, 60 steps"; "adaptive, tolerance 0.1 mm"; "equilibrium solution". For a point or a
 // recommendation.

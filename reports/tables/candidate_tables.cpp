@@ -161,16 +161,18 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
 
 compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
                                      const compare::Comparison& comparison) {
+    using enum Digits;
     compare::Table table{
-        "candidate_trade",
-        {{"steps"},
-         {"error", "mm", "largest of the main outputs at equal load or parameter"},
-         {"angle error", "deg", "likewise"},
-         {"verdict", "", "by the tolerance", true},
-         {"time", "s", "of the whole program"},
-         {"CPU time", "s", "of the whole program"},
-         {"time over the leg's", "", "the equilibrium leg at as many points, within this program"},
-         {"why", "", "it could not be judged", true}},
+        {{"steps", "", "", false, whole},
+         {"error", "mm", "largest of the main outputs at equal load or parameter", false,
+          Digits::size},
+         {"angle error", "deg", "likewise", false, Digits::size},
+         {"verdict", "", "by the tolerance", true, words},
+         {"time", "s", "of the whole program", false, three},
+         {"CPU time", "s", "of the whole program", false, three},
+         {"time over the leg's", "", "the equilibrium leg at as many points, within this program",
+          false, three},
+         {"why", "", "it could not be judged", true, words}},
         {}};
     for (const auto& run : runs) {
         compare::Accuracy worst{NAN, NAN};
@@ -189,17 +191,6 @@ compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
              run.judgement.reasons.empty() ? std::string() : run.judgement.reasons.front()});
     }
     return table;
-}
-
-std::string candidate_trade_text(const compare::Table& table) {
-    return text(table, {{"steps"},
-                        {"error", Digits::size},
-                        {"angle error", Digits::size},
-                        {"verdict"},
-                        {"time", Digits::three},
-                        {"CPU time", Digits::three},
-                        {"time over the leg's", Digits::three},
-                        {"why"}});
 }
 
 std::string candidate_text(const CandidateJudgement& j, const compare::Comparison& comparison) {

@@ -21,7 +21,6 @@ struct CandidateRun {
 };
 compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
                                      const compare::Comparison& comparison);
-std::string candidate_trade_text(const compare::Table& table);
 
 std::string candidate_text(const compare::CandidateJudgement& judgement,
                            const compare::Comparison& comparison);

@@ -4,7 +4,8 @@
 
 #include <iterator>
 
-#include "reports/tables/select.hpp"
+#include "compare/tables/rows.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -14,22 +15,6 @@ std::string claim(const compare::Tolerance& tolerance) {
 }
 
 }  // namespace
-
-const std::vector<ShownColumn> certify_columns{{"solver"},
-                                               {"outcome"},
-                                               {"points", Digits::whole},
-                                               {"proved", Digits::whole},
-                                               {"excluded", Digits::whole},
-                                               {"open", Digits::whole},
-                                               {"stable", Digits::whole},
-                                               {"error", Digits::size, "off at most"},
-                                               {"angle error", Digits::size, "at most"},
-                                               {"force error", Digits::size, "at most"},
-                                               {"alone", Digits::size, "alone within"},
-                                               {"curve"},
-                                               {"curve pieces", Digits::whole, "pieces"},
-                                               {"tube", Digits::size},
-                                               {"limit"}};
 
 std::string what_is_proved(const compare::CertifyStudy& study) {
     return fmt::format(
@@ -69,11 +54,10 @@ std::string sentence(const compare::CertifyStudy& study) {
 std::string certify_text(const compare::CertifyStudy& study) {
     std::string all;
     const auto out = std::back_inserter(all);
-    const compare::Table table = certify_table(study);
-    for (const auto& branch : distinct(table, "branch")) {
-        const compare::Table rows = where(table, "branch", branch);
-        fmt::format_to(out, "branch '{}'\n{}", branch,
-                       text(rows, nonempty_columns(rows, certify_columns)));
+    for (const auto& branch : distinct(study.sides, &compare::CertifiedSide::branch)) {
+        compare::CertifyStudy of_branch = study;
+        of_branch.sides = where(study.sides, &compare::CertifiedSide::branch, branch);
+        fmt::format_to(out, "branch '{}'\n{}", branch, text(certify_table(of_branch)));
         bool said = false;
         for (const auto& side : study.sides) {
             if (side.branch != branch) continue;

@@ -5,12 +5,8 @@
 #include <string>
 
 #include "compare/proofs/certify.hpp"
-#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
-
-// of compare::certify_table, on the terminal and the page
-extern const std::vector<ShownColumn> certify_columns;
 
 // Statement and limits of the proofs in one paragraph, for text and page.
 std::string what_is_proved(const compare::CertifyStudy& study);

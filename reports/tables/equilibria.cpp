@@ -15,25 +15,21 @@ using compare::AllEquilibria;
 
 constexpr double deg = 57.29577951308232;
 
-compare::Column words(std::string name, std::string description = {}) {
-    return {std::move(name), {}, std::move(description), true};
-}
-
 double finite_or_nan(double value) { return std::isfinite(value) ? value : std::nan(""); }
 
 }  // namespace
 
 compare::Table equilibria_table(const AllEquilibria& all) {
+    using enum Digits;
     compare::Table table{
-        "equilibria",
-        {{"number"},
-         words("stability", "by the sign of the least stiffness"),
-         {"away", "mm", "from that of the branch, or from the end of the branch"},
-         {"turned", "deg", "likewise"},
-         words("proof"),
-         {"within", "mm", "proved distance to the true equilibrium, at most"},
-         {"alone within", "mm", "proved: no other equilibrium within this distance"},
-         words("what it means")},
+        {{"number", "", "", false, whole},
+         {"stability", "", "by the sign of the least stiffness", true, words},
+         {"away", "mm", "from that of the branch, or from the end of the branch", false, three},
+         {"turned", "deg", "likewise", false, three},
+         {"proof", "", "", true, words},
+         {"within", "mm", "proved distance to the true equilibrium, at most", false, size},
+         {"alone within", "mm", "proved: no other equilibrium within this distance", false, size},
+         {"what it means", "", "", true, words}},
         {}};
     double number = 0;
     for (const auto& one : all.list)
@@ -55,14 +51,7 @@ std::string equilibria_text(const AllEquilibria& all) {
                                     : "not all of this is proved");
     fmt::format_to(out, "the branch up to there: {}{}{}\n\n", elastocheck::name(all.outcome),
                    all.detail.empty() ? "" : ": ", all.detail);
-    text += reports::text(equilibria_table(all), {{"number", Digits::whole},
-                                                  {"stability"},
-                                                  {"away", Digits::three},
-                                                  {"turned", Digits::three},
-                                                  {"proof"},
-                                                  {"within", Digits::size},
-                                                  {"alone within", Digits::size},
-                                                  {"what it means"}});
+    text += reports::text(equilibria_table(all));
     for (const auto& one : all.list)
         if (one.proof.answer != reference::certificate::Answer::proved)
             fmt::format_to(out, "{}: {}\n", name(one.proof.answer), one.proof.detail);

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
-#include "reports/tables/select.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -36,6 +35,8 @@ std::string written(double value, Digits digits) {
         case Digits::size: return value == 0 ? "0" : fmt::format("{:.1e}", value);
         case Digits::three: return fmt::format("{:.3g}", value);
         case Digits::percent: return fmt::format("{:.1f} %", 100 * value);
+        case Digits::hidden:
+        case Digits::words: break;
     }
     return {};
 }
@@ -81,7 +82,7 @@ json table_json(const Table& table) {
 }
 
 Table read_table(const JsonCursor& field, const Table& like) {
-    Table table{like.name, like.columns, {}};
+    Table table{like.columns, {}};
     std::vector<std::string> names, units;
     for (const auto& column : field["columns"].items()) {
         names.push_back(column["name"].text());
@@ -107,20 +108,28 @@ Table read_table(const JsonCursor& field, const Table& like) {
     return table;
 }
 
-std::string heading(const Table& table, const ShownColumn& shown) {
-    const Column& of = table.columns[column(table, shown.column)];
-    return with_unit(shown.heading.empty() ? of.name : shown.heading, of.unit);
-}
-
-std::vector<ShownColumn> nonempty_columns(const Table& table,
-                                          const std::vector<ShownColumn>& shown) {
-    std::vector<ShownColumn> some;
-    for (const auto& s : shown) {
-        const std::size_t c = column(table, s.column);
-        if (!std::ranges::all_of(table.rows, [&](const auto& row) { return empty(row[c]); }))
-            some.push_back(s);
+std::vector<ShownColumn> shown_columns(const Table& table, std::string (*written)(double, Digits)) {
+    const auto place = [&](std::size_t c) {
+        return table.columns[c].place < 0 ? static_cast<int>(c) : table.columns[c].place;
+    };
+    std::vector<std::size_t> order(table.columns.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, {}, place);
+    std::vector<ShownColumn> shown;
+    for (const std::size_t c : order) {
+        const Column& of = table.columns[c];
+        if (of.digits == Digits::hidden ||
+            std::ranges::all_of(table.rows, [&](const auto& row) { return empty(row[c]); }))
+            continue;
+        shown.push_back(
+            {with_unit(of.heading.empty() ? of.name : of.heading, of.unit), of.words, {}});
+        for (const auto& row : table.rows) {
+            const auto* value = std::get_if<double>(&row[c]);
+            shown.back().cells.push_back(value != nullptr ? written(*value, of.digits)
+                                                          : std::get<std::string>(row[c]));
+        }
     }
-    return some;
+    return shown;
 }
 
 namespace {
@@ -137,34 +146,19 @@ Table in_mm(Table table) {
 
 }  // namespace
 
-std::string text(const Table& given, const std::vector<ShownColumn>& shown) {
-    const Table table = in_mm(given);
-    const auto columns = nonempty_columns(table, shown);
-    std::vector<std::vector<std::string>> lines(table.rows.size() + 1);
-    std::vector<std::size_t> places, widths;
-    for (const auto& s : columns) {
-        const std::size_t c = column(table, s.column);
-        lines[0].push_back(heading(table, s));
-        for (std::size_t r = 0; r < table.rows.size(); ++r) {
-            const Cell& cell = table.rows[r][c];
-            const auto* value = std::get_if<double>(&cell);
-            lines[r + 1].push_back(value != nullptr ? written(*value, s.digits)
-                                                    : std::get<std::string>(cell));
+std::string text(const Table& table) {
+    std::vector<std::string> lines(table.rows.size() + 1);
+    for (const auto& column : shown_columns(in_mm(table), written)) {
+        std::size_t widest = width(column.heading);
+        for (const auto& cell : column.cells) widest = std::max(widest, width(cell));
+        for (std::size_t r = 0; r < lines.size(); ++r) {
+            const std::string& cell = r == 0 ? column.heading : column.cells[r - 1];
+            const std::string gap(widest - width(cell), ' ');
+            lines[r] += column.words ? "  " + cell + gap : "  " + gap + cell;
         }
-        std::size_t widest = 0;
-        for (const auto& line : lines) widest = std::max(widest, width(line.back()));
-        places.push_back(c);
-        widths.push_back(widest);
     }
     std::string all;
-    for (const auto& line : lines) {
-        for (std::size_t c = 0; c < line.size(); ++c) {
-            const std::string gap(widths[c] - width(line[c]), ' ');
-            all += table.columns[places[c]].words ? "  " + line[c] + gap : "  " + gap + line[c];
-        }
-        all.erase(all.find_last_not_of(' ') + 1);
-        all += "\n";
-    }
+    for (auto& line : lines) all += line.erase(line.find_last_not_of(' ') + 1) + "\n";
     return all;
 }
 

@@ -1,5 +1,5 @@
-// Renders a study's table (compare/tables/table.hpp) as CSV, JSON and text, and reads it back from JSON. A
-// missing number is an empty cell, null, and a dash.
+// Renders a table (compare/tables/table.hpp) as CSV, JSON and text, and reads its rows back from
+// JSON. A missing number is an empty cell, null, and a dash.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,6 +11,8 @@
 
 namespace elastocheck::reports {
 
+using compare::Digits;
+
 // First line "error [mm],..."; numbers with the fewest digits that read back exactly.
 std::string csv(const compare::Table& table);
 
@@ -21,30 +23,38 @@ nlohmann::ordered_json table_json(const compare::Table& table);
 // ResultError with the place of a missing column, another unit, or a cell of the wrong kind.
 compare::Table read_table(const JsonCursor& field, const compare::Table& like);
 
-// Number format for readers.
-enum class Digits {
-    whole,    // 120
-    given,    // 1e-06: as entered
-    size,     // 2.6e-13: an error, of which the magnitude matters
-    three,    // 0.137
-    percent,  // 13.7 %, of a share
-};
+template <class Row>
+std::vector<Row> read_rows(const JsonCursor& field) {
+    return compare::rows_of<Row>(read_table(field, compare::table_of<Row>({})));
+}
 
-// A displayed column.
+// A column as readers see it.
 struct ShownColumn {
-    std::string column;
-    Digits digits = Digits::whole;
-    std::string heading = {};  // instead of the column's name
+    std::string heading;  // "error [mm]"
+    bool words = false;
+    std::vector<std::string> cells;
 };
 
-std::string heading(const compare::Table& table, const ShownColumn& shown);  // "error [mm]"
-
-// The columns that are not empty.
-std::vector<ShownColumn> nonempty_columns(const compare::Table& table,
-                                          const std::vector<ShownColumn>& shown);
+// The columns with digits that are not empty, in the order for readers. `written` formats a number.
+std::vector<ShownColumn> shown_columns(const compare::Table& table,
+                                       std::string (*written)(double, Digits));
 
 // For a terminal: a line of headings and the rows, each column as wide as needed, words
-// left-aligned, without empty columns.
-std::string text(const compare::Table& table, const std::vector<ShownColumn>& shown);
+// left-aligned, lengths in mm.
+std::string text(const compare::Table& table);
+
+// The same of rows.
+template <class Row>
+std::string csv(const std::vector<Row>& rows) {
+    return csv(compare::table_of(rows));
+}
+template <class Row>
+nlohmann::ordered_json table_json(const std::vector<Row>& rows) {
+    return table_json(compare::table_of(rows));
+}
+template <class Row>
+std::string text(const std::vector<Row>& rows) {
+    return text(compare::table_of(rows));
+}
 
 }  // namespace elastocheck::reports

@@ -9,7 +9,7 @@
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/outputs/positions.hpp"
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
@@ -176,7 +176,7 @@ TEST(ElementValues, StandAtBothEndsOfEveryBranchWithWhatTheRecursionIsOff) {
         return v.branch == "wheel" && v.element == "tyre";
     })) << "it does not stand there";
     EXPECT_EQ(of("standing", 2000, "suspension.force").a_unit, Unit::newton);
-    EXPECT_EQ(force_table(list).rows.size(), list.size());
+    EXPECT_EQ(force_rows(list).size(), list.size());
 }
 
 // The relative error is the recursion's error over the magnitude of the value.

@@ -1,78 +1,84 @@
 // Tables of studies: complete, and with a reason for every missing number.
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
+#include "compare/studies/order_study.hpp"
+#include "compare/studies/precision.hpp"
+#include "compare/studies/study.hpp"
+#include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
 namespace {
 
-void expect_whole(const Table& table, std::size_t rows) {
-    EXPECT_EQ(table.rows.size(), rows) << table.name;
+template <class Row>
+void expect_whole(const std::vector<Row>& rows, std::size_t count) {
+    const Table table = table_of(rows);
+    EXPECT_EQ(table.rows.size(), count);
     std::set<std::string> names;
     for (const auto& column : table.columns)
         EXPECT_TRUE(names.insert(column.name).second) << column.name;
     for (const auto& row : table.rows) {
-        ASSERT_EQ(row.size(), table.columns.size()) << table.name;
+        ASSERT_EQ(row.size(), table.columns.size());
         for (std::size_t c = 0; c < row.size(); ++c)
             EXPECT_EQ(std::holds_alternative<std::string>(row[c]), table.columns[c].words)
-                << table.name << ": " << table.columns[c].name;
+                << table.columns[c].name;
     }
 }
 
 TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
     const Model model = compile(support::scene("pinned_bar"));
-    const auto all = channels(model);
-    const auto comparison = compare(model);
-    expect_whole(channel_table(all), all.size());
-    expect_whole(curve_table(comparison), 3 * (comparison.branches[0].runs[0].curve.a.size() +
-                                               comparison.branches[1].runs[0].curve.a.size()));
-    expect_whole(deviation_table(comparison), 2 * 2 * all.size());
-    expect_whole(agreement_table(comparison), 2);
-    expect_whole(rate_table(rate_errors(model, comparison)), 0);
-    std::vector<Settled> rest;
-    for (const auto& branch : model.branches) rest.push_back(settled(model, all, branch));
-    expect_whole(settled_table(all, rest), 2 * 3);
     StudyOptions options;
     options.steps = {5, 10, 20, 40, 80};
     const Study s = study(model, options);
-    expect_whole(study_table(s), 2 * 2 * 3);
-    expect_whole(step_table(s), 2 * 2 * 3 * 5);
-    expect_whole(gap_table(s.channels, attribute_gap(model)), 2 * 2 * 3);
+    expect_whole(study_rows(s), 2 * 2 * 3);
+    expect_whole(step_rows(s), 2 * 2 * 3 * 5);
+    expect_whole(gap_rows(s.channels, attribute_gap(model)), 2 * 2 * 3);
     OrderOptions orders;
     orders.orders = {4, 8};
     orders.tolerances = {1e-6};
-    expect_whole(order_table(order_study(model, orders)), 2 * 2);
+    expect_whole(order_rows(order_study(model, orders)), 2 * 2);
     PrecisionOptions precision;
     precision.most_steps = 40;
     const auto arithmetic = precision_study(model, precision);
-    expect_whole(precision_table(arithmetic), 3 * 3 * 2);
-    expect_whole(floor_table(arithmetic), 3 * 3);
+    expect_whole(precision_rows(arithmetic), 3 * 3 * 2);
+    expect_whole(floor_rows(arithmetic), 3 * 3);
     TradeOptions trade_options;
     trade_options.most_steps = 20;
     trade_options.rounds = 0;
     const Trade priced = trade(model, trade_options);
-    expect_whole(trade_table(priced), priced.points.size());
+    expect_whole(trade_rows(priced), priced.points.size());
+}
+
+TEST(Table, RowsReadBackFromTheirCells) {
+    StepRow row{.branch = "b", .steps = 20, .outcome = "converged", .end = 0.5};
+    const auto again = rows_of<StepRow>(table_of(std::vector{row, StepRow{.branch = "c"}}));
+    ASSERT_EQ(again.size(), 2u);
+    EXPECT_EQ(again[0].outcome, "converged");
+    EXPECT_EQ(again[0].end, 0.5);
+    EXPECT_TRUE(std::isnan(again[1].end));
+    const auto trade = rows_of<TradeRow>(table_of(std::vector{TradeRow{.recommended = true}}));
+    EXPECT_TRUE(trade[0].recommended);
+    EXPECT_EQ(where(again, &StepRow::branch, "c").size(), 1u);
+    EXPECT_EQ(distinct(again, &StepRow::branch), (std::vector<std::string>{"b", "c"}));
 }
 
 TEST(Table, WhatIsMissingIsToldInItsRow) {
-    // Constant travel: no reading at equal abscissa, and the row gives the reason.
-    Scene scene = support::scene("pinned_bar");
-    scene.branches.resize(1);
-    scene.branches[0].steps = 10;
-    const Model model = compile(scene);
-    Options options;
-    options.abscissa = model.probes.front().name + "_y";
-    const Table table = deviation_table(compare(model, options));
-    bool told = false;
-    for (const auto& row : table.rows)
-        told = told || std::get<std::string>(row.back()) == options.abscissa + " does not move";
-    EXPECT_TRUE(told);
+    // A level that did not converge: no numbers, and the row gives the reason.
+    const Model model = compile(support::scene("pinned_bar"));
+    Study s = study(model, {.steps = {5, 10, 20, 40, 80}});
+    auto& method = s.branches[0].methods[0];
+    method.equal_parameter.clear();
+    method.not_studied = "with 40 steps: diverged";
+    const auto row = study_rows(s).front();
+    EXPECT_EQ(row.not_studied, "with 40 steps: diverged");
+    EXPECT_TRUE(std::isnan(row.gap) && row.output.empty());
+    EXPECT_EQ(step_rows(s).front().steps, s.branches[0].steps[0]);
 }
 
 }  // namespace

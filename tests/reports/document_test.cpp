@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include "compare/comparison/elements.hpp"
+#include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/document/curves.hpp"
 #include "reports/json/json.hpp"
@@ -110,14 +112,13 @@ TEST(Document, EveryChannelSaysWhatItIs) {
 TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
     const Made made;
     const json whole = json::parse(made.document().dump());
-    const compare::Table told =
-        compare::force_table(compare::element_values(made.model, made.comparison));
+    const auto told = compare::force_rows(compare::element_values(made.model, made.comparison));
     EXPECT_EQ(whole["scenes"][0]["forces"], json::parse(table_json(told).dump()));
     const std::string rows = forces_csv(whole, "result.json");
     EXPECT_TRUE(
         rows.starts_with("scene,branch,end,end unit,element,output,unit,value,error,share [%]\n"))
         << rows;
-    EXPECT_EQ(std::ranges::count(rows, '\n'), 1 + static_cast<long>(told.rows.size()));
+    EXPECT_EQ(std::ranges::count(rows, '\n'), 1 + static_cast<long>(told.size()));
     EXPECT_NE(rows.find(",rebound,-3000,N,K1_coil,K1_coil.force,N,"), std::string::npos) << rows;
 }
 

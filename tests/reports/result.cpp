@@ -6,6 +6,7 @@
 #include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
+#include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
 #include "reports/document/document.hpp"
@@ -65,7 +66,7 @@ const json& sample_result(const std::string& name) {
     part["convergence"] = study_json(study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
     part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
-    part["orders"] = table_json(order_table(compare::order_study(
+    part["orders"] = table_json(order_rows(compare::order_study(
         model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
     add_gap(part, comparison, study);
     add_verdict(part, comparison.compared, reasons_of(comparison));

@@ -1,4 +1,5 @@
 // Tables of studies are the same in every format.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,10 +10,10 @@
 #include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
+#include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/page/common.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/tables/studies/order_tables.hpp"
 #include "reports/tables/studies/precision_tables.hpp"
 #include "reports/tables/studies/study_tables.hpp"
@@ -29,8 +30,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const std::string file = "result.json";
 
 const compare::Table small{
-    "small",
-    {{"who", "", "", true}, {"how", "", "", true}, {"error", "mm"}, {"count"}},
+    {{"who", "", "", true, Digits::words},
+     {"how", "", "", true},
+     {"error", "mm", "", false, Digits::size},
+     {"count", "", "", false, Digits::whole}},
     {{"a, b", "x", 0.1, 3.0}, {"c", "x", nan, 4.0}, {"a, b", "y", 1e-7, 3.0}}};
 
 bool contains(const std::string& text, const std::string& part) {
@@ -52,6 +55,12 @@ void expect_same(const compare::Table& a, const compare::Table& b) {
         }
 }
 
+template <class Row>
+void expect_same_through_json(const std::vector<Row>& rows) {
+    const json read = json::parse(table_json(rows).dump());
+    expect_same(table_of(rows), table_of(read_rows<Row>(JsonCursor{&read, "", &file})));
+}
+
 compare::Table through_json(const compare::Table& table) {
     compare::Table like = table;
     like.rows.clear();
@@ -67,9 +76,8 @@ TEST(Tables, CsvHasAUnitInTheHeaderAndExactNumbers) {
 TEST(Tables, JsonReadsBackAsTheSameTable) {
     expect_same(small, through_json(small));
     const Model model = compile(support::scene("pinned_bar"));
-    const auto orders = compare::order_table(
-        compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6}, .points = 5}));
-    expect_same(orders, through_json(orders));
+    expect_same_through_json(compare::order_rows(
+        compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6}, .points = 5})));
 }
 
 TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
@@ -105,33 +113,26 @@ TEST(Tables, ABrokenTableIsRefusedWithItsPlace) {
 }
 
 TEST(Tables, TextIsAsWideAsItNeedsAndLeavesOutWhatIsEmpty) {
-    EXPECT_EQ(text(small, {{"who"}, {"error", Digits::size}, {"count"}}),
+    EXPECT_EQ(text(small),
               "  who   error [mm]  count\n"
               "  a, b     1.0e-01      3\n"
               "  c              -      4\n"
               "  a, b     1.0e-07      3\n");
-    EXPECT_EQ(text(where(small, "who", "c"), {{"who"}, {"error"}, {"count", Digits::whole, "n"}}),
-              "  who  n\n  c    4\n");
-    EXPECT_THROW((void)text(small, {{"whom"}}), std::logic_error);
-}
-
-TEST(Tables, SpreadPutsRowsThatAgreeBesideEachOther) {
-    const auto wide = spread(small, "how", {"error"});
-    EXPECT_EQ(csv(wide), "who,count,x: error [mm],y: error [mm]\n\"a, b\",3,0.1,1e-07\nc,4,,\n");
-    EXPECT_EQ(distinct(small, "who"), (std::vector<std::string>{"a, b", "c"}));
+    compare::Table one{small.columns, {small.rows[1]}};
+    one.columns[3].heading = "n";
+    EXPECT_EQ(text(one), "  who  n\n  c    4\n");
+    one.columns[3].place = 0, one.columns[0].place = 3;  // in the order for readers
+    EXPECT_EQ(text(one), "  n  who\n  4  c\n");
 }
 
 TEST(Tables, ThePageShowsTheSameColumns) {
-    const compare::Table told{
-        "told",
-        {{"who", "", "", true}, {"told", "m"}, {"count"}, {"share"}, {"empty"}},
-        {{"a", 1e-6, 12345.0, 0.137, nan}, {"b", 2.5e-6, nan, 1e-3, nan}}};
-    const Table page = page_table("Caption", told,
-                                  {{"who"},
-                                   {"told", Digits::given},
-                                   {"count", Digits::whole, "how many"},
-                                   {"share", Digits::percent},
-                                   {"empty"}});
+    const compare::Table told{{{"who", "", "", true, Digits::words},
+                               {"told", "m", "", false, Digits::given},
+                               {"count", "", "", false, Digits::whole, "how many"},
+                               {"share", "", "", false, Digits::percent},
+                               {"empty", "", "", false, Digits::whole}},
+                              {{"a", 1e-6, 12345.0, 0.137, nan}, {"b", 2.5e-6, nan, 1e-3, nan}}};
+    const Table page = page_table("Caption", told);
     ASSERT_EQ(page.columns.size(), 4u);
     EXPECT_TRUE(page.columns[0].words && !page.columns[1].words);
     EXPECT_EQ(page.columns[1].name, "told [m]");
@@ -145,10 +146,10 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
     const Model model = compile(support::scene("pinned_bar"));
     const auto orders =
         compare::order_study(model, {.orders = {2, 8}, .tolerances = {1e-6, 1e-9}, .points = 5});
-    const auto table = compare::order_table(orders);
-    ASSERT_EQ(table.rows.size(), 2 * 4u);
-    EXPECT_EQ(std::ranges::count(csv(table), '\n'), 1 + 2 * 4);
-    const std::string said = order_text(table);
+    const auto rows = compare::order_rows(orders);
+    ASSERT_EQ(rows.size(), 2 * 4u);
+    EXPECT_EQ(std::ranges::count(csv(rows), '\n'), 1 + 2 * 4);
+    const std::string said = order_text(rows);
     for (const auto& branch : orders)
         EXPECT_TRUE(contains(said, "branch '" + branch.branch + "'")) << said;
     EXPECT_TRUE(contains(said, "told [mm]  order  outcome")) << said;
@@ -156,15 +157,15 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
 
     auto failed = orders;
     failed.front().failure = "the energy leg diverged";
-    EXPECT_TRUE(contains(order_text(compare::order_table(failed)),
+    EXPECT_TRUE(contains(order_text(compare::order_rows(failed)),
                          "which is none: the energy leg diverged"));
-    EXPECT_EQ(order_text(compare::order_table({})), "");
+    EXPECT_EQ(order_text({}), "");
 }
 
 TEST(Tables, TheArithmeticStandsSideBySide) {
     const Model model = compile(support::scene("pinned_bar"));
     auto study = compare::precision_study(model, {.most_steps = 160});
-    EXPECT_EQ(std::ranges::count(csv(compare::precision_table(study)), '\n'), 1 + 3 * 3 * 3);
+    EXPECT_EQ(std::ranges::count(csv(compare::precision_rows(study)), '\n'), 1 + 3 * 3 * 3);
     EXPECT_EQ(precision_json(study)["floors"]["rows"].size(), 9u);
     const std::string said = precision_text(study);
     for (const char* words : {"float: |Φ| [mm]", "long double: |Φ| [mm]", "least |Φ| [mm]"})
@@ -178,28 +179,34 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     const Model model = compile(support::scene("bushing_pair"));
     auto study = compare::study(model, {.steps = {20, 40, 80, 160, 320}});
     const auto attribution = compare::attribute_gap(model);
-    for (const auto& table :
-         {study_table(study), step_table(study), gap_table(study.channels, attribution)})
-        expect_same(table, through_json(table));
-    const auto outputs = study_table(study), gaps = gap_table(study.channels, attribution);
+    const auto outputs = study_rows(study);
+    const auto steps = step_rows(study);
+    const auto gaps = gap_rows(study.channels, attribution);
+    expect_same_through_json(outputs);
+    expect_same_through_json(steps);
+    expect_same_through_json(gaps);
     const std::string said = study_text(model, study, attribution);
     for (const char* reading : {"at equal load", "at equal nose_z"}) {
-        EXPECT_EQ(distinct(outputs, "reading"), distinct(gaps, "reading"));
+        EXPECT_EQ(distinct(outputs, &compare::StudyRow::reading),
+                  distinct(gaps, &compare::GapRow::reading));
         EXPECT_TRUE(contains(said, std::string("branch 'lift' ") + reading)) << said;
     }
     EXPECT_EQ(study_json(study, attribution)["gap"].dump(), table_json(gaps).dump());
 
+    std::string beside;  // the step counts stand side by side
+    for (const auto& row : steps)
+        if (row.branch == "lift" && row.output == "nose_x" && row.reading == "at equal load")
+            beside += fmt::format("  {:.1e}", row.largest);
+    EXPECT_TRUE(contains(said, beside)) << beside << '\n' << said;
+
     // The error against the reference is step error plus gap; the contributions add up to the gap.
-    const auto steps = step_table(study);
-    const double gap = number(outputs, 0, "gap");
-    EXPECT_EQ(number(steps, 0, "error"), number(steps, 0, "end") + gap);
-    EXPECT_EQ(number(steps, 4, "largest"), number(outputs, 0, "finest step error"));
-    for (std::size_t r = 0; r < gaps.rows.size(); ++r) {
-        const double whole = number(gaps, r, "whole");
-        EXPECT_EQ(number(gaps, r, "gap, following: nothing"), whole);
-        EXPECT_EQ(number(gaps, r, "gap, following: lever, axis and load"), number(gaps, r, "rest"));
-        if (const double share = number(gaps, r, "lever share"); std::isfinite(share)) {
-            EXPECT_NEAR(share * whole / 100, number(gaps, r, "lever"), 1e-12 * std::abs(whole));
+    EXPECT_EQ(steps[0].error, steps[0].end + outputs[0].gap);
+    EXPECT_EQ(steps[4].largest, outputs[0].finest_step_error);
+    for (const auto& row : gaps) {
+        EXPECT_EQ(row.following.front(), row.whole);
+        EXPECT_EQ(row.following.back(), row.rest);
+        if (std::isfinite(row.lever_share)) {
+            EXPECT_NEAR(row.lever_share * row.whole / 100, row.lever, 1e-12 * std::abs(row.whole));
         }
     }
 
@@ -209,16 +216,7 @@ TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {
     method.outcomes[1] = Outcome::diverged;
     method.not_studied = "with 40 steps: diverged";
     EXPECT_TRUE(contains(study_text(model, study, attribution), "with 40 steps: diverged"));
-    EXPECT_EQ(words(step_table(study), 1, "outcome"), "diverged");
-}
-
-TEST(Tables, NumbersStandSideBySideToo) {
-    const compare::Table levels{
-        "levels",
-        {{"who", "", "", true}, {"steps"}, {"error", "mm"}, {"other"}},
-        {{"a", 10.0, 0.5, 1.0}, {"a", 20.0, 0.25, 2.0}, {"b", 10.0, 1.0, 3.0}}};
-    EXPECT_EQ(csv(spread(only(levels, {"who", "steps", "error"}), "steps", {"error"})),
-              "who,10: error [mm],20: error [mm]\na,0.5,0.25\nb,1,\n");
+    EXPECT_EQ(step_rows(study)[1].outcome, "diverged");
 }
 
 TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
@@ -236,11 +234,11 @@ TEST(Tables, ATradeIsSaidAlikeInEveryFormat) {
     EXPECT_TRUE(contains(said, "diverged")) << said;
     EXPECT_FALSE(contains(said, "error [deg]")) << said;  // a pendulum's outputs are positions
 
-    const auto table = compare::trade_table(trade);
-    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(table), '\n')),
+    const auto rows = compare::trade_rows(trade);
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv(rows), '\n')),
               trade.points.size() + 1);
-    EXPECT_EQ(words(table, trade.recommendation->point, "recommended"), "yes");
-    expect_same(table, through_json(table));
+    EXPECT_TRUE(rows[trade.recommendation->point].recommended);
+    expect_same_through_json(rows);
     const auto document = json::parse(trade_json(trade).dump());
     EXPECT_TRUE(document["tolerance"]["deg"].is_null());
     EXPECT_EQ(document["recommendation"]["position"], trade.recommendation->point);

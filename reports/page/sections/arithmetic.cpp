@@ -1,9 +1,9 @@
 // Section: step counts beyond which round-off dominates.
 #include <fmt/format.h>
 
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/studies/precision_tables.hpp"
 
 namespace elastocheck::reports {
 
@@ -17,7 +17,7 @@ std::optional<Section> arithmetic_section(const JsonCursor& scene) {
         page_table(fmt::format("Smallest errors over the number of steps, and the number of steps "
                                "beyond which the error no longer falls; end of branch {}",
                                branch),
-                   read_table((*study)["floors"], compare::floor_table({})), floor_columns));
+                   read_rows<compare::FloorRow>((*study)["floors"])));
     return section;
 }
 

@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/select.hpp"
-#include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
+
+using compare::StepRow;
+using compare::StudyRow;
 
 double worse(double a, double b) {
     return std::isnan(a) || std::isnan(b) ? NAN : std::max(a, std::abs(b));
@@ -21,21 +23,20 @@ double worse(double a, double b) {
 struct Levels {
     std::vector<double> steps, phi, step, truth;
 };
-Levels levels_of(const compare::Table& table) {
+Levels levels_of(const std::vector<StepRow>& rows) {
     Levels levels;
-    for (std::size_t r = 0; r < table.rows.size(); ++r) {
-        if (words(table, r, "unit") != "mm") continue;
-        const double steps = number(table, r, "steps");
-        const auto at =
-            static_cast<std::size_t>(std::ranges::find(levels.steps, steps) - levels.steps.begin());
+    for (const auto& row : rows) {
+        if (row.unit != "mm") continue;
+        const auto at = static_cast<std::size_t>(std::ranges::find(levels.steps, row.steps) -
+                                                 levels.steps.begin());
         if (at == levels.steps.size()) {
-            levels.steps.push_back(steps);
-            levels.phi.push_back(1e3 * number(table, r, "constraint error"));
+            levels.steps.push_back(row.steps);
+            levels.phi.push_back(1e3 * row.constraint_error);
             levels.step.push_back(0);
             levels.truth.push_back(0);
         }
-        levels.step[at] = worse(levels.step[at], number(table, r, "end"));
-        levels.truth[at] = worse(levels.truth[at], number(table, r, "error"));
+        levels.step[at] = worse(levels.step[at], row.end);
+        levels.truth[at] = worse(levels.truth[at], row.error);
     }
     return levels;
 }
@@ -52,15 +53,15 @@ std::vector<std::vector<double>> rows(const std::vector<double>& steps,
 std::string readable(const std::string& reading) { return ChannelInfo{reading, ""}.label(); }
 
 // Step errors of one method over one branch.
-std::optional<FigureGroup> group(const std::string& branch, const compare::Table& table) {
+std::optional<FigureGroup> group(const std::string& branch, const std::vector<StepRow>& steps_of) {
     FigureGroup group;
     group.table.caption =
         fmt::format("Errors at the end of branch {}, published recursion [mm]", branch);
     group.table.columns = {{"steps"}, {"|Φ|, eq. (31)"}};
     group.table.folded = true;
     std::vector<Levels> both;
-    for (const auto& reading : distinct(table, "reading")) {
-        const Levels levels = levels_of(where(table, "reading", reading));
+    for (const auto& reading : distinct(steps_of, &StepRow::reading)) {
+        const Levels levels = levels_of(where(steps_of, &StepRow::reading, reading));
         if (levels.steps.empty()) continue;
         const auto& [steps, phi, step, truth] = levels;
         const std::string name = readable(reading);
@@ -114,25 +115,23 @@ std::optional<Section> convergence_section(const JsonCursor& scene) {
                     .title = "Convergence with the number of steps",
                     .part = Part::evidence};
     section.words["reasons"] = (*study)["reasons"].texts();
-    const auto outputs = read_table((*study)["outputs"], compare::study_table({}));
-    const auto steps = read_table((*study)["step_errors"], compare::step_table({}));
-    for (const auto& branch : distinct(outputs, "branch")) {
+    const auto outputs = read_rows<StudyRow>((*study)["outputs"]);
+    const auto steps =
+        where(read_rows<StepRow>((*study)["step_errors"]), &StepRow::method, "published");
+    for (const auto& branch : distinct(outputs, &StudyRow::branch)) {
         if (!leads(scene, branch)) continue;
-        const auto levels = where(where(steps, "branch", branch), "method", "published");
-        if (auto made = group(branch, levels)) section.figures.push_back(std::move(*made));
-        const auto found = where(outputs, "branch", branch);
-        const auto readings = distinct(found, "reading");
-        const auto published = where(found, "method", "published");
-        for (std::size_t r = 0; r < published.rows.size(); ++r)
-            if (const auto& why = words(published, r, "not studied");
-                !why.empty() && words(published, r, "reading") != readings.front())
-                section.words["notes"].push_back(
-                    {{"branch", branch},
-                     {"reading", readable(words(published, r, "reading"))},
-                     {"why", why}});
+        if (auto made = group(branch, where(steps, &StepRow::branch, branch)))
+            section.figures.push_back(std::move(*made));
+        const auto found = where(outputs, &StudyRow::branch, branch);
+        const std::string reading = found.front().reading;
+        for (const auto& row : found)
+            if (row.method == "published" && !row.not_studied.empty() && row.reading != reading)
+                section.words["notes"].push_back({{"branch", branch},
+                                                  {"reading", readable(row.reading)},
+                                                  {"why", row.not_studied}});
         section.tables.push_back(
-            page_table(fmt::format("Orders and gaps, branch {}, {}", branch, readings.front()),
-                       where(found, "reading", readings.front()), study_columns));
+            page_table(fmt::format("Orders and gaps, branch {}, {}", branch, reading),
+                       where(found, &StudyRow::reading, reading)));
         section.tables.back().folded = true;
     }
     return section;

@@ -5,11 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/render.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -46,10 +44,14 @@ Elements elements_of(const JsonCursor& scene) {
     return elements;
 }
 
-// Rows of the largest force and the largest moment of an element; none where it has neither.
+using compare::ForceRow;
+
+double size_of(const ForceRow* row) { return row == nullptr ? 0 : std::abs(row->value); }
+
+// The largest force and the largest moment of an element; null where it has none.
 struct Largest {
     std::string element;
-    std::optional<std::size_t> force, moment;
+    const ForceRow *force = nullptr, *moment = nullptr;
 };
 
 }  // namespace
@@ -57,26 +59,24 @@ struct Largest {
 std::optional<Section> forces_section(const JsonCursor& scene) {
     const auto field = scene.find("forces");
     if (!field) return std::nullopt;
-    const compare::Table forces = read_table(*field, compare::force_table({}));
+    const auto forces = read_rows<ForceRow>(*field);
     const Elements elements = elements_of(scene);
-    const auto size = [&](std::size_t r) { return std::abs(number(forces, r, "value")); };
     std::vector<Largest> largest;
-    std::map<std::tuple<std::string, double, std::string>, std::size_t> at;  // branch, end, output
-    for (std::size_t r = 0; r < forces.rows.size(); ++r) {
-        at[{words(forces, r, "branch"), number(forces, r, "end"), words(forces, r, "output")}] = r;
-        const std::string& unit = words(forces, r, "unit");
-        if ((unit != "N" && unit != "N·m") || !(size(r) > nothing)) continue;
-        std::string name = words(forces, r, "element");
+    std::map<std::tuple<std::string, double, std::string>, const ForceRow*> at;
+    for (const auto& r : forces) {
+        at[{r.branch, r.end, r.output}] = &r;
+        if ((r.unit != "N" && r.unit != "N·m") || !(size_of(&r) > nothing)) continue;
+        std::string name = r.element;
         if (const auto beam = elements.beam_of.find(name); beam != elements.beam_of.end())
             name = beam->second;
         auto known = std::ranges::find(largest, name, &Largest::element);
-        if (known == largest.end()) known = largest.insert(largest.end(), Largest{name, {}, {}});
-        auto& row = unit == "N" ? known->force : known->moment;
-        if (!row || size(r) > size(*row)) row = r;
+        if (known == largest.end()) known = largest.insert(largest.end(), Largest{name});
+        auto& row = r.unit == "N" ? known->force : known->moment;
+        if (size_of(&r) > size_of(row)) row = &r;
     }
     if (largest.empty()) return std::nullopt;
     std::ranges::stable_sort(largest, std::ranges::greater{},
-                             [&](const Largest& l) { return l.force ? size(*l.force) : 0; });
+                             [&](const Largest& l) { return size_of(l.force); });
     Section section{
         .id = "forces", .title = "Forces in bushings, springs and links", .part = Part::behaviour};
     if (largest.size() > most_elements) {
@@ -91,32 +91,27 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
                             {"largest moment [N·m]"},
                             {"where", true},
                             {"deformed by"}}};
-    const auto cells = [&](std::optional<std::size_t> r) -> std::vector<std::string> {
-        if (!r) return {"", "", ""};
-        const std::string &output = words(forces, *r, "output"),
-                          &element = words(forces, *r, "element");
-        const std::string deformation = deformation_of(output);
-        const auto deformed =
-            at.find({words(forces, *r, "branch"), number(forces, *r, "end"), deformation});
+    const auto cells = [&](const ForceRow* r) -> std::vector<std::string> {
+        if (r == nullptr) return {"", "", ""};
+        const auto deformed = at.find({r->branch, r->end, deformation_of(r->output)});
         std::string by;
         if (deformed != at.end()) {
-            double value = number(forces, deformed->second, "value");
-            const auto stop = elements.clearance.find(element);
+            double value = deformed->second->value;
+            const auto stop = elements.clearance.find(r->element);
             if (stop != elements.clearance.end())
                 value = std::max(0.0, std::abs(value) - stop->second);
-            by = quantity(value, words(forces, deformed->second, "unit"));
+            by = quantity(value, deformed->second->unit);
         }
-        const char axis = output.back();
+        const char axis = r->output.back();
         return {
-            number(number(forces, *r, "value")),
+            number(r->value),
             fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
-                        words(forces, *r, "branch"), number(number(forces, *r, "end")),
-                        words(forces, *r, "end unit")),
+                        r->branch, number(r->end), r->end_unit),
             by};
     };
     for (const auto& l : largest) {
         std::vector<std::string> row{l.element};
-        for (const auto r : {l.force, l.moment}) {
+        for (const auto* r : {l.force, l.moment}) {
             const auto three = cells(r);
             row.insert(row.end(), three.begin(), three.end());
         }

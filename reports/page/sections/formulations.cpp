@@ -2,11 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/render.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -17,8 +15,6 @@ std::optional<Section> formulations_section(const JsonCursor& scene) {
     Section section{.id = "formulations",
                     .title = "Differences between bushing formulations of tools",
                     .part = Part::evidence};
-    const compare::Table spread =
-        read_table((*study)["spread"], compare::formulation_table({}, {}));
     Table table{
         .caption =
             "Largest minus smallest value over the formulations, at the point where it is largest",
@@ -32,18 +28,12 @@ std::optional<Section> formulations_section(const JsonCursor& scene) {
                     {"published deviation"}},
         .folded = true};
     double most = 1e-9;  // [mm]: smaller spreads are rounding
-    for (std::size_t r = 0; r < spread.rows.size(); ++r) {
-        const double value = reports::number(spread, r, "spread");
-        const std::string& unit = words(spread, r, "unit");
-        table.rows.push_back({words(spread, r, "branch"), words(spread, r, "output"),
-                              deviation_number(value), unit, words(spread, r, "smallest by"),
-                              words(spread, r, "largest by"),
-                              number(reports::number(spread, r, "references apart"), 2),
-                              number(reports::number(spread, r, "deviation"), 2)});
-        if (unit != "mm" || !(value > most)) continue;
-        most = value;
-        section.words["most"] = {{"value", quantity(value, unit)},
-                                 {"channel", words(spread, r, "output")}};
+    for (const auto& r : read_rows<compare::FormulationRow>((*study)["spread"])) {
+        table.rows.push_back({r.branch, r.output, deviation_number(r.spread), r.unit, r.smallest_by,
+                              r.largest_by, number(r.apart, 2), number(r.deviation, 2)});
+        if (r.unit != "mm" || !(r.spread > most)) continue;
+        most = r.spread;
+        section.words["most"] = {{"value", quantity(r.spread, r.unit)}, {"channel", r.output}};
     }
     section.words["formulations"] = enumerated((*study)["formulations"].texts());
     section.words["bushings"] = enumerated((*study)["bushings"].texts());

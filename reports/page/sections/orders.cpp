@@ -5,10 +5,9 @@
 #include <map>
 #include <numbers>
 
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/select.hpp"
-#include "reports/tables/studies/order_tables.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -16,12 +15,11 @@ namespace {
 
 constexpr Colour order_colours[] = {vermilion, blue, green, purple};
 
-FigureGroup group(const std::string& branch, const compare::Table& levels) {
+FigureGroup group(const std::string& branch, const std::vector<compare::OrderRow>& levels) {
     FigureGroup group;
     group.caption = fmt::format("Number of expansions of branch {} over their order.", branch);
-    group.table =
-        page_table(fmt::format("Series over branch {}; error to the full solution", branch), levels,
-                   order_columns);
+    group.table = page_table(
+        fmt::format("Series over branch {}; error to the full solution", branch), levels);
     group.table.folded = true;
     Figure figure{.id = fmt::format("orders-{}", slug(branch)),
                   .title = branch,
@@ -30,11 +28,9 @@ FigureGroup group(const std::string& branch, const compare::Table& levels) {
                   .y = "expansions",
                   .log_y = true};
     std::map<double, std::vector<std::vector<double>>, std::greater<>> by_tolerance;
-    for (std::size_t r = 0; r < levels.rows.size(); ++r)
-        if (const double tolerance = number(levels, r, "told");
-            std::isfinite(tolerance) && words(levels, r, "outcome") == name(Outcome::converged))
-            by_tolerance[tolerance].push_back(
-                {number(levels, r, "order"), number(levels, r, "expansions")});
+    for (const auto& level : levels)
+        if (std::isfinite(level.told) && level.outcome == "converged")
+            by_tolerance[level.told].push_back({level.order, level.expansions});
     std::vector<std::string> listed;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
@@ -63,18 +59,15 @@ std::optional<Section> orders_section(const JsonCursor& scene) {
                     .title = "Series method: the branch as power series",
                     .part = Part::evidence};
     auto& nearest = section.words["nearest"] = nlohmann::ordered_json::array();
-    const auto table = read_table(*orders, compare::order_table({}));
-    for (const auto& branch : distinct(table, "branch")) {
+    const auto all = read_rows<compare::OrderRow>(*orders);
+    for (const auto& branch : distinct(all, &compare::OrderRow::branch)) {
         if (!leads(scene, branch)) continue;
-        const auto levels = where(table, "branch", branch);
+        const auto levels = where(all, &compare::OrderRow::branch, branch);
         section.figures.push_back(group(branch, levels));
-        const std::size_t last = levels.rows.size() - 1;
-        if (const double radius = number(levels, last, "singularity"); std::isfinite(radius))
-            nearest.push_back(
-                {{"branch", branch},
-                 {"radius", number(radius, 3)},
-                 {"degrees",
-                  number(number(levels, last, "its angle") * 180 / std::numbers::pi, 2)}});
+        if (const auto& last = levels.back(); std::isfinite(last.singularity))
+            nearest.push_back({{"branch", branch},
+                               {"radius", number(last.singularity, 3)},
+                               {"degrees", number(last.its_angle * 180 / std::numbers::pi, 2)}});
     }
     return section;
 }

@@ -7,26 +7,29 @@
 #include <numbers>
 #include <set>
 
-#include "compare/tables/table.hpp"
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
+using compare::CharacteristicRow;
+using compare::ComplianceRow;
+using Design = std::vector<CharacteristicRow>;
+
 // A rate of each wheel, or of a spring, or of the whole scene.
 struct Rate {
     std::string name, unit, definition;
-    std::vector<std::size_t> rows{};  // of the table, one a wheel in their order; else one
-    bool of_all = false;              // of no wheel or element alone
+    std::vector<CharacteristicRow> rows{};  // one a wheel in their order; else one
+    bool of_all = false;                    // of no wheel or element alone
 };
 
-std::vector<Rate> rates_of(const compare::Table& design, const std::vector<WheelInfo>& wheels) {
+std::vector<Rate> rates_of(const Design& design, const std::vector<WheelInfo>& wheels) {
     std::vector<Rate> rates;
-    for (std::size_t r = 0; r < design.rows.size(); ++r) {
-        const ChannelInfo channel{words(design, r, "output"), words(design, r, "unit")};
+    for (const auto& r : design) {
+        const ChannelInfo channel{r.output, r.unit};
         const bool of_wheel =
             std::ranges::find(wheels, channel.owner(), &WheelInfo::name) != wheels.end();
         const std::string name = as_words(of_wheel ? channel.quantity() : channel.name);
@@ -34,26 +37,23 @@ std::vector<Rate> rates_of(const compare::Table& design, const std::vector<Wheel
         if (known != rates.end())
             known->rows.push_back(r);
         else
-            rates.push_back(
-                {name, channel.unit, words(design, r, "definition"), {r}, channel.owner().empty()});
+            rates.push_back({name, r.unit, r.definition, {r}, channel.owner().empty()});
     }
     return rates;
 }
 
-std::string value_at(const compare::Table& design, std::size_t row) {
-    return words(design, row, "undefined").empty() ? number(number(design, row, "value"), 4)
-                                                   : "none";
+std::string value_at(const CharacteristicRow& row) {
+    return row.undefined.empty() ? number(row.value, 4) : "none";
 }
 
-double value_of(const compare::Table& design, const WheelInfo& wheel, std::string_view rate) {
-    for (std::size_t r = 0; r < design.rows.size(); ++r)
-        if (words(design, r, "output") == wheel.channel(rate)) return number(design, r, "value");
-    return NAN;
+double value_of(const Design& design, const WheelInfo& wheel, std::string_view rate) {
+    const auto row = std::ranges::find(design, wheel.channel(rate), &CharacteristicRow::output);
+    return row == design.end() ? NAN : row->value;
 }
 
 // Roll stiffness of an axle from the rates of its wheels in roll: each wheel moves by half the track
 // per unit of roll, K = k t² / 2. What resists roll and not heave is the anti-roll bar's.
-void add_roll_stiffness(Table& table, const JsonCursor& scene, const compare::Table& design,
+void add_roll_stiffness(Table& table, const JsonCursor& scene, const Design& design,
                         const std::vector<WheelInfo>& wheels) {
     if (wheels.size() != 2) return;
     const auto sweep = leading_sweep(scene);
@@ -81,7 +81,7 @@ void add_roll_stiffness(Table& table, const JsonCursor& scene, const compare::Ta
             "roll");
 }
 
-Table rates_table(const JsonCursor& scene, const compare::Table& design,
+Table rates_table(const JsonCursor& scene, const Design& design,
                   const std::vector<WheelInfo>& wheels) {
     Table table{.caption = "Rates at the design position", .columns = {{"rate", true}}};
     if (wheels.size() < 2)
@@ -94,11 +94,11 @@ Table rates_table(const JsonCursor& scene, const compare::Table& design,
     for (const auto& rate : rates_of(design, wheels)) {
         std::vector<std::string> row{rate.name};
         for (std::size_t k = 0; k < width; ++k)
-            row.push_back(k < rate.rows.size() ? value_at(design, rate.rows[k])
+            row.push_back(k < rate.rows.size() ? value_at(rate.rows[k])
                           : rate.of_all        ? row.back()
                                                : "");
         row.push_back(rate.unit == "-" ? "" : rate.unit);
-        const std::string& undefined = words(design, rate.rows[0], "undefined");
+        const std::string& undefined = rate.rows[0].undefined;
         row.push_back(undefined.empty() ? rate.definition
                                         : fmt::format("{}. Here: {}", rate.definition, undefined));
         table.rows.push_back(std::move(row));
@@ -110,60 +110,49 @@ Table rates_table(const JsonCursor& scene, const compare::Table& design,
 // ---- Evidence
 
 // Compliance matrix of the equilibrium leg at the start of the first branch.
-std::optional<Table> matrix_table(const compare::Table& compliance, std::string_view point) {
-    std::vector<std::size_t> rows;
-    for (std::size_t r = 0; r < compliance.rows.size(); ++r)
-        if (words(compliance, r, "leg") == "equilibrium" &&
-            words(compliance, r, "point") == point &&
-            words(compliance, r, "branch") == words(compliance, 0, "branch") &&
-            number(compliance, r, "a") == 0)
-            rows.push_back(r);
+std::optional<Table> matrix_table(const std::vector<ComplianceRow>& compliance,
+                                  std::string_view point) {
+    auto rows = compliance;
+    std::erase_if(rows, [&](const ComplianceRow& r) {
+        return r.leg != "equilibrium" || r.point != point ||
+               r.branch != compliance.front().branch || r.a != 0;
+    });
     if (rows.empty()) return std::nullopt;
     Table table{.caption = fmt::format("Compliance at the {}: displacement [mm] and rotation [deg] "
                                        "per kN and per 100 N·m, the wheel free",
                                        point),
                 .columns = {{"answer", true}},
                 .folded = true};
-    const bool several = std::ranges::any_of(rows, [&](auto r) {
-        return words(compliance, r, "wheel") != words(compliance, rows[0], "wheel");
-    });
+    const bool several = distinct(rows, &ComplianceRow::wheel).size() > 1;
     if (several) table.columns = {{"wheel", true}, {"answer", true}, {"loaded wheel", true}};
-    constexpr const char* causes[] = {"force x",  "force y",  "force z",
-                                      "moment x", "moment y", "moment z"};
-    for (const char* cause : causes) table.columns.push_back({cause});
-    for (const auto r : rows) {
-        std::vector<std::string> row{words(compliance, r, "answer")};
-        if (several)
-            row = {words(compliance, r, "wheel"), row[0], words(compliance, r, "loaded wheel")};
-        for (const char* cause : causes) {
-            const double value = number(compliance, r, cause);
+    for (const char* cause : ComplianceRow::causes) table.columns.push_back({cause});
+    for (const auto& r : rows) {
+        std::vector<std::string> row{r.answer};
+        if (several) row = {r.wheel, r.answer, r.loaded_wheel};
+        for (const double value : r.by_cause)
             row.push_back(std::abs(value) < 1e-9 ? "0" : number(value, 3));
-        }
         table.rows.push_back(std::move(row));
     }
     return table;
 }
 
 // Errors of the recursion in the rates. No share of a value that its error exceeds: it is zero.
-Table errors_table(const compare::Table& design) {
+Table errors_table(const Design& design) {
     Table table{.caption = "Error of the published recursion in the rates at the design position",
                 .columns = {{"rate", true}, {"value"}, {"unit", true}, {"error"}, {"share"}},
                 .folded = true};
-    for (std::size_t r = 0; r < design.rows.size(); ++r) {
-        const double off = number(design, r, "off"), share = number(design, r, "off %") / 100;
-        table.rows.push_back({as_words(words(design, r, "output")), value_at(design, r),
-                              words(design, r, "unit"),
-                              std::isfinite(off) ? deviation_number(off) : "–",
+    for (const auto& r : design) {
+        const double share = r.off_percent / 100;
+        table.rows.push_back({as_words(r.output), value_at(r), r.unit,
+                              std::isfinite(r.off) ? deviation_number(r.off) : "–",
                               std::abs(share) <= 1 ? percent(share) : "–"});
     }
     return table;
 }
 
-std::optional<compare::Table> design_of(const JsonCursor& scene) {
+Design design_of(const JsonCursor& scene) {
     const auto found = scene.find("characteristics");
-    if (!found) return std::nullopt;
-    auto table = read_table((*found)["design"], compare::characteristic_table({}));
-    return table.rows.empty() ? std::nullopt : std::optional(std::move(table));
+    return found ? read_rows<CharacteristicRow>((*found)["design"]) : Design{};
 }
 
 }  // namespace
@@ -171,12 +160,12 @@ std::optional<compare::Table> design_of(const JsonCursor& scene) {
 Table key_rates(const JsonCursor& scene) {
     Table table{.caption = "Key figures at the design position"};
     const auto design = design_of(scene);
-    if (!design) return table;
+    if (design.empty()) return table;
     const std::set<std::string> wanted{
         "wheel rate",  "ride rate",  "roll centre height",  "bump steer",
         "bump camber", "roll steer", "lateral force steer", "braking force steer",
         "anti dive",   "anti squat", "steer gradient",      "roll stiffness at the wheels"};
-    const Table all = rates_table(scene, *design, wheels_of(scene));
+    const Table all = rates_table(scene, design, wheels_of(scene));
     table.columns.assign(all.columns.begin(), all.columns.end() - 1);
     for (const auto& row : all.rows)
         if (wanted.contains(row[0])) table.rows.emplace_back(row.begin(), row.end() - 1);
@@ -185,29 +174,27 @@ Table key_rates(const JsonCursor& scene) {
 
 std::optional<Section> rates_section(const JsonCursor& scene) {
     const auto design = design_of(scene);
-    if (!design) return std::nullopt;
+    if (design.empty()) return std::nullopt;
     Section section{.id = "rates", .title = "Rates", .part = Part::behaviour};
-    section.tables.push_back(rates_table(scene, *design, wheels_of(scene)));
+    section.tables.push_back(rates_table(scene, design, wheels_of(scene)));
     return section;
 }
 
 std::optional<Section> matrices_section(const JsonCursor& scene) {
     const auto design = design_of(scene);
-    if (!design) return std::nullopt;
+    if (design.empty()) return std::nullopt;
     Section section{.id = "matrices",
                     .title = "Compliance matrices, and the recursion’s rates",
                     .part = Part::evidence};
-    const auto compliance =
-        read_table(scene["characteristics"]["compliance"], compare::compliance_table({}, {}));
+    const auto compliance = read_rows<ComplianceRow>(scene["characteristics"]["compliance"]);
     for (const char* point : {"contact patch", "wheel centre"})
         if (auto table = matrix_table(compliance, point))
             section.tables.push_back(std::move(*table));
     double worst = 0;
-    for (std::size_t r = 0; r < compliance.rows.size(); ++r)
-        if (words(compliance, r, "leg") != "recursive" && number(compliance, r, "a") == 0)
-            worst = std::max(worst, number(compliance, r, "reciprocity"));
-    if (!compliance.rows.empty()) section.words["reciprocity"] = number(worst, 2);
-    section.tables.push_back(errors_table(*design));
+    for (const auto& r : compliance)
+        if (r.leg != "recursive" && r.a == 0) worst = std::max(worst, r.reciprocity);
+    if (!compliance.empty()) section.words["reciprocity"] = number(worst, 2);
+    section.tables.push_back(errors_table(design));
     return section;
 }
 

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/tables/table.hpp"
-#include "reports/document/wheels.hpp"
+#include "compare/tables/rows.hpp"
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/suspension.hpp"
-#include "reports/tables/select.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
+
+using compare::StaticRow;
 
 // Without rounding: no finer than a thousandth of a mm or deg, no more than four digits.
 std::string static_number(double value) { return std::abs(value) < 5e-5 ? "0" : number(value, 4); }
@@ -25,7 +25,7 @@ std::optional<Table> alignment(const JsonCursor& scene) {
     const auto part = scene.find("wheels");
     if (!part) return std::nullopt;
     const auto wheels = wheels_of(scene);
-    const compare::Table values = read_table((*part)["static"], static_table());
+    const auto values = read_rows<StaticRow>((*part)["static"]);
     Table table{.caption = fmt::format(
                     "Static alignment as drawn and as settled{} (toe-in, top outwards positive)",
                     scene.find("trim") ? " after the trim" : ""),
@@ -34,15 +34,13 @@ std::optional<Table> alignment(const JsonCursor& scene) {
         for (const auto& wheel : wheels)
             table.columns.push_back(
                 {fmt::format("{}{}{}", state, wheel.name.empty() ? "" : " ", wheel.name)});
-    for (const auto& output : distinct(values, "output")) {
-        const auto rows = where(values, "output", output);
-        if (rows.rows.empty()) continue;
-        std::vector<std::string> row{
-            fmt::format("{} [{}]", as_words(output), words(rows, 0, "unit"))};
-        for (const char* state : {"drawn", "settled"})
+    for (const auto& output : distinct(values, &StaticRow::output)) {
+        const auto rows = where(values, &StaticRow::output, output);
+        std::vector<std::string> row{fmt::format("{} [{}]", as_words(output), rows.front().unit)};
+        for (const auto state : {&StaticRow::drawn, &StaticRow::settled})
             for (const auto& wheel : wheels) {
-                const auto mine = where(rows, "wheel", wheel.name);
-                row.push_back(mine.rows.empty() ? "–" : static_number(number(mine, 0, state)));
+                const auto mine = std::ranges::find(rows, wheel.name, &StaticRow::wheel);
+                row.push_back(mine == rows.end() ? "–" : static_number((*mine).*state));
             }
         table.rows.push_back(std::move(row));
     }

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/tables/select.hpp"
-#include "reports/tables/studies/work_precision_tables.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -16,8 +15,10 @@ namespace {
 
 constexpr Colour method_colours[] = {vermilion, ochre, pink, blue, sky, purple, green, slate};
 
-Figure figure(const JsonCursor& trade, const compare::Table& points, const char* id,
-              const char* price, char front, const char* axis, const char* title) {
+using compare::TradeRow;
+
+Figure figure(const JsonCursor& trade, const std::vector<TradeRow>& points, const char* id,
+              double TradeRow::*price, char front, const char* axis, const char* title) {
     Figure figure{.id = id,
                   .title = title,
                   .x = axis,
@@ -28,12 +29,11 @@ Figure figure(const JsonCursor& trade, const compare::Table& points, const char*
     Series pareto{"", Series::Style::wide, faint};
     std::vector<std::vector<double>> on_front;
     double low = 1, high = 1e-16;
-    for (std::size_t r = 0; r < points.rows.size(); ++r) {
-        const double error = number(points, r, "error"), work = number(points, r, price);
-        if (!words(points, r, "not ranked").empty() || !(error > 0) || !(work > 0) ||
-            !std::isfinite(error))
+    for (const auto& point : points) {
+        const double error = point.error, work = point.*price;
+        if (!point.not_ranked.empty() || !(error > 0) || !(work > 0) || !std::isfinite(error))
             continue;
-        const std::string& method = words(points, r, "method");
+        const std::string& method = point.method;
         Series* series = nullptr;
         for (auto& s : figure.series)
             if (s.title == method) series = &s;
@@ -46,8 +46,7 @@ Figure figure(const JsonCursor& trade, const compare::Table& points, const char*
         }
         series->rows.push_back({work, error});
         low = std::min(low, error), high = std::max(high, error);
-        if (words(points, r, "front").find(front) != std::string::npos)
-            on_front.push_back({work, error});
+        if (point.front.find(front) != std::string::npos) on_front.push_back({work, error});
     }
     std::ranges::sort(on_front);
     pareto.rows = on_front;
@@ -62,8 +61,8 @@ Figure figure(const JsonCursor& trade, const compare::Table& points, const char*
     }
     if (const auto chosen = trade.find("recommendation")) {
         const auto at = static_cast<std::size_t>((*chosen)["position"].whole());
-        if (at >= points.rows.size()) (*chosen)["position"].fail("no such point");
-        const double x = number(points, at, price), y = number(points, at, "error");
+        if (at >= points.size()) (*chosen)["position"].fail("no such point");
+        const double x = points[at].*price, y = points[at].error;
         if (x > 0 && y > 0)
             figure.series.push_back({"recommended", Series::Style::rings, ink, 5, {{x, y}}});
     }
@@ -87,17 +86,16 @@ std::optional<Section> price_section(const JsonCursor& scene) {
     section.words["not_confirmed"] = (*trade)["not_confirmed"].texts();
     section.words["reasons"] = (*trade)["inconclusive"].texts();
     section.words["judged_not"] = !section.words["reasons"].empty();
-    const auto points = read_table((*trade)["points"], compare::trade_table({}));
-    bool times = false;
-    for (std::size_t r = 0; r < points.rows.size(); ++r)
-        times = times || std::isfinite(number(points, r, "time ratio"));
+    const auto points = read_rows<TradeRow>((*trade)["points"]);
+    const bool times = std::ranges::any_of(
+        points, [](const TradeRow& point) { return std::isfinite(point.time_ratio); });
     FigureGroup group;
-    group.figures.push_back(figure(*trade, points, "price-solves", "solves", 's',
+    group.figures.push_back(figure(*trade, points, "price-solves", &TradeRow::solves, 's',
                                    "linear solves, all branches", "Error against linear solves"));
     if (times) {
         section.words["times"] = {{"rounds", (*trade)["rounds"].whole()},
                                   {"noise", percent((*trade)["time_noise"].number())}};
-        group.figures.push_back(figure(*trade, points, "price-time", "time ratio", 't',
+        group.figures.push_back(figure(*trade, points, "price-time", &TradeRow::time_ratio, 't',
                                        "time, as a ratio to the full solution",
                                        "Error against time"));
     }
@@ -108,7 +106,7 @@ std::optional<Section> price_section(const JsonCursor& scene) {
         "Work-precision table. A configuration is on the front if no other is as accurate for s: "
         "fewer "
         "solves, f: fewer factorisations and evaluations, t: less time",
-        points, trade_columns);
+        points);
     group.table.folded = true;
     if (group.figures.empty())
         section.tables.push_back(group.table);

@@ -6,43 +6,30 @@
 #include <iterator>
 #include <numbers>
 
-#include "reports/tables/select.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
-const std::vector<ShownColumn> order_columns{{"told", Digits::given},
-                                             {"order"},
-                                             {"outcome"},
-                                             {"expansions"},
-                                             {"factorisations"},
-                                             {"solves"},
-                                             {"error", Digits::size},
-                                             {"angle error", Digits::size, "error"},
-                                             {"residual", Digits::size},
-                                             {"first reach", Digits::percent}};
-
-std::string order_text(const compare::Table& orders) {
+std::string order_text(const std::vector<compare::OrderRow>& orders) {
     std::string all;
     const auto out = std::back_inserter(all);
-    for (const auto& branch : distinct(orders, "branch")) {
-        const auto levels = where(orders, "branch", branch);
+    for (const auto& branch : distinct(orders, &compare::OrderRow::branch)) {
+        const auto levels = where(orders, &compare::OrderRow::branch, branch);
+        const compare::OrderRow &first = levels.front(), &last = levels.back();
         fmt::format_to(
             out, "\nbranch '{}', the series over its order; error to the equilibrium leg", branch);
-        if (const auto& why = words(levels, 0, "not compared"); !why.empty())
-            fmt::format_to(out, ", which is none: {}\n", why);
+        if (!first.not_compared.empty())
+            fmt::format_to(out, ", which is none: {}\n", first.not_compared);
         else
-            fmt::format_to(out, ", references {:.1e} mm, {:.1e} deg apart\n",
-                           number(levels, 0, "references apart"),
-                           number(levels, 0, "references' angles apart"));
-        all += text(levels, order_columns);
-        // A linear branch has no singularity.
-        const std::size_t last = levels.rows.size() - 1;
-        if (const double radius = number(levels, last, "singularity"); std::isfinite(radius))
+            fmt::format_to(out, ", references {:.1e} mm, {:.1e} deg apart\n", first.apart,
+                           first.angles_apart);
+        all += text(levels);
+        if (std::isfinite(last.singularity))  // a linear branch has none
             fmt::format_to(
                 out,
                 "  nearest singularity of the branch as seen from its start: at {:.3g} times its "
                 "length, {:.0f}° off the way ahead\n",
-                radius, number(levels, last, "its angle") * 180 / std::numbers::pi);
+                last.singularity, last.its_angle * 180 / std::numbers::pi);
     }
     return all;
 }

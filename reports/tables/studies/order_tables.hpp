@@ -4,13 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "reports/tables/render.hpp"
+#include "compare/tables/rows.hpp"
 
 namespace elastocheck::reports {
 
-// of compare::order_table, on the terminal and the page
-extern const std::vector<ShownColumn> order_columns;
-
-std::string order_text(const compare::Table& orders);
+std::string order_text(const std::vector<compare::OrderRow>& orders);
 
 }  // namespace elastocheck::reports

@@ -5,17 +5,12 @@
 #include <string>
 
 #include "compare/studies/precision.hpp"
-#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
-// of compare::floor_table, on the terminal and the page
-extern const std::vector<ShownColumn> floor_columns;
-
 std::string precision_text(const compare::PrecisionStudy& study);
 
-// {branch, inconclusive, levels, floors}: the tables of compare::precision_table and
-// compare::floor_table.
+// {branch, inconclusive, levels, floors}: tables of compare::PrecisionRow and compare::FloorRow.
 nlohmann::ordered_json precision_json(const compare::PrecisionStudy& study);
 
 }  // namespace elastocheck::reports

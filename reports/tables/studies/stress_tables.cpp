@@ -117,7 +117,6 @@ json lost_json(const compare::LostDigits& lost) {
 
 compare::Table cell_table(const Survival& survival) {
     compare::Table table{
-        "cells",
         {words("scene"),
          words("sweep"),
          words("variant"),

@@ -6,52 +6,43 @@
 #include <cmath>
 #include <iterator>
 
-#include "reports/tables/select.hpp"
+#include "compare/tables/rows.hpp"
+#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
 
-const std::vector<ShownColumn> study_columns{{"method"},
-                                             {"output"},
-                                             {"unit"},
-                                             {"behaviour"},
-                                             {"order", Digits::three},
-                                             {"order error", Digits::size, "±"},
-                                             {"finest step error", Digits::size},
-                                             {"gap", Digits::three, "gap at end"},
-                                             {"band", Digits::size, "± band"},
-                                             {"gap share", Digits::three, "of the range"},
-                                             {"gap exponent", Digits::three, "growth a^"},
-                                             {"references apart", Digits::size},
-                                             {"not studied"}};
-
-const std::vector<ShownColumn> gap_columns{{"output"},
-                                           {"unit"},
-                                           {"whole", Digits::three},
-                                           {"lever", Digits::three, "stored force's lever"},
-                                           {"lever share", Digits::three, "share"},
-                                           {"axis", Digits::three, "its axis and law"},
-                                           {"axis share", Digits::three, "share"},
-                                           {"load", Digits::three, "load's lever"},
-                                           {"load share", Digits::three, "share"},
-                                           {"rest", Digits::size},
-                                           {"band", Digits::size, "± band"},
-                                           {"not attributed"}};
-
 namespace {
 
-// Levels side by side: one row per combination of `keys`, one column per step count.
-std::string over_steps(const compare::Table& levels, std::vector<std::string> keys,
-                       const std::string& value) {
-    std::vector<ShownColumn> shown;
-    for (const auto& key : keys) shown.push_back({key});
-    const std::size_t count = keys.size();
-    keys.insert(keys.end(), {"steps", value});
-    const auto wide = spread(only(levels, keys), "steps", {value});
-    for (std::size_t c = count; c < wide.columns.size(); ++c) {
-        const std::string& name = wide.columns[c].name;
-        shown.push_back({name, Digits::size, name.substr(0, name.find(':'))});
+using compare::GapRow;
+using compare::StepRow;
+using compare::StudyRow;
+
+// Levels side by side: one row per method, or method and output, one column per step count.
+std::string over_steps(const std::vector<StepRow>& levels, bool by_output, double StepRow::*value,
+                       const char* unit) {
+    compare::Table wide;
+    for (const char* key : {"method", "output", "unit"})
+        if (by_output || wide.columns.empty())
+            wide.columns.push_back({.name = key, .words = true, .digits = Digits::words});
+    const std::size_t keys = wide.columns.size();
+    const auto steps = distinct(levels, &StepRow::steps);
+    for (const double n : steps)
+        wide.columns.push_back(
+            {.name = fmt::format("{:g}", n), .unit = unit, .digits = Digits::size});
+    for (const auto& level : levels) {
+        std::vector<compare::Cell> row{level.method, level.output, level.unit};
+        row.resize(keys);
+        auto into = std::ranges::find_if(wide.rows, [&](const auto& other) {
+            return std::equal(row.begin(), row.end(), other.begin());
+        });
+        if (into == wide.rows.end()) {
+            row.resize(keys + steps.size(), compare::nan);
+            into = wide.rows.insert(into, std::move(row));
+        }
+        const auto at = std::ranges::find(steps, level.steps) - steps.begin();
+        (*into)[keys + static_cast<std::size_t>(at)] = level.*value;
     }
-    return text(wide, shown);
+    return text(wide);
 }
 
 }  // namespace
@@ -65,34 +56,32 @@ std::string study_text(const Model& model, const compare::Study& study,
         "compared by `elastocheck compare`.\n",
         model.name);
     const auto out = std::back_inserter(all);
-    const auto outputs = study_table(study), steps = step_table(study),
-               gaps = gap_table(study.channels, attribution);
-    for (const auto& branch : distinct(outputs, "branch")) {
-        const auto levels = where(steps, "branch", branch);
-        for (const auto& reading : distinct(levels, "reading"))
+    const auto outputs = study_rows(study);
+    const auto steps = step_rows(study);
+    const auto gaps = gap_rows(study.channels, attribution);
+    for (const auto& branch : distinct(outputs, &StudyRow::branch)) {
+        const auto levels = where(steps, &StepRow::branch, branch);
+        const auto found = where(outputs, &StudyRow::branch, branch);
+        for (const auto& reading : distinct(levels, &StepRow::reading))
             fmt::format_to(
                 out,
                 "\nbranch '{0}' {1}: order at which the largest step error over the branch falls, "
                 "and what no step count removes\n{2}"
                 "\nbranch '{0}' {1}: step errors, largest over the branch, over the steps\n{3}",
-                branch, reading,
-                text(where(where(outputs, "branch", branch), "reading", reading), study_columns),
-                over_steps(where(levels, "reading", reading), {"method", "output", "unit"},
-                           "largest"));
+                branch, reading, text(where(found, &StudyRow::reading, reading)),
+                over_steps(where(levels, &StepRow::reading, reading), true, &StepRow::largest, ""));
         // A candidate does not give |Φ|.
-        if (const std::size_t c = column(levels, "constraint error");
-            std::ranges::any_of(levels.rows, [&](const auto& row) {
-                return std::isfinite(std::get<double>(row[c]));
-            }))
+        if (std::ranges::any_of(
+                levels, [](const StepRow& row) { return std::isfinite(row.constraint_error); }))
             fmt::format_to(out, "\nbranch '{}': |Φ| at its end, eq. (31), over the steps\n{}",
-                           branch, over_steps(levels, {"method"}, "constraint error"));
-        const auto made = where(gaps, "branch", branch);
-        for (const auto& reading : distinct(made, "reading"))
+                           branch, over_steps(levels, false, &StepRow::constraint_error, "m"));
+        const auto made = where(gaps, &GapRow::branch, branch);
+        for (const auto& reading : distinct(made, &GapRow::reading))
             fmt::format_to(
                 out,
                 "\nbranch '{}' {}: what the gap of the recursion is made of, whole = lever + axis "
                 "+ load + rest\n{}",
-                branch, reading, text(where(made, "reading", reading), gap_columns));
+                branch, reading, text(where(made, &GapRow::reading, reading)));
     }
     for (const auto& reason : study.inconclusive) fmt::format_to(out, "\ninconclusive: {}", reason);
     all += study.conclusive() ? "\nconclusive\n" : "\nINCONCLUSIVE\n";
@@ -104,9 +93,9 @@ nlohmann::ordered_json study_json(const compare::Study& study,
     return {{"conclusive", study.conclusive()},
             {"reasons", study.inconclusive},
             {"steps", study.steps},
-            {"outputs", table_json(study_table(study))},
-            {"step_errors", table_json(step_table(study))},
-            {"gap", table_json(gap_table(study.channels, attribution))}};
+            {"outputs", table_json(study_rows(study))},
+            {"step_errors", table_json(step_rows(study))},
+            {"gap", table_json(gap_rows(study.channels, attribution))}};
 }
 
 }  // namespace elastocheck::reports

@@ -7,12 +7,8 @@
 
 #include "compare/studies/study.hpp"
 #include "elastocheck/model.hpp"
-#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
-
-extern const std::vector<ShownColumn> study_columns;  // displayed columns of study_table
-extern const std::vector<ShownColumn> gap_columns;    // of gap_table
 
 std::string study_text(const Model& model, const compare::Study& study,
                        const std::vector<compare::BranchAttribution>& attribution);

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/tables/rows.hpp"
+#include "reports/tables/render.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -62,20 +65,6 @@ void recommendation(const compare::Trade& trade, std::string& text) {
 
 }  // namespace
 
-const std::vector<ShownColumn> trade_columns{{"method"},
-                                             {"steps"},
-                                             {"told", Digits::given},
-                                             {"error", Digits::size},
-                                             {"angle error", Digits::size, "error"},
-                                             {"solves"},
-                                             {"factorisations"},
-                                             {"evaluations"},
-                                             {"price"},
-                                             {"time", Digits::three},
-                                             {"time ratio", Digits::three, "ratio"},
-                                             {"front"},
-                                             {"not ranked"}};
-
 std::string trade_text(const Model& model, const compare::Trade& trade) {
     std::string text;
     const auto out = std::back_inserter(text);
@@ -91,7 +80,7 @@ std::string trade_text(const Model& model, const compare::Trade& trade) {
         "(t) less time.\n\n",
         model.name, trade.points_per_branch, model.branches.size(),
         size(trade.uncertainty, trade.angles), trade.rounds, 100 * trade.noise);
-    text += reports::text(trade_table(trade), trade_columns) + "\n";
+    text += reports::text(trade_rows(trade)) + "\n";
     recommendation(trade, text);
     return text;
 }
@@ -124,7 +113,7 @@ json trade_json(const compare::Trade& trade) {
             {"rounds", trade.rounds},
             {"reference_uncertainty", accuracy_json(trade.uncertainty, trade.angles)},
             {"time_noise", trade.noise},
-            {"points", table_json(trade_table(trade))},
+            {"points", table_json(trade_rows(trade))},
             {"recommendation", chosen},
             {"not_confirmed", trade.rejected},
             {"inconclusive", trade.inconclusive}};

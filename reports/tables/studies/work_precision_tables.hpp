@@ -6,17 +6,13 @@
 #include <vector>
 
 #include "compare/studies/work_precision.hpp"
-#include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
-
-// of compare::trade_table, on the terminal and the page
-extern const std::vector<ShownColumn> trade_columns;
 
 std::string trade_text(const Model& model, const compare::Trade& trade);
 
 // {tolerance, output_points, rounds, reference_uncertainty, time_noise, points, recommendation,
-// not_confirmed, inconclusive}: `points` is compare::trade_table, `position` in the recommendation
+// not_confirmed, inconclusive}: `points` is of compare::TradeRow, `position` in the recommendation
 // is a row of it.
 nlohmann::ordered_json trade_json(const compare::Trade& trade);
 

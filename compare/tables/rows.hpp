@@ -1,0 +1,362 @@
+// Rows of the studies' tables. A number without a value is NaN.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "compare/tables/table.hpp"
+
+namespace elastocheck {
+struct Model;
+}
+
+namespace elastocheck::compare {
+
+// Kinematics and compliance at the design position, with the error of the recursion.
+struct CharacteristicRow {
+    std::string output{}, unit{};
+    double value = nan, apart = nan, recursion = nan, off = nan, off_percent = nan;
+    std::string undefined{}, definition{};
+};
+void describe(auto& field, Described<CharacteristicRow> auto& r) {
+    field("output", r.output);
+    field("unit", r.unit);
+    field("value", r.value,
+          {"", "at a = 0 of the first branch, by the equilibrium leg; none if it is undefined"});
+    field("references apart", r.apart, {"", "second reference less equilibrium leg"});
+    field("recursion", r.recursion, {"", "by the matrix that the recursion factorises there"});
+    field("off", r.off, {"", "recursion less equilibrium leg"});
+    field("off %", r.off_percent, {"%", "of the value"});
+    field("undefined", r.undefined, {"", "reason for a missing value"});
+    field("definition", r.definition);
+}
+
+// An output of a wheel as drawn and as settled at the start of a branch.
+struct StaticRow {
+    std::string wheel{}, output{}, unit{};
+    double drawn = nan, settled = nan;
+};
+void describe(auto& field, Described<StaticRow> auto& r) {
+    field("wheel", r.wheel);
+    field("output", r.output);
+    field("unit", r.unit);
+    field("drawn", r.drawn, {"", "in the design position, as the file has it"});
+    field("settled", r.settled, {"", "in equilibrium, after the trim where there is one"});
+}
+
+// A displacement component at a point of a wheel, by one leg.
+struct ComplianceRow {
+    static constexpr std::array causes{"force x",  "force y",  "force z",
+                                       "moment x", "moment y", "moment z"};
+    std::string branch{};
+    double a = nan;
+    std::string unit{}, leg{}, point{}, wheel{}, answer{}, loaded_wheel{};
+    std::array<double, 6> by_cause{};
+    double reciprocity = nan;
+};
+void describe(auto& field, Described<ComplianceRow> auto& r) {
+    field("branch", r.branch);
+    field("a", r.a, {"", "parameter of the branch"});
+    field("unit", r.unit, {"", "of a"});
+    field("leg", r.leg);
+    field("point", r.point,
+          {"", "where forces act and displacements are read: wheel centre or contact patch"});
+    field("wheel", r.wheel, {"", "whose displacement is given"});
+    field("answer", r.answer,
+          {"", "displacement of the point in mm, rotation of the wheel in deg, ground axes"});
+    field("loaded wheel", r.loaded_wheel,
+          {"", "on which forces and moments act, all jacks and tyres removed"});
+    for (std::size_t k = 0; k < 6; ++k)
+        field(r.causes[k], r.by_cause[k], {"", k < 3 ? "response per kN" : "response per 100 N·m"});
+    field("reciprocity", r.reciprocity,
+          {"",
+           "|C - Cᵀ| / |C| of the whole matrix at the wheel centres, rotations counted by the "
+           "tyre's radius"});
+}
+
+// An element or a link at an end of a branch.
+struct ForceRow {
+    std::string branch{};
+    double end = nan;
+    std::string end_unit{}, element{}, output{}, unit{};
+    double value = nan, error = nan, share = nan;
+};
+void describe(auto& field, Described<ForceRow> auto& r) {
+    field("branch", r.branch);
+    field("end", r.end, {"", "parameter there"});
+    field("end unit", r.end_unit);
+    field("element", r.element);
+    field("output", r.output);
+    field("unit", r.unit);
+    field("value", r.value, {"", "of the equilibrium leg"});
+    field("error", r.error, {"", "recursion less equilibrium leg, in the same unit"});
+    field("share", r.share, {"%", "of the value"});
+}
+
+// Spread of a main output over the formulations, beside the deviations of the same scene.
+struct FormulationRow {
+    std::string branch{}, output{}, unit{};
+    double spread = nan, at = nan;
+    std::string parameter_unit{}, smallest_by{}, largest_by{};
+    double apart = nan, deviation = nan;
+};
+void describe(auto& field, Described<FormulationRow> auto& r) {
+    using enum Digits;
+    field("branch", r.branch);
+    field("output", r.output, {"", "", words});
+    field("unit", r.unit, {"", "", words});
+    field(
+        "spread", r.spread,
+        {"", "largest less smallest value over the formulations, maximum over the branch", three});
+    field("at", r.at, {"", "parameter there", given});
+    field("parameter unit", r.parameter_unit, {"", "", words, "unit"});
+    field("smallest by", r.smallest_by,
+          {"", "the formulation that gives the smallest value there", words});
+    field("largest by", r.largest_by, {"", "likewise", words});
+    field("references apart", r.apart, {"", "at most, at equal parameter", size});
+    field("deviation", r.deviation,
+          {"", "of the recursion from the equilibrium leg at equal parameter, at most", three});
+}
+
+// A method and output over a side of a branch, by one reading.
+struct StudyRow {
+    std::string branch{}, method{}, reading{}, output{}, unit{}, behaviour{};
+    double order = nan, order_error = nan;
+    bool as_formal = false;
+    double limit = nan, band = nan, finest_step_error = nan, gap = nan, gap_max = nan,
+           gap_rms = nan, gap_exponent = nan, apart = nan, range = nan, gap_share = nan,
+           constraint_order = nan, constraint_order_error = nan;
+    std::string not_studied{};
+};
+void describe(auto& field, Described<StudyRow> auto& r) {
+    using enum Digits;
+    field("branch", r.branch);
+    field("method", r.method, {"", "", words});
+    field("reading", r.reading);
+    field("output", r.output, {"", "", words});
+    field("unit", r.unit, {"", "", words});
+    field("behaviour", r.behaviour,
+          {"", "of the value with the largest step error on the branch", words});
+    field("order", r.order, {"", "at which the largest step error over the branch falls", three});
+    field("order error", r.order_error, {"", "its standard error", size, "±"});
+    field("as formal", r.as_formal, {"", "the order agrees with the method's"});
+    field("limit", r.limit, {"", "own limit for infinitely many steps, at the end"});
+    field("band", r.band, {"", "uncertainty of the limit", size, "± band", 13});
+    field("finest step error", r.finest_step_error,
+          {"", "largest over the branch with the most steps", size});
+    field("gap", r.gap, {"", "own limit less reference at the end", three, "gap at end"});
+    field("largest gap", r.gap_max);
+    field("rms gap", r.gap_rms);
+    field("gap exponent", r.gap_exponent,
+          {"", "power of the parameter or abscissa with which it grows", three, "growth a^"});
+    field("references apart", r.apart, {"", "", size});
+    field("range", r.range, {"", "of the reference over the branch"});
+    field("gap share", r.gap_share,
+          {"%", "gap at the end, of the range", three, "of the range", 14});
+    field("constraint order", r.constraint_order,
+          {"", "order at which |Φ| of eq. (31) decreases at the end"});
+    field("constraint order error", r.constraint_order_error, {"", "its standard error"});
+    field("not studied", r.not_studied, {"", "why", words});
+}
+
+// ... with one step count.
+struct StepRow {
+    std::string branch{}, method{}, reading{}, output{}, unit{};
+    double steps = nan;
+    std::string outcome{};
+    double end = nan, largest = nan, rms = nan, error = nan, constraint_error = nan;
+};
+void describe(auto& field, Described<StepRow> auto& r) {
+    field("branch", r.branch);
+    field("method", r.method);
+    field("reading", r.reading);
+    field("output", r.output);
+    field("unit", r.unit);
+    field("steps", r.steps);
+    field("outcome", r.outcome);
+    field("end", r.end, {"", "value less own limit at the end"});
+    field("largest", r.largest);
+    field("rms", r.rms);
+    field("error", r.error, {"", "value less reference at the end: step error and gap"});
+    field("constraint error", r.constraint_error, {"m", "or rad: |Φ| at the end, eq. (31)"});
+}
+
+struct GapRow {
+    std::string branch{}, reading{}, output{}, unit{};
+    double whole = nan, lever = nan, axis = nan, load = nan, rest = nan, band = nan,
+           lever_share = nan, axis_share = nan, load_share = nan;
+    std::array<double, 8> following{nan, nan, nan, nan, nan, nan, nan, nan};
+    std::string not_attributed{};
+};
+void describe(auto& field, Described<GapRow> auto& r) {
+    using enum Digits;
+    field("branch", r.branch);
+    field("reading", r.reading);
+    field("output", r.output, {"", "", words});
+    field("unit", r.unit, {"", "", words});
+    field("whole", r.whole,
+          {"", "gap of the recursion in which forces do not follow the bodies", three});
+    field("lever", r.lever,
+          {"", "contribution of the lever of the stored force", three, "stored force's lever"});
+    field("axis", r.axis, {"", "contribution of its axis and law", three, "its axis and law"});
+    field("load", r.load, {"", "contribution of the lever of the load", three, "load's lever"});
+    field("rest", r.rest, {"", "remaining gap when all three follow: 0 within the band", size});
+    field("band", r.band, {"", "", size, "± band"});
+    field("lever share", r.lever_share, {"%", "of the whole", three, "share", 5});
+    field("axis share", r.axis_share, {"%", "likewise", three, "share", 6});
+    field("load share", r.load_share, {"%", "likewise", three, "share", 7});
+    // In the order of GapShare::combinations.
+    constexpr std::array follows{
+        "gap, following: nothing",       "gap, following: lever",
+        "gap, following: axis",          "gap, following: lever and axis",
+        "gap, following: load",          "gap, following: lever and load",
+        "gap, following: axis and load", "gap, following: lever, axis and load"};
+    for (std::size_t k = 0; k < follows.size(); ++k) field(follows[k], r.following[k]);
+    field("not attributed", r.not_attributed, {"", "why", words});
+}
+
+// The series over a side of a branch, at one tolerance and order.
+struct OrderRow {
+    std::string branch{};
+    double told = nan, order = nan;
+    std::string outcome{};
+    double expansions = nan, rejected = nan, factorisations = nan, solves = nan, evaluations = nan,
+           error = nan, angle_error = nan, residual = nan, error_at_ends = nan, first_reach = nan,
+           apart = nan, angles_apart = nan, singularity = nan, its_angle = nan, its_misfit = nan;
+    std::string not_compared{};
+};
+void describe(auto& field, Described<OrderRow> auto& r) {
+    using enum Digits;
+    field("branch", r.branch);
+    field("told", r.told, {"m", "", given});
+    field("order", r.order, {"", "", whole});
+    field("outcome", r.outcome, {"", "", words});
+    field("expansions", r.expansions, {"", "", whole});
+    field("rejected", r.rejected);
+    field("factorisations", r.factorisations, {"", "", whole});
+    field("solves", r.solves, {"", "", whole});
+    field("evaluations", r.evaluations);
+    field("error", r.error, {"mm", "from the equilibrium leg, largest over all points", size});
+    field("angle error", r.angle_error, {"deg", "likewise", size, "error"});
+    field("residual", r.residual,
+          {"N", "or N·m: largest residual of an expansion in the balance", size});
+    field("error at ends", r.error_at_ends,
+          {"m", "largest at the end of an expansion, as it estimates it"});
+    field("first reach", r.first_reach,
+          {"", "of the first expansion, share of the branch", percent});
+    field("references apart", r.apart, {"mm"});
+    field("references' angles apart", r.angles_apart, {"deg"});
+    field("singularity", r.singularity,
+          {"", "distance of the nearest, seen from the start, in lengths of the branch"});
+    field("its angle", r.its_angle, {"rad", "direction"});
+    field("its misfit", r.its_misfit, {"", "relative residual of the fit to the coefficients"});
+    field("not compared", r.not_compared, {"", "why"});
+}
+
+// Of a method in one arithmetic, at one step count.
+struct PrecisionRow {
+    std::string method{}, arithmetic{};
+    double steps = nan;
+    std::string outcome{};
+    double constraint_error = nan, error = nan, angle_error = nan;
+};
+void describe(auto& field, Described<PrecisionRow> auto& r) {
+    field("method", r.method);
+    field("arithmetic", r.arithmetic);
+    field("steps", r.steps);
+    field("outcome", r.outcome);
+    field("constraint error", r.constraint_error, {"m", "or rad: |Φ| at the end, eq. (31)"});
+    field("error", r.error, {"mm"});
+    field("angle error", r.angle_error, {"deg"});
+}
+
+// ... and the step count beyond which refinement gains nothing.
+struct FloorRow {
+    std::string method{}, arithmetic{};
+    double least_constraint_error = nan, constraint_steps = nan;
+    std::string constraint_remark{};
+    double least_error = nan, error_steps = nan;
+    std::string error_remark{};
+};
+void describe(auto& field, Described<FloorRow> auto& r) {
+    using enum Digits;
+    field("method", r.method, {"", "", words});
+    field("arithmetic", r.arithmetic, {"", "", words});
+    field("least constraint error", r.least_constraint_error,
+          {"m", "or rad: |Φ| over the steps", size, "least |Φ|"});
+    field("steps that lower it", r.constraint_steps,
+          {"", "no larger number of steps reduces it below a third", whole, "useful steps"});
+    field("constraint remark", r.constraint_remark, {"", "", words, "remark"});
+    field("least error", r.least_error, {"mm", "", size});
+    field("steps that lower the error", r.error_steps, {"", "likewise", whole, "useful steps"});
+    field("error remark", r.error_remark, {"", "", words, "remark"});
+}
+
+// A configuration of a method, or a leg.
+struct TradeRow {
+    std::string leg{}, method{};
+    double steps = nan, told = nan;
+    std::string outcome{};
+    double error = nan, angle_error = nan, share = nan, solves = nan, factorisations = nan,
+           evaluations = nan, price = nan, time = nan, time_ratio = nan;
+    std::string front{}, not_ranked{};
+    bool recommended = false;
+    std::string detail{};
+};
+void describe(auto& field, Described<TradeRow> auto& r) {
+    using enum Digits;
+    field("leg", r.leg);
+    field("method", r.method, {"", "", words});
+    field("steps", r.steps, {"", "per branch; none if the method chooses them", whole});
+    field("told", r.told, {"m", "if the method chooses its steps", given});
+    field("outcome", r.outcome);
+    field("error", r.error, {"mm", "", size});
+    field("angle error", r.angle_error, {"deg", "", size, "error"});
+    field("share", r.share, {"", "of the tolerance"});
+    field("solves", r.solves, {"", "", whole});
+    field("factorisations", r.factorisations, {"", "", whole});
+    field("evaluations", r.evaluations, {"", "", whole});
+    field("price", r.price,
+          {"", "in back-substitutions: N/3 · factorisations + solves + evaluations", whole});
+    field("time", r.time, {"s", "median over the rounds", three});
+    field("time ratio", r.time_ratio, {"", "to the equilibrium leg", three, "ratio"});
+    field("front", r.front,
+          {"",
+           "no other is as accurate with s: fewer solves, f: fewer factorisations + evaluations, "
+           "t: less time",
+           words});
+    field("not ranked", r.not_ranked, {"", "why", words});
+    field("recommended", r.recommended);
+    field("detail", r.detail, {"", "of the outcome"});
+}
+
+struct BranchAttribution;
+struct BranchOrders;
+struct CertifyStudy;
+struct Channel;
+struct Comparison;
+struct ElementValue;
+struct FormulationStudy;
+struct PrecisionStudy;
+struct Study;
+struct Trade;
+
+// Empty without a wheel.
+std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison);
+// Per branch, landmark, leg and point.
+std::vector<ComplianceRow> compliance_rows(const Model& model, const Comparison& comparison);
+std::vector<ForceRow> force_rows(const std::vector<ElementValue>& values);
+std::vector<FormulationRow> formulation_rows(const FormulationStudy& study,
+                                             const Comparison& comparison);
+std::vector<StudyRow> study_rows(const Study& study);
+std::vector<StepRow> step_rows(const Study& study);
+std::vector<GapRow> gap_rows(const std::vector<Channel>& main,
+                             const std::vector<BranchAttribution>& attribution);
+std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders);
+std::vector<PrecisionRow> precision_rows(const PrecisionStudy& study);
+std::vector<FloorRow> floor_rows(const PrecisionStudy& study);
+std::vector<TradeRow> trade_rows(const Trade& trade);
+Table certify_table(const CertifyStudy& study);  // per branch side and solver
+
+}  // namespace elastocheck::compare
