@@ -8,6 +8,7 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compliance.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/deviation/proof.hpp"
 #include "compare/jobs/jobs.hpp"
@@ -76,6 +77,16 @@ Tally proved(const BranchSide& side, const LegRun& run) {
 std::optional<ErrorBound> promise_of(const Model& standing, const SolverSettings& solver) {
     if (solver.leg != Leg::recursive) return std::nullopt;
     return tolerance_of_method(solver.recursion.method, recursive::diagnose(standing).length);
+// Parameters of the points whose states are kept.
+std::vector<double> stations_of(const std::vector<double>& requested) {
+    constexpr std::size_t most = 16;  // intervals
+    std::vector<double> stations;
+    const std::size_t last = requested.size() - 1, count = std::min(most, last);
+    for (std::size_t k = 0; k <= count; ++k)
+        stations.push_back(requested[count == 0 ? 0 : (2 * k * last + count) / (2 * count)]);
+    return stations;
+}
+
 }
 
 // Requests error bounds from methods with a tolerance, and from the equilibrium leg for its
@@ -102,6 +113,10 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
             for (const Leg by : legs) {
                 auto& worst = run.judged[static_cast<std::size_t>(by)];
                 worst = worse(worst, judge(by, side, state));
+    const bool kept = solver.leg == Leg::equilibrium;
+    const auto stations = kept ? stations_of(requested) : std::vector<double>{};
+    std::optional<LargestForces> largest;
+    if (kept) largest.emplace(model, branch);
             }
             run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
             // The farthest point on either side comes last.
@@ -118,7 +133,12 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     if (!marks.front) marks.front = marks.start;
     if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
+            if (largest) largest->add(state);
+            if (std::ranges::find(stations, state.load) != stations.end())
+                run.stations.push_back(state);
         run.compliance = compliance_of(model, side, solver, run);
+    std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
+    if (largest) run.largest = largest->list();
     if (!times)
         run.seconds = nan;
     else if (solver.leg == Leg::recursive || solver.leg == Leg::series)

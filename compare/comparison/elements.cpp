@@ -43,17 +43,34 @@ double of_tyre(const ElasticKind& tyre, double s_z, bool is_force) {
     return is_force ? -s_z : K != nullptr && (*K)(2, 2) > 0 ? -s_z / (*K)(2, 2) : nan;
 }
 
+// Deformation and force of an element in a state; without them where it is not active.
+struct ElementState {
+    const Elastic* elastic;
+    bool active;
+    Vector6 e = Vector6::Zero(), s = Vector6::Zero();
+
+    double component(int k) const {
+        if (!active) return nan;
+        const bool is_force = k >= 6;
+        if (elastic->written_as == WrittenAs::tyre) return of_tyre(elastic->kind, s[2], is_force);
+        const bool reversed =
+            elastic->markers_swapped || is_spring(*elastic);  // positive in compression
+        return (reversed ? -1 : 1) * (is_force ? s : e)[k % 6];
+    }
+};
+
+ElementState state_of(const Model& model, const Branch& branch, const Equilibrium& state, int k) {
+    const Elastic& elastic = elastic_of(model, k);
+    ElementState at{&elastic, stands(elastic, k, branch)};
+    if (!at.active) return at;
+    at.e = deformation(elastic.kind, static_cast<std::size_t>(k), branch, state);
+    at.s = stress(elastic.kind, static_cast<std::size_t>(k), branch, state, at.e);
+    return at;
+}
+
 double read(const Model& model, const Branch& branch, const Equilibrium& state,
             const OfElement& c) {
-    const Elastic& elastic = elastic_of(model, c.element);
-    if (!stands(elastic, c.element, branch)) return nan;
-    const bool is_force = c.component >= 6;
-    const auto k = static_cast<std::size_t>(c.element);
-    const Vector6 e = deformation(elastic.kind, k, branch, state);
-    const Vector6 s = stress(elastic.kind, k, branch, state, e);
-    if (elastic.written_as == WrittenAs::tyre) return of_tyre(elastic.kind, s[2], is_force);
-    const bool reversed = elastic.markers_swapped || is_spring(elastic);  // positive in compression
-    return (reversed ? -1 : 1) * (is_force ? s : e)[c.component % 6];
+    return state_of(model, branch, state, c.element).component(c.component);
 }
 
 // ---- Names
@@ -164,6 +181,54 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
         if (const auto* of = std::get_if<OfElement>(&channels[c].reads))
             values[c] = in_unit(channels[c].unit) * read(model, branch, state, *of);
     return values;
+}
+
+LargestForces::LargestForces(const Model& of_model, const Branch& of_branch)
+    : model(&of_model), branch(&of_branch) {
+    for (auto& channel : element_channels(of_model)) {
+        const auto* of = std::get_if<OfElement>(&channel.reads);
+        if (of != nullptr && of->component < 6) continue;
+        const std::string element = element_of(channel);
+        if (largest.empty() || largest.back().element != element ||
+            largest.back().unit != channel.unit) {
+            LargestForce none{.element = element, .output = {}, .unit = channel.unit};
+            none.deformation = nan;
+            largest.push_back(std::move(none));
+        }
+        entry.push_back(largest.size() - 1);
+        channels.push_back(std::move(channel));
+    }
+}
+
+void LargestForces::add(const Equilibrium& state) {
+    int element = -1;
+    ElementState at{};
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const Channel& channel = channels[c];
+        const auto* of = std::get_if<OfElement>(&channel.reads);
+        if (of != nullptr && of->element != element) {
+            element = of->element;
+            at = state_of(*model, *branch, state, element);
+        }
+        const double value = of != nullptr
+                                 ? in_unit(channel.unit) * at.component(of->component)
+                                 : evaluate(*model, std::span(&channel, 1), state).front();
+        LargestForce& most = largest[entry[c]];
+        if (!(std::abs(value) > std::max(nothing, std::abs(most.value)))) continue;
+        most.output = channel.name;
+        most.value = value;
+        most.a = parameter_in(unit_of(branch->unit), state.load);
+        if (of == nullptr) continue;
+        most.deformation_unit = unit_of_component(of->component - 6);
+        most.deformation = in_unit(most.deformation_unit) * at.component(of->component - 6);
+    }
+}
+
+std::vector<LargestForce> LargestForces::list() const {
+    std::vector<LargestForce> list;
+    for (const auto& one : largest)
+        if (!one.output.empty()) list.push_back(one);
+    return list;
 }
 
 std::vector<ElementValue> element_values(const Model& model, const Comparison& comparison) {

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "elastocheck/channels.hpp"
+#include "elastocheck/compare.hpp"
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
 
@@ -38,9 +39,23 @@ std::vector<Channel> element_channels(const Model& model);
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state);
 
-// ---- Values at the ends of the branches.
+// ---- Largest values over the points of a branch.
 
-struct Comparison;
+// Collects the largest force and the largest moment of each element and link, in the order of the
+// elements, then the links.
+struct LargestForces {
+    LargestForces(const Model& of_model, const Branch& of_branch);
+    void add(const Equilibrium& state);
+    std::vector<LargestForce> list() const;  // without those that are always zero
+
+    const Model* model;
+    const Branch* branch;
+    std::vector<Channel> channels = {};   // forces and moments
+    std::vector<std::size_t> entry = {};  // of each channel, in `largest`
+    std::vector<LargestForce> largest = {};
+};
+
+// ---- Values at the ends of the branches.
 
 // One output of one element at one end of a branch.
 struct ElementValue {

@@ -111,6 +111,15 @@ std::vector<ForceRow> force_rows(const std::vector<ElementValue>& values) {
     return rows;
 }
 
+std::vector<LargestForceRow> largest_force_rows(const Comparison& comparison) {
+    std::vector<LargestForceRow> rows;
+    for (const auto& branch : comparison.branches)
+        for (const auto& l : branch.runs[static_cast<std::size_t>(Leg::equilibrium)].largest)
+            rows.push_back({branch.branch, l.a, symbol(branch.unit), l.element, l.output, l.value,
+                            symbol(l.unit), l.deformation, symbol(l.deformation_unit)});
+    return rows;
+}
+
 std::vector<FormulationRow> formulation_rows(const FormulationStudy& study,
                                              const Comparison& comparison) {
     std::vector<FormulationRow> rows;

@@ -94,6 +94,28 @@ void describe(auto& field, Described<ForceRow> auto& r) {
     field("share", r.share, {"%", "of the value"});
 }
 
+// Largest force or moment of an element over the points of a branch, by the equilibrium leg.
+struct LargestForceRow {
+    std::string branch{};
+    double at = nan;
+    std::string parameter_unit{}, element{}, output{};
+    double value = nan;
+    std::string unit{};
+    double deformation = nan;
+    std::string deformation_unit{};
+};
+void describe(auto& field, Described<LargestForceRow> auto& r) {
+    field("branch", r.branch);
+    field("at", r.at, {"", "parameter of the branch where it is largest"});
+    field("parameter unit", r.parameter_unit);
+    field("element", r.element);
+    field("output", r.output, {"", "its component of the largest absolute value"});
+    field("value", r.value, {"", "by the equilibrium leg"});
+    field("unit", r.unit);
+    field("deformation", r.deformation, {"", "conjugate to the force, at the same point"});
+    field("deformation unit", r.deformation_unit);
+}
+
 // Spread of a main output over the formulations, beside the deviations of the same scene.
 struct FormulationRow {
     std::string branch{}, output{}, unit{};
@@ -347,6 +369,7 @@ std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison)
 // Per branch, landmark, leg and point.
 std::vector<ComplianceRow> compliance_rows(const Model& model, const Comparison& comparison);
 std::vector<ForceRow> force_rows(const std::vector<ElementValue>& values);
+std::vector<LargestForceRow> largest_force_rows(const Comparison& comparison);
 std::vector<FormulationRow> formulation_rows(const FormulationStudy& study,
                                              const Comparison& comparison);
 std::vector<StudyRow> study_rows(const Study& study);

@@ -162,6 +162,17 @@ struct Compliance {
     std::string why_not = {};  // reason why there is none
 };
 
+// Largest force or moment of an element over the points of a branch.
+struct LargestForce {
+    std::string element, output;  // "lower_front", "lower_front.elastic_force_x"
+    Unit unit = Unit::newton;
+    double value = 0;  // the component of the largest absolute value
+    double a = 0;      // parameter there, in the unit of the branch
+    // deformation conjugate to it, at the same point; NaN of a link
+    double deformation = 0;
+    Unit deformation_unit = Unit::mm;
+};
+
 // Run of one leg along one branch: outputs of its points, not the states.
 struct LegRun : PathCurve {
     Leg leg = Leg::recursive;
@@ -178,6 +189,10 @@ struct LegRun : PathCurve {
     Tally proved = {};  // proofs of the landmarks; empty unless requested
     std::vector<Compliance> compliance =
         {};  // at front, start and back, as far as they differ; for scenes with wheels
+    // Of the equilibrium leg: states at evenly spaced points, in ascending order of the load, and
+    // the largest forces over all points.
+    std::vector<Equilibrium> stations = {};
+    std::vector<LargestForce> largest = {};
 };
 
 // A reason why a branch cannot be judged.

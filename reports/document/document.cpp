@@ -341,6 +341,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
         scene_document["wheels"] = wheels_json(model, comparison);
     scene_document["elements"] = elements_json(model);
     scene_document["forces"] = table_json(force_rows(element_values(model, comparison)));
+    scene_document["largest_forces"] = table_json(largest_force_rows(comparison));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
 

@@ -270,6 +270,30 @@ json circle(const Wheel& wheel, const Pose& pose) {
     return list;
 }
 
+// Stations of a branch, to move the drawing along it.
+json motion(const Sketch& sketch, const compare::BranchComparison& branch) {
+    json a = json::array(), points = json::array(), axes = json::array();
+    const auto put = [](json& list, const Vector3d& v, double per_unit) {
+        for (const double x : v) list.push_back(std::round(x * per_unit) / per_unit + 0.0);
+    };
+    for (const auto& state :
+         branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].stations) {
+        json at = json::array(), spin = json::array();
+        for (const auto& point : sketch.points) put(at, 1e3 * sketch.at(point, state.poses), 1e3);
+        for (const auto& wheel : sketch.model->wheels)
+            put(spin, state.poses[static_cast<std::size_t>(wheel.body)].p * wheel.spin_axis_local,
+                1e6);
+        a.push_back(parameter_in(branch.unit, state.load));
+        points.push_back(at);
+        axes.push_back(spin);
+    }
+    return {{"branch", branch.branch},
+            {"unit", symbol(branch.unit)},
+            {"a", a},
+            {"points_mm", points},
+            {"spin_axes", axes}};
+}
+
 json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
     json points = json::array();
     for (const auto& point : sketch.points) points.push_back(millimetres(sketch.at(point, poses)));
@@ -348,7 +372,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
         if (!of_beams.contains(model.bodies[static_cast<std::size_t>(body)].name))
             draw_body(sketch, body, hubs[static_cast<std::size_t>(body)], patches, faces);
 
-    json points = json::array(), along = json::array();
+    json points = json::array(), along = json::array(), stations = json::array();
     const auto design = sketch.design();
     for (std::size_t k = 0; k < sketch.points.size(); ++k) {
         const BodyId body = sketch.points[k].body;
@@ -377,12 +401,14 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
                             symbol(branch.unit)),
                 "end", *front);
         if (back) put(branch.branch, "end", *back);
+        stations.push_back(motion(sketch, branch));
     }
     json result = {{"points", points}, {"links", sketch.links},
                    {"faces", faces},   {"symbols", symbols_json(scene)},
                    {"wheels", wheels}, {"bushings", bushings}};
     result["design"] = positions(sketch, design);
     result["positions"] = along;
+    result["motion"] = stations;
     return result;
 }
 

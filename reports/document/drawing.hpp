@@ -20,6 +20,9 @@ namespace elastocheck::reports {
 //   bushings   points
 //   positions  of all points [mm], by the equilibrium leg, at the middle and the ends of every
 //              branch
+//   motion     for each branch, at up to 17 stations of the equilibrium leg: the parameter, the
+//              coordinates of all points one after the other [mm], and the spin axes of the wheels;
+//              rounded, since they are only drawn
 nlohmann::ordered_json drawing_json(const Scene& scene, const Model& model,
                                     const compare::Comparison& comparison);
 

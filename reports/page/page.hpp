@@ -108,6 +108,8 @@ struct Section {
     nlohmann::ordered_json words = nlohmann::ordered_json::object();  // data of the template
     std::vector<FigureGroup> figures{};
     std::vector<Table> tables{};
+    nlohmann::ordered_json
+        motion{};  // of the first figure, turned by hand; null without (motion.hpp)
 };
 
 }  // namespace elastocheck::reports

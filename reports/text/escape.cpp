@@ -79,6 +79,16 @@ std::string for_html(std::string_view text) {
     });
 }
 
+std::string for_script(std::string_view json) {
+    std::string text;
+    for (const char c : json)
+        if (c == '<')
+            text += "\\u003c";
+        else
+            text += c;
+    return text;
+}
+
 std::string for_markdown(std::string_view text) {
     const std::string_view whole = text;
     // At the start of a line "- x", "+ x", "1. x" would be lists, "---" and "===" rules.

@@ -19,6 +19,9 @@ std::string for_terminal(std::string_view text);
 // HTML, as text or in a quoted attribute.
 std::string for_html(std::string_view text);
 
+// JSON as the content of a script element in HTML: it cannot end the element.
+std::string for_script(std::string_view json);
+
 // Markdown, also in a table cell or as a paragraph: without markup, link, formula, list or line
 // break.
 std::string for_markdown(std::string_view text);

@@ -210,5 +210,28 @@ TEST(ElementValues, TellTheRecursionsErrorInTheUnitAndAsAShare) {
     EXPECT_TRUE(largest > 1e-3 && largest < 0.2) << largest;
 }
 
+// From z = h to -h the springs are shortest in the middle, where the arch is flat, and free at both
+// ends: F = k (ℓ₀ - b).
+TEST(LargestForces, AreThoseWithinTheBranchAndNotAtItsEnds) {
+    const Model model = compile(support::scene("arch_driven"));
+    Branch branch = model.branches.front();
+    branch.from = 0, branch.to = -0.16, branch.steps = 80;
+    const auto found = run(model, branch, Leg::equilibrium);
+    ASSERT_EQ(found.outcome, Outcome::converged);
+    const double shortened = std::hypot(300, 80) - 300;
+    ASSERT_EQ(found.largest.size(), 2u);
+    for (const auto& one : found.largest) {
+        EXPECT_EQ(one.output, one.element + ".force");
+        EXPECT_NEAR(one.value, 100 * shortened, 1e-6);
+        EXPECT_NEAR(one.deformation, shortened, 1e-8);
+        EXPECT_EQ(one.a, -80);
+    }
+    // states to draw: evenly spaced, with both ends
+    ASSERT_EQ(found.stations.size(), 17u);
+    for (std::size_t k = 0; k < 17; ++k)
+        EXPECT_NEAR(found.stations[k].load, -0.16 + 0.01 * static_cast<double>(k), 1e-12);
+    EXPECT_TRUE(run(model, branch, Leg::energy).largest.empty());
+}
+
 }  // namespace
 }  // namespace elastocheck::compare

@@ -1,6 +1,7 @@
 // Sections of a report are functions of result.json, and errors name the broken field.
 #include "reports/page/sections.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -435,9 +436,22 @@ TEST(Forces, OfAStopAreShownWithItsPenetration) {
     std::smatch found;
     const std::string text = said(result, "forces");
     ASSERT_TRUE(std::regex_search(
-        text, found, std::regex("coil_left.bump_stop . \\d+ . parallel, 80.0 mm . (\\d+)")))
+        text, found, std::regex("coil_left.bump_stop . \\d+ . parallel, 80 mm . (\\d+)")))
         << text;
     EXPECT_NEAR(std::stod(found[1]), deflection - 25, 0.5);
+}
+
+TEST(Forces, AreTheLargestAlongTheBranchAndSayWhere) {
+    json result = compared_result("twist_beam");
+    const json& branch = result["scenes"][0]["branches"][0];
+    for (auto& row : result["scenes"][0]["largest_forces"]["rows"]) {
+        row[0] = branch["name"], row[1] = -12.5, row[2] = branch["unit"];
+        row[5] = 4321.0;
+    }
+    EXPECT_TRUE(contains(said(result, "forces"),
+                         fmt::format("{}, −12.5 {}", branch["name"].get<std::string>(),
+                                     branch["unit"].get<std::string>())))
+        << said(result, "forces");
 }
 
 TEST(Forces, OfABeamAreThoseOfItsMostLoadedSegment) {

@@ -131,7 +131,9 @@ struct Page {
                 {"has_figures", !groups.empty()},
                 {"groups", groups},
                 {"has_tables", !tables.empty()},
-                {"tables", tables}};
+                {"tables", tables},
+                {"motion", section.motion.is_null() ? json(nullptr)
+                                                    : json(for_script(section.motion.dump()))}};
     }
 
     // The parts of the page in order, each with its sections.

@@ -14,19 +14,6 @@ namespace elastocheck::reports {
 namespace {
 
 constexpr std::size_t most_elements = 40;
-constexpr double nothing = 1e-6;  // [N], [N·m]
-
-// Deformation conjugate to a force: "mount.displacement_x" for "mount.elastic_force_x".
-std::string deformation_of(std::string output) {
-    constexpr std::pair<const char*, const char*> pairs[] = {{".elastic_force_", ".displacement_"},
-                                                             {".elastic_moment_", ".rotation_"},
-                                                             {".force", ".deflection"},
-                                                             {".moment", ".angle"}};
-    for (const auto& [force, deformation] : pairs)
-        if (const auto at = output.rfind(force); at != std::string::npos)
-            return output.replace(at, std::string(force).size(), deformation);
-    return {};
-}
 
 // Beams of segments, and clearances of stops [mm].
 struct Elements {
@@ -44,28 +31,25 @@ Elements elements_of(const JsonCursor& scene) {
     return elements;
 }
 
-using compare::ForceRow;
+using compare::LargestForceRow;
 
-double size_of(const ForceRow* row) { return row == nullptr ? 0 : std::abs(row->value); }
+double size_of(const LargestForceRow* row) { return row == nullptr ? 0 : std::abs(row->value); }
 
 // The largest force and the largest moment of an element; null where it has none.
 struct Largest {
     std::string element;
-    const ForceRow *force = nullptr, *moment = nullptr;
+    const LargestForceRow *force = nullptr, *moment = nullptr;
 };
 
 }  // namespace
 
 std::optional<Section> forces_section(const JsonCursor& scene) {
-    const auto field = scene.find("forces");
+    const auto field = scene.find("largest_forces");
     if (!field) return std::nullopt;
-    const auto forces = read_rows<ForceRow>(*field);
+    const auto forces = read_rows<LargestForceRow>(*field);
     const Elements elements = elements_of(scene);
     std::vector<Largest> largest;
-    std::map<std::tuple<std::string, double, std::string>, const ForceRow*> at;
     for (const auto& r : forces) {
-        at[{r.branch, r.end, r.output}] = &r;
-        if ((r.unit != "N" && r.unit != "N·m") || !(size_of(&r) > nothing)) continue;
         std::string name = r.element;
         if (const auto beam = elements.beam_of.find(name); beam != elements.beam_of.end())
             name = beam->second;
@@ -83,30 +67,29 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
         section.words["left_out"] = whole_number(static_cast<long>(largest.size() - most_elements));
         largest.resize(most_elements);
     }
-    Table table{.caption = "Largest force and moment of each element at the ends of the branches",
-                .columns = {{"element", true},
-                            {"largest force [N]"},
-                            {"where", true},
-                            {"deformed by"},
-                            {"largest moment [N·m]"},
-                            {"where", true},
-                            {"deformed by"}}};
-    const auto cells = [&](const ForceRow* r) -> std::vector<std::string> {
+    Table table{
+        .caption = "Largest force and moment of each element over all points of the branches",
+        .columns = {{"element", true},
+                    {"largest force [N]"},
+                    {"where", true},
+                    {"deformed by"},
+                    {"largest moment [N·m]"},
+                    {"where", true},
+                    {"deformed by"}}};
+    const auto cells = [&](const LargestForceRow* r) -> std::vector<std::string> {
         if (r == nullptr) return {"", "", ""};
-        const auto deformed = at.find({r->branch, r->end, deformation_of(r->output)});
         std::string by;
-        if (deformed != at.end()) {
-            double value = deformed->second->value;
+        if (double value = r->deformation; std::isfinite(value)) {
             const auto stop = elements.clearance.find(r->element);
             if (stop != elements.clearance.end())
                 value = std::max(0.0, std::abs(value) - stop->second);
-            by = quantity(value, deformed->second->unit);
+            by = quantity(value, r->deformation_unit);
         }
         const char axis = r->output.back();
         return {
             number(r->value),
             fmt::format("{}{}, {} {}", axis >= 'x' && axis <= 'z' ? std::string{axis} + ", " : "",
-                        r->branch, number(r->end), r->end_unit),
+                        r->branch, short_number(r->at), r->parameter_unit),
             by};
     };
     for (const auto& l : largest) {

@@ -9,6 +9,7 @@
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
+#include "reports/page/sections/inputs/motion.hpp"
 #include "reports/page/sections/inputs/suspension.hpp"
 #include "reports/text/numbers.hpp"
 
@@ -131,6 +132,7 @@ std::optional<Section> first_section(const JsonCursor& scene) {
     }
     group.table.folded = true;
     section.figures.push_back(std::move(group));
+    section.motion = motion_of(scene, *suspension, axonometric_view(right));
     return section;
 }
 

@@ -1,0 +1,23 @@
+// Data of the drawing that is turned by hand and moved along the branches (turn.js.mustache).
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "reports/json/json_cursor.hpp"
+#include "reports/page/views.hpp"
+
+namespace elastocheck::reports {
+
+// Lengths in 0.01 mm, whole numbers; lists of coordinates x, y, z one after the other.
+//   points, names, bodies, hard  of every point of the drawing, at the design position
+//   links, symbols               kind and points; faces: points
+//   wheels                       centre, patch, spin axis
+//   view                         angles of the first view [deg]: about z from the front, above it
+//   branches                     name, unit and parameter `a` of the stations, the one to `start`
+//                                at, displacements `d` of the points, spin axes `e`; the positions
+//                                `marks` on the figures with the abscissa `x`
+// The branches of the leading sweep come first. Null without a drawing.
+nlohmann::ordered_json motion_of(const JsonCursor& scene, const Suspension& suspension,
+                                 const View& first);
+
+}  // namespace elastocheck::reports
