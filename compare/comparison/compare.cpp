@@ -59,11 +59,16 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side
 }
 
 // The points of a path that ended early are still checked: each is an equilibrium or not.
-Tally proved(const BranchSide& side, const LegRun& run) {
+Tally proved(const BranchSide& side, const LegRun& run, bool ends_only) {
     Tally tally;
     std::vector<double> done;
     const auto& [front, start, middle, back] = run.landmarks;
-    for (const auto* state : {&start, &middle, &front, &back}) {
+    std::vector<const std::optional<Equilibrium>*> states{&start, &middle, &front, &back};
+    if (ends_only) {
+        states = {&front, &back};
+        if (start) done.push_back(start->load);  // a one-sided branch begins there
+    }
+    for (const auto* state : states) {
         if (!*state || std::ranges::find(done, (*state)->load) != done.end()) continue;
         done.push_back((*state)->load);
         add(tally, (*state)->load, run.curve.unit,
@@ -72,11 +77,6 @@ Tally proved(const BranchSide& side, const LegRun& run) {
     return tally;
 }
 
-// Tolerance of the judged method at every point. The series in place of the energy leg is a
-// reference and has none here.
-std::optional<ErrorBound> promise_of(const Model& standing, const SolverSettings& solver) {
-    if (solver.leg != Leg::recursive) return std::nullopt;
-    return tolerance_of_method(solver.recursion.method, recursive::diagnose(standing).length);
 // Parameters of the points whose states are kept.
 std::vector<double> stations_of(const std::vector<double>& requested) {
     constexpr std::size_t most = 16;  // intervals
@@ -87,6 +87,11 @@ std::vector<double> stations_of(const std::vector<double>& requested) {
     return stations;
 }
 
+// Tolerance of the judged method at every point. The series in place of the energy leg is a
+// reference and has none here.
+std::optional<ErrorBound> promise_of(const Model& standing, const SolverSettings& solver) {
+    if (solver.leg != Leg::recursive) return std::nullopt;
+    return tolerance_of_method(solver.recursion.method, recursive::diagnose(standing).length);
 }
 
 // Requests error bounds from methods with a tolerance, and from the equilibrium leg for its
@@ -108,15 +113,15 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const bool both_sides = sides.size() > 1;
     auto& marks = run.landmarks;
     BranchErrorBounds error_bound{promise_of(side.model, solver)};
+    const bool kept = solver.leg == Leg::equilibrium;
+    const auto stations = kept ? stations_of(requested) : std::vector<double>{};
+    std::optional<LargestForces> largest;
+    if (kept) largest.emplace(model, branch);
     static_cast<PathCurve&>(run) =
         walk(model, channels, branch, sides, solver, [&](const Equilibrium& state) {
             for (const Leg by : legs) {
                 auto& worst = run.judged[static_cast<std::size_t>(by)];
                 worst = worse(worst, judge(by, side, state));
-    const bool kept = solver.leg == Leg::equilibrium;
-    const auto stations = kept ? stations_of(requested) : std::vector<double>{};
-    std::optional<LargestForces> largest;
-    if (kept) largest.emplace(model, branch);
             }
             run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
             // The farthest point on either side comes last.
@@ -128,17 +133,17 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
                 marks.back = state;
             if (state.load == middle) marks.middle = state;
             if (solver.error_bound) add(error_bound, state);
+            if (largest) largest->add(state);
+            if (std::ranges::find(stations, state.load) != stations.end())
+                run.stations.push_back(state);
         });
+    std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
+    if (largest) run.largest = largest->list();
     run.messages = messages(error_bound, branch.unit);
     if (!marks.front) marks.front = marks.start;
     if (!marks.back) marks.back = marks.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
-            if (largest) largest->add(state);
-            if (std::ranges::find(stations, state.load) != stations.end())
-                run.stations.push_back(state);
         run.compliance = compliance_of(model, side, solver, run);
-    std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
-    if (largest) run.largest = largest->list();
     if (!times)
         run.seconds = nan;
     else if (solver.leg == Leg::recursive || solver.leg == Leg::series)
@@ -435,7 +440,8 @@ Comparison compare(const Model& model, const Options& options) {
     const auto solve = [&](std::size_t k, const SolverSettings& solver) {
         LegRun found =
             run(model, result.channels, model.branches[k], sides[k], solver, options.times);
-        if (options.prove) found.proved = proved(sides[k].front(), found);
+        if (options.prove && (!options.prove_ends_only || solver.leg == Leg::equilibrium))
+            found.proved = proved(sides[k].front(), found, options.prove_ends_only);
         return found;
     };
     std::vector<std::vector<LegRun>> runs(model.branches.size(), std::vector<LegRun>(legs.size()));

@@ -255,6 +255,8 @@ struct Options {
     // prove that the landmarks are equilibria, to 1e-6 mm and 1e-6 deg; a disproved landmark is an
     // objection
     bool prove = true;
+    // of these, only the last point of the equilibrium leg on each side of a branch
+    bool prove_ends_only = false;
     bool times = true;  // measure LegRun::seconds, else NaN
     int threads = 1;    // legs and branches are solved at once; the results are the same
     Progress progress = {};

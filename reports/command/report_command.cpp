@@ -198,12 +198,14 @@ json solve_scene(const std::string& file, const Request& request, int threads,
     if (!loaded.warnings.empty()) document["warnings"] = loaded.warnings;
     if (loaded.trim) add_trim(document, *loaded.trim);
     if (!request.only.empty()) document["only"] = request.only;
+    if (request.quick) document["proved"] = "ends";
     const bool studies = !request.quick && request.only != "kc";
 
     const double after_legs = studies ? 0.25 : 1;
     compare::Options options;
     options.times = false;
     options.threads = threads;
+    options.prove_ends_only = request.quick;
     options.progress = compare::part(progress_of_scene, 0, after_legs);
     const auto comparison = compare::compare(model, options);
     add_comparison(document, scene, model, comparison);
@@ -457,7 +459,8 @@ Command report_command() {
         {"--only", Text{&request->only, one_of({"kc", "evidence"})},
          "one part of the page: kinematics and compliance (without studies), or the evidence"},
         {"--quick", Flag{&request->quick},
-         "without studies: the references, kinematics and compliance"},
+         "without studies: the references, proved at the ends of the branches, kinematics and "
+         "compliance"},
         jobs_option(request->running),
         quiet_option(request->running)};
     add_candidate_options(options, request->candidate);

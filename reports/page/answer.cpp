@@ -92,6 +92,8 @@ std::string trust_sentence(const JsonCursor& scene) {
         text += proved == points ? fmt::format(", proved at {} points", whole_number(proved))
                                  : fmt::format(", proved at {} of {} points", whole_number(proved),
                                                whole_number(points));
+    if (points > 0 && scene.find("proved"))  // as asked for by --quick
+        text += " (the ends of the branches only)";
     return text + ".";
 }
 

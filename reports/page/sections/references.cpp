@@ -41,16 +41,19 @@ std::optional<Section> references_section(const JsonCursor& scene) {
                            {"factorisations"},
                            {"iterations"},
                            {"evaluations"}}};
-    Table proofs{.caption = "Proofs by interval arithmetic at the start, the middle and the ends",
-                 .columns = {{"branch", true},
-                             {"points of", true},
-                             {"proved"},
-                             {"off at most [mm]"},
-                             {"at most [deg]"},
-                             {"at most [N]"},
-                             {"alone within [mm]"},
-                             {"stable"},
-                             {"remark", true}}};
+    Table proofs{
+        .caption = scene.find("proved")
+                       ? "Proofs by interval arithmetic at the ends (--quick)"
+                       : "Proofs by interval arithmetic at the start, the middle and the ends",
+        .columns = {{"branch", true},
+                    {"points of", true},
+                    {"proved"},
+                    {"off at most [mm]"},
+                    {"at most [deg]"},
+                    {"at most [N]"},
+                    {"alone within [mm]"},
+                    {"stable"},
+                    {"remark", true}}};
     bool times = false;
     for (const auto& branch : scene["branches"].items())
         for (const auto& leg : branch["legs"].items()) times = times || leg.find("seconds");
