@@ -410,5 +410,18 @@ TEST(Browser, PartOneOfAnAxlePrintsOnFivePages) {
     EXPECT_LE(whole, first + 15);
 }
 
+TEST(Browser, PrintsTheFirstScreenBelowTheTitleAndPartOneOnANewPage) {
+    if (no_browser()) GTEST_SKIP() << "chromium is not installed";
+    std::string html = page(compared_result("mcpherson_strut"));  // without studies
+    const auto evidence = html.find("<details class=\"evidence\"");
+    ASSERT_NE(evidence, html.npos);
+    html.erase(evidence, html.find("</main>") - evidence);
+    EXPECT_LE(printed_pages(html), 6) << "the title has a page of its own";
+    const auto part_one = html.find("<h3 id=\"mcpherson-strut-part-1");
+    ASSERT_NE(part_one, html.npos);
+    html.erase(part_one, html.find("</main>") - part_one);
+    EXPECT_EQ(printed_pages(html), 1);
+}
+
 }  // namespace
 }  // namespace elastocheck::reports

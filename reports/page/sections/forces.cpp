@@ -100,6 +100,10 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
         }
         table.rows.push_back(std::move(row));
     }
+    if (std::ranges::none_of(largest, [](const Largest& l) { return l.moment != nullptr; })) {
+        table.columns.resize(4);
+        for (auto& row : table.rows) row.resize(4);
+    }
     section.tables.push_back(std::move(table));
     return section;
 }

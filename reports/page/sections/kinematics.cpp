@@ -36,7 +36,7 @@ const std::vector<Quantity> over_travel{
     {"wheel_centre_x", "Longitudinal movement of the wheel centre", "forward positive",
      Shown::change},
     {"caster", "Caster angle", "top backwards positive"},
-    {"wheel_load", "Wheel load", "with the static load"},
+    {"wheel_load", "Wheel load", "with the static load; negative: the wheel would lift off"},
     {"wheel_rate", "Wheel rate", "both wheels loaded alike, without the tyre"},
     {"roll_centre_height", "Roll centre height", "above the road"},
 };

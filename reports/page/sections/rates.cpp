@@ -42,8 +42,11 @@ std::vector<Rate> rates_of(const Design& design, const std::vector<WheelInfo>& w
     return rates;
 }
 
+constexpr double rate_rounding = 1e-9;  // in any unit of a rate
+
 std::string value_at(const CharacteristicRow& row) {
-    return row.undefined.empty() ? number(row.value, 4) : "none";
+    if (!row.undefined.empty()) return "none";
+    return std::abs(row.value) < rate_rounding ? "0" : number(row.value, 4);
 }
 
 double value_of(const Design& design, const WheelInfo& wheel, std::string_view rate) {
@@ -130,7 +133,7 @@ std::optional<Table> matrix_table(const std::vector<ComplianceRow>& compliance,
         std::vector<std::string> row{r.answer};
         if (several) row = {r.wheel, r.answer, r.loaded_wheel};
         for (const double value : r.by_cause)
-            row.push_back(std::abs(value) < 1e-9 ? "0" : number(value, 3));
+            row.push_back(std::abs(value) < rate_rounding ? "0" : number(value, 3));
         table.rows.push_back(std::move(row));
     }
     return table;
