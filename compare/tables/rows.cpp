@@ -242,7 +242,7 @@ std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders) {
     for (const auto& branch : orders)
         for (const auto& l : branch.levels)
             rows.push_back({branch.branch,
-                            l.tolerance,
+                            1e3 * l.tolerance,
                             count(l.order),
                             elastocheck::name(l.outcome),
                             count(l.expansions),
@@ -299,11 +299,12 @@ std::vector<TradeRow> trade_rows(const Trade& trade) {
         for (std::size_t kind = 0; kind < p.on_front.size(); ++kind)
             if (p.on_front[kind]) front += "sft"[kind];
         rows.push_back({name(p.leg), p.method, p.steps > 0 ? count(p.steps) : nan,
-                        p.own_tolerance > 0 ? p.own_tolerance : nan, elastocheck::name(p.outcome),
-                        p.error.mm, trade.angles ? p.error.deg : nan, p.share, count(p.work.solves),
-                        count(p.work.factorisations), count(p.work.evaluations), p.work.price,
-                        p.work.seconds, p.ratio, front, p.not_ranked,
-                        trade.recommendation && trade.recommendation->point == k, p.detail});
+                        p.own_tolerance > 0 ? 1e3 * p.own_tolerance : nan,
+                        elastocheck::name(p.outcome), p.error.mm, trade.angles ? p.error.deg : nan,
+                        p.share, count(p.work.solves), count(p.work.factorisations),
+                        count(p.work.evaluations), p.work.price, p.work.seconds, p.ratio, front,
+                        p.not_ranked, trade.recommendation && trade.recommendation->point == k,
+                        p.detail});
     }
     return rows;
 }

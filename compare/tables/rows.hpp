@@ -241,7 +241,7 @@ void describe(auto& field, Described<GapRow> auto& r) {
 // The series over a side of a branch, at one tolerance and order.
 struct OrderRow {
     std::string branch{};
-    double told = nan, order = nan;
+    double tolerance = nan, order = nan;
     std::string outcome{};
     double expansions = nan, rejected = nan, factorisations = nan, solves = nan, evaluations = nan,
            error = nan, angle_error = nan, residual = nan, error_at_ends = nan, first_reach = nan,
@@ -251,7 +251,7 @@ struct OrderRow {
 void describe(auto& field, Described<OrderRow> auto& r) {
     using enum Digits;
     field("branch", r.branch);
-    field("told", r.told, {"m", "", given});
+    field("tolerance", r.tolerance, {"mm", "that is required of the method", given});
     field("order", r.order, {"", "", whole});
     field("outcome", r.outcome, {"", "", words});
     field("expansions", r.expansions, {"", "", whole});
@@ -318,7 +318,7 @@ void describe(auto& field, Described<FloorRow> auto& r) {
 // A configuration of a method, or a leg.
 struct TradeRow {
     std::string leg{}, method{};
-    double steps = nan, told = nan;
+    double steps = nan, tolerance = nan;
     std::string outcome{};
     double error = nan, angle_error = nan, share = nan, solves = nan, factorisations = nan,
            evaluations = nan, price = nan, time = nan, time_ratio = nan;
@@ -331,7 +331,8 @@ void describe(auto& field, Described<TradeRow> auto& r) {
     field("leg", r.leg);
     field("method", r.method, {"", "", words});
     field("steps", r.steps, {"", "per branch; none if the method chooses them", whole});
-    field("told", r.told, {"m", "if the method chooses its steps", given});
+    field("tolerance", r.tolerance,
+          {"mm", "that is required of a method that chooses its steps", given});
     field("outcome", r.outcome);
     field("error", r.error, {"mm", "", size});
     field("angle error", r.angle_error, {"deg", "", size, "error"});

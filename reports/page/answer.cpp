@@ -111,7 +111,7 @@ std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade)
     const auto equilibrium = std::ranges::find(points, "equilibrium", &TradeRow::leg);
     const double full = equilibrium == points.end() ? NAN : equilibrium->price;
     const auto share = [&](const TradeRow& r) {  // no looser than what is asked
-        return 1e3 * r.told > trade["tolerance"]["mm"].number() ? INFINITY : r.share;
+        return r.tolerance > trade["tolerance"]["mm"].number() ? INFINITY : r.share;
     };
     for (const auto& method : distinct(points, &TradeRow::method)) {
         auto wanted = where(where(points, &TradeRow::method, method), &TradeRow::leg, "recursive");
@@ -131,8 +131,8 @@ std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade)
         MethodRow row{.method = method,
                       .setting = std::isfinite(best->steps)
                                      ? whole_number(std::lround(best->steps)) + "\u00a0steps"
-                                 : std::isfinite(best->told)
-                                     ? "tolerance " + setting(1e3 * best->told, "mm")
+                                 : std::isfinite(best->tolerance)
+                                     ? "tolerance " + setting(best->tolerance, "mm")
                                      : "",
                       .mm = best->error,
                       .deg = best->angle_error,

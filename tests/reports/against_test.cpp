@@ -178,6 +178,8 @@ TEST(Against, TheCommandComparesTwoScenesAndHasNoFail) {
     EXPECT_FALSE(support::contains(said.out + said.err, "ail")) << said.out;
     EXPECT_TRUE(support::contains(support::text_of(folder.path / "out/report.html"),
                                   "Differences of Higher rack"));
+    EXPECT_TRUE(support::contains(support::text_of(folder.path / "out/report.html"),
+                                  "<h1>Higher rack against "));
     result["scenes"] = {base()};
     folder.write("two.json", result.dump());
     EXPECT_EQ(support::says(in).code, 2) << "one scene has nothing to be compared with";

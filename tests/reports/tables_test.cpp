@@ -152,7 +152,7 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
     const std::string said = order_text(rows);
     for (const auto& branch : orders)
         EXPECT_TRUE(contains(said, "branch '" + branch.branch + "'")) << said;
-    EXPECT_TRUE(contains(said, "told [mm]  order  outcome")) << said;
+    EXPECT_TRUE(contains(said, "tolerance [mm]  order  outcome")) << said;
     EXPECT_TRUE(contains(said, "   1e-06      8  converged")) << said;
 
     auto failed = orders;

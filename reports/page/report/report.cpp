@@ -387,6 +387,21 @@ Answer answer(const JsonCursor& scene) {
     return made;
 }
 
+std::string title_of(const JsonCursor& root) {
+    const auto scenes = root["scenes"].items();
+    const std::string first = scenes[0]["name"].text();
+    if (scenes.size() == 1) return first;
+    if (!scenes[0].find("against")) return fmt::format("{} scenes", scenes.size());
+    const std::string variant = scenes[1]["name"].text();
+    // variants often share their name, and differ by their file
+    const auto file = [](const JsonCursor& scene) {
+        return fs::path(scene["source"].text()).filename().string();
+    };
+    return variant != first
+               ? fmt::format("{} against {}", variant, first)
+               : fmt::format("{}: {} against {}", first, file(scenes[1]), file(scenes[0]));
+}
+
 Texts texts(Draft draft, const json& result, const std::string& file, bool archive) {
     const JsonCursor root{&result, "", &file};
     json scenes = json::array();
@@ -394,17 +409,15 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
     json tints = json::array();
     for (std::size_t k = 0; k < palette.size(); ++k)
         tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
-    const json data = {
-        {"title",
-         scenes.size() == 1 ? scenes[0]["name"] : json(fmt::format("{} scenes", scenes.size()))},
-        {"several", scenes.size() > 1},
-        {"scenes", scenes},
-        {"summary", table_json(summary(draft.parts))},
-        {"provenance", provenance(root)},
-        {"reproduce", for_terminal(root["reproduce"].text())},
-        {"stress", survival(root)},
-        {"alarms", alarms(root)},
-        {"tints", tints}};
+    const json data = {{"title", title_of(root)},
+                       {"several", scenes.size() > 1},
+                       {"scenes", scenes},
+                       {"summary", table_json(summary(draft.parts))},
+                       {"provenance", provenance(root)},
+                       {"reproduce", for_terminal(root["reproduce"].text())},
+                       {"stress", survival(root)},
+                       {"alarms", alarms(root)},
+                       {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
     if (archive)

@@ -29,18 +29,18 @@ FigureGroup group(const std::string& branch, const std::vector<compare::OrderRow
                   .log_y = true};
     std::map<double, std::vector<std::vector<double>>, std::greater<>> by_tolerance;
     for (const auto& level : levels)
-        if (std::isfinite(level.told) && level.outcome == "converged")
-            by_tolerance[level.told].push_back({level.order, level.expansions});
+        if (std::isfinite(level.tolerance) && level.outcome == "converged")
+            by_tolerance[level.tolerance].push_back({level.order, level.expansions});
     std::vector<std::string> listed;
     for (const auto& [tolerance, rows] : by_tolerance) {
         const std::size_t k = figure.series.size();
         figure.series.push_back(
-            {fmt::format("tolerance {} m", number(tolerance, 1)), Series::Style::line_points,
+            {fmt::format("tolerance {} mm", number(tolerance, 1)), Series::Style::line_points,
              order_colours[k % std::size(order_colours)], static_cast<int>(4 + k), rows});
-        listed.push_back(fmt::format("tolerance {} m, {} expansions at order {} and {} at order {}",
-                                     number(tolerance, 1), number(rows.front()[1], 3),
-                                     number(rows.front()[0], 2), number(rows.back()[1], 3),
-                                     number(rows.back()[0], 2)));
+        listed.push_back(fmt::format(
+            "tolerance {} mm, {} expansions at order {} and {} at order {}", number(tolerance, 1),
+            number(rows.front()[1], 3), number(rows.front()[0], 2), number(rows.back()[1], 3),
+            number(rows.back()[0], 2)));
     }
     if (figure.series.empty()) return group;
     figure.description =
