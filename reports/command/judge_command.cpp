@@ -70,6 +70,7 @@ int judge(const Request& request, const Delivery& delivery) {
         auto part = scene_document(loaded.scene, read_whole(request.scene), model,
                                    recursive::diagnose(model));
         if (loaded.trim) add_trim(part, *loaded.trim);
+        if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
         add_comparison(part, loaded.scene, model, comparison);
         part["candidates"] = std::move(candidates);
         add_verdict(part, compared, reasons);

@@ -238,6 +238,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         nlohmann::ordered_json part =
             scene_document(loaded.scene, read_whole(file), model, recursive::diagnose(model));
         if (loaded.trim) add_trim(part, *loaded.trim);
+        if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
         add_curves(part, model, channels, leg,
                    leg == compare::Leg::recursive ? std::string(how.method.name) : "", kept);
         deliver({.as_json = true, .command = delivery.command}, std::move(part), {});

@@ -220,8 +220,14 @@ TEST(Plausibility, ALengthInTheWrongUnitIsAWarningWithItsLine) {
                              "the size of a car; are they in mm, not in m? (warning)\n"))
             << said.err;
     }
-    const auto document = nlohmann::json::parse(elastocheck_says("inspect --json " + file).out);
-    ASSERT_EQ(document["scenes"][0]["warnings"].size(), 1u);
+    const std::string own = folder.write("own.csv", elastocheck_says("solve " + file).out);
+    for (const std::string& command :
+         {std::string("inspect "), std::string("solve "), "judge --candidate " + own + " "}) {
+        const auto said = elastocheck_says(command + "--json " + file);
+        const auto document = nlohmann::json::parse(said.out, nullptr, false);
+        ASSERT_TRUE(document.is_object()) << command << said.err;
+        ASSERT_EQ(document["scenes"][0]["warnings"].size(), 1u) << command;
+    }
     std::string small = arm_in("{length: mm, angle: deg, force: N, moment: N·m}");
     const auto points = small.find("points:"), bodies = small.find("bodies:");
     small.replace(
