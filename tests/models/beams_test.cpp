@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "elastocheck/read_scene.hpp"
-#include "tests/models/mistakes.hpp"
+#include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
 namespace {
@@ -21,16 +21,10 @@ constexpr double pi = std::numbers::pi;
 // A cantilever along x and then along y, with a body at its end.
 std::string cantilever(const std::string& beam,
                        const std::string& units = "length: m, angle: rad, force: N") {
-    return "elastocheck: 1\nname: cantilever\nunits: {" + units + R"(}
-points: {root: [0, 0, 0], bend: [3, 0, 0], tip: [3, 2, 0], up: [0, 0, 1]}
-bodies: {tip: {origin: tip}}
-beams:
-  bar: {bodies: [ground, tip], )" +
-           beam + R"(}
-loads: {push: {on: tip, at: tip, force: [0, 0, 1]}}
-branches: {up: {load: push, to: 1, steps: 1}}
-probes: {tip: {on: tip, at: tip}}
-)";
+    const std::string text =
+        replaced(fixture("cantilever"), "length: m, angle: rad, force: N", units);
+    const auto begin = text.find("through:");
+    return replaced(text, text.substr(begin, text.find('}', begin) - begin), beam);
 }
 const std::string section = "E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13";
 
@@ -216,24 +210,7 @@ TEST(Beam, ARingBeginsAndEndsOnOneBody) {
 
 // ---- Mirrors.
 
-const std::string axle = R"(elastocheck: 1
-name: axle
-units: {length: mm, angle: deg, force: N}
-mirror: left -> right
-points: {end_left: [0, 500, 0], corner_left: [200, 400, 10], clamp_left: [200, 300, 10], o: [0, 0, 0]}
-bodies: {link_left: {origin: end_left}, rod_left: {origin: o}}
-bushings:
-  mount_left: {bodies: [antiroll.clamp_left, ground], at: clamp_left, rates: [1, 2, 3]}
-  near_left: {bodies: [antiroll.2, ground], at: corner_left, rates: [1, 2, 3]}
-beams:
-  antiroll: {bodies: [link_left, link_right], segments: 9, E: 206e3, G: 79e3, diameter: 22,
-             through: [end_left, corner_left, clamp_left, clamp_right, corner_right, end_right]}
-  torsion_left: {bodies: [rod_left, ground], through: [o, clamp_left, end_left], segments: 3, E: 2, G: 1,
-                 A: 1, I_y: 1, I_z: 2, J: 3, up: [1, 2, 3]}
-loads: {push_left: {on: link_left, at: end_left, force: [0, 0, 1]}}
-branches: {up: {load: push_left, to: 1, steps: 1}}
-probes: {tip_left: {on: link_left, at: end_left}}
-)";
+const std::string axle = fixture("beam_axle");
 
 const Elastic& named(const Scene& scene, const std::string& name) {
     for (const Elastic& elastic : scene.elastics)
@@ -299,65 +276,6 @@ TEST(BeamMirror, ABeamOfOneSideHasATwinWithBodiesOfItsOwn) {
                 1e-14);
         }
     }
-}
-
-// ---- Error messages.
-
-TEST(Beam, SaysWhatIsWrong) {
-    const std::string sound = cantilever(
-        "through: [root, bend, tip], segments: 5, E: 2, G: 3, A: 5, I_y: 7, I_z: 11, J: 13, up: z");
-    const std::string names =
-        "bodies, through, segments, E, G, diameter, wall, A, I_y, I_z, J, shear_y, shear_z, up";
-    expect_complaints(
-        sound,
-        {{"segments: 5", "segment: 5",
-          "beams.bar: unknown field 'segment', did you mean 'segments'? allowed: " + names},
-         {"segments: 5, ", "", "beams.bar.segments: missing; this field is required"},
-         {"segments: 5", "segments: 1",
-          "beams.bar.segments: '1' segments for 2 straight parts; allowed: at least one per part"},
-         {"segments: 5", "segments: 1001",
-          "beams.bar.segments: expected a whole number from 1 to 1000, found '1001'"},
-         {"[root, bend, tip]", "[root]",
-          "beams.bar.through: expected a list of two hardpoints or more, found a list of 1"},
-         {"[root, bend, tip]", "root",
-          "beams.bar.through: expected a list of two hardpoints or more, found 'root'"},
-         {"[root, bend, tip]", "[root, bent, tip]",
-          "beams.bar.through: there is no hardpoint called 'bent', did you mean 'bend'? defined: "
-          "bend, root, tip, up"},
-         {"[root, bend, tip]", "[root, bend, bend]",
-          "beams.bar.through: 'bend' coincides with the hardpoint before it; each straight part of "
-          "a beam needs a length"},
-         {"bodies: [ground, tip], through: [root, bend, tip], segments: 5",
-          "bodies: [tip, tip], through: [root, bend], segments: 1",
-          "beams.bar.bodies: both ends are on 'tip'; a beam of one segment needs two different "
-          "bodies"},
-         {"E: 2", "E: 0", "beams.bar.E: '0' is too small; allowed: above zero"},
-         {"J: 13", "J: -1", "beams.bar.J: '-1' is too small; allowed: above zero"},
-         {", J: 13", "", "beams.bar.J: missing; this field is required"},
-         {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "up: z",
-          "beams.bar: no cross-section; allowed: diameter (and wall), or A, I_y, I_z and J"},
-         {"A: 5", "diameter: 1",
-          "beams.bar.I_y: given together with diameter; allowed: diameter and wall, or A, I_y, I_z "
-          "and J"},
-         {"A: 5", "wall: 1, A: 5",
-          "beams.bar.wall: wall of a tube without a diameter; give the diameter"},
-         {"A: 5, I_y: 7, I_z: 11, J: 13, up: z", "diameter: 1, wall: 0.6",
-          "beams.bar.wall: '0.6' is more than half the diameter"},
-         {", up: z", "",
-          "beams.bar: up is missing: the cross-section differs in y and z, so the direction of z "
-          "is needed"},
-         {"up: z", "up: x",
-          "beams.bar.up: parallel to a straight part of the beam; z must be perpendicular to it"},
-         {"bodies: {tip", "bodies: {bar.3: {origin: bend}, tip",
-          "beams.bar: the body name 'bar.3' is reserved for a node of this beam, but already in "
-          "use; rename the other body"}});
-    expect_complaints(axle,
-                      {{"segments: 9", "segments: 8",
-                        "beams.antiroll.segments: '8' segments cannot be divided equally between "
-                        "the two sides; one more or one less can"},
-                       {"clamp_left, clamp_right, corner_right, end_right", "clamp_left",
-                        "beams.antiroll: shared by both sides, since its name does not contain "
-                        "'left', but refers to 'clamp_left' and not to 'clamp_right'"}});
 }
 
 }  // namespace

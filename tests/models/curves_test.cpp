@@ -10,7 +10,7 @@
 
 #include "models/laws.hpp"
 #include "models/reader/tables/interpolant.hpp"
-#include "tests/models/laws_scene.hpp"
+#include "tests/models/fixtures.hpp"
 #include "tests/models/scene_numbers.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/pipe.hpp"

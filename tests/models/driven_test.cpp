@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "elastocheck/compile.hpp"
-#include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
 #include "tests/models/constraint_values.hpp"
+#include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
 namespace {
@@ -19,29 +19,8 @@ using Eigen::Vector3d;
 
 // Two bodies, all kinds of driven joints, elements, a wheel. `branches` is the text of one or more
 // branches.
-std::string rig(const std::string& branches,
-                const std::string& units = "length: mm, angle: deg, force: N") {
-    return "elastocheck: 1\nname: rig\nunits: {" + units + R"(}
-points: {o: [0, 0, 0], a: [100, 20, 0], b: [0, 200, 50], c: [30, 40, 500], patch: [100, 20, -300]}
-bodies: {arm: {origin: o}, hub: {origin: a}}
-joints:
-  hinge: {type: revolute, bodies: [arm, ground], at: o, axis: [1, 2, -2]}
-  slide: {type: translational, bodies: [hub, arm], at: a, axis: [0, 3, 4]}
-  tube: {type: cylindrical, bodies: [arm, hub], at: b, axis: -z}
-  rod: {type: distance, bodies: [hub, ground], from: a, to: b, length: 230}
-  plane: {type: in_plane, bodies: [hub, ground], at: a, normal: x}
-  square: {type: perpendicular, bodies: [arm, hub], axis_i: x, axis_j: y}
-springs:
-  coil: {bodies: [hub, ground], from: a, to: c, rate: 40, preload: 300}
-bushings:
-  mount: {bodies: [arm, ground], at: o, rates: [1, 2, 3]}
-loads:
-  push: {on: hub, at: a, force: [0, 0, 1]}
-  brake: {on: hub, at: patch, force: [-1, 0, 0]}
-  twist: {on: hub, moment: [0, 1, 0]}
-branches:
-)" + branches +
-           "\nwheel: {body: hub, centre: a, contact_patch: patch, spin_axis: y, side: left}\n";
+std::string rig(const std::string& branches) {
+    return replaced(fixture("rig"), "  up: {drive: travel, to: 1, steps: 1}", branches);
 }
 
 Scene parsed(const std::string& text) { return parse_scene(text, "rig.yaml"); }
@@ -234,91 +213,6 @@ TEST(Driven, LoadsHaveWeights) {
 
 // ---- Rejected input.
 
-const std::string allowed_here =
-    "allowed: bushings.mount.preload.x, bushings.mount.preload.y, bushings.mount.preload.z, "
-    "bushings.mount.preload_moment.x, bushings.mount.preload_moment.y, "
-    "bushings.mount.preload_moment.z, "
-    "joints.hinge, joints.plane, joints.rod, joints.slide, joints.tube, patch_travel, "
-    "springs.coil.free_length, "
-    "springs.coil.preload, travel";
-
-TEST(Driven, WhatCannotBeIsRefused) {
-    const std::pair<std::string, std::string> cases[] = {
-        {"{drive: travell, to: 1, steps: 1}",
-         "drive: 'travell' cannot be driven, did you mean 'travel'? " + allowed_here},
-        {"{drive: {joints.rack: 1}, to: 1, steps: 1}",
-         "drive.joints.rack: 'joints.rack' cannot be driven, did you mean 'joints.rod'? " +
-             allowed_here},
-        {"{drive: joints.square, to: 1, steps: 1}",
-         "drive: 'joints.square' is a perpendicular joint, which cannot be driven; allowed: the "
-         "length of "
-         "a distance, the offset of an in_plane, the displacement of a translational, the angle of "
-         "a revolute or cylindrical joint"},
-        {"{drive: travel, load: push, to: 1, steps: 1}",
-         "drive: given together with load; allowed: one of the two (a constant load belongs in "
-         "static_loads)"},
-        {"{drive: travel, hold: {travel: 1}, to: 1, steps: 1}",
-         " drives and holds the same quantity twice; allowed: once"},
-        {"{drive: [springs.coil.preload, springs.coil.free_length], to: 1, steps: 1}",
-         " drives the same quantity twice; allowed: once"},
-        {"{load: push, hold: {springs.coil.preload: 1, springs.coil.free_length: 1}, to: 1, steps: "
-         "1}",
-         " holds the same quantity twice; allowed: once"},
-        {"{drive: [travel, travel], to: 1, steps: 1}", "drive: 'travel' is listed twice"},
-        {"{drive: {travel: 0}, to: 1, steps: 1}",
-         "drive.travel: zero, which rate zero drives nothing; a constant value belongs in hold; "
-         "remove it"},
-        {"{drive: {}, to: 1, steps: 1}", "drive: empty; a driven quantity is needed"},
-        {"{drive: travel, hold: joints.slide, to: 1, steps: 1}",
-         "hold: expected a map from held quantities to values, found 'joints.slide'"},
-        {"{drive: travel, hold: {joints.slide: far}, to: 1, steps: 1}",
-         "hold.joints.slide: expected a number, found 'far'"},
-        {"{drive: travel, static_loads: [psuh], to: 1, steps: 1}",
-         "static_loads: there is no load called 'psuh', did you mean 'push'? defined: brake, push, "
-         "twist"},
-        {"{drive: travel, from: -1, to: 0, steps: 1}",
-         "to: zero: the branch would have no length; allowed: any other value"},
-        {"{drive: travel, from: -2, to: -3, steps: 4}",
-         "from: '-2' and `to` are on the same side of 0, the start of the branch; allowed: the "
-         "other side, or 0"},
-        {"{drive: travel, from: -2, to: 3, steps: 1}",
-         "steps: expected a whole number from 2 to 1000000, found '1'"},
-    };
-    for (const auto& [branch, message] : cases) {
-        const bool of_the_branch = message.starts_with(' ');
-        EXPECT_EQ(complaint(rig("  up: " + branch)),
-                  "rig.yaml:22: branches.up" + (of_the_branch ? ":" : std::string(".")) + message)
-            << branch;
-    }
-}
-
-TEST(Driven, ATakenNameIsRefused) {
-    std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
-    text.replace(text.find("  square:"), 9, "  jack:");
-    EXPECT_EQ(complaint(text),
-              "rig.yaml:22: branches.up.drive: the joint name 'jack' is reserved for its drive, "
-              "but already in use; rename the other joint");
-}
-
-TEST(Driven, OnlyJointsWithAFreeCoordinateAreHeld) {
-    std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
-    text.replace(text.find("length: 230"), 11, "held: true");
-    EXPECT_EQ(
-        complaint(text),
-        "rig.yaml:10: joints.rod: unknown field 'held'; allowed: type, bodies, from, to, length");
-    text = rig("  up: {drive: travel, to: 1, steps: 1}");
-    text.replace(text.find("axis: -z"), 8, "axis: -z, held: maybe");
-    EXPECT_EQ(complaint(text),
-              "rig.yaml:9: joints.tube.held: 'maybe' is not yes or no; allowed: true, false");
-}
-
-TEST(Driven, ALengthOtherThanDrawnIsAboveZero) {
-    std::string text = rig("  up: {drive: travel, to: 1, steps: 1}");
-    text.replace(text.find("length: 230"), 11, "length: -1");
-    EXPECT_EQ(complaint(text),
-              "rig.yaml:10: joints.rod.length: '-1' is not a length; allowed: above zero");
-}
-
 TEST(Limits, TooManyPositionsAreRefused) {
     std::string text =
         "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
@@ -344,50 +238,9 @@ TEST(Limits, TooManyPositionsAreRefused) {
               "rig.yaml:5: bodies: 10001 bodies; allowed: at most 10000");
 }
 
-// ---- Branches whose driven parts are removed by the reduction.
-
-std::string two_parts(const std::string& branches) {
-    return R"(elastocheck: 1
-name: two parts
-units: {length: m, angle: rad, force: N}
-points: {o: [0, 0, 0], a: [1, 0, 0]}
-bodies: {seen: {origin: o}, unseen: {origin: a}, loose: {origin: a}}
-joints:
-  pin: {type: revolute, bodies: [seen, ground], at: o, axis: y}
-  other: {type: revolute, bodies: [unseen, ground], at: a, axis: y}
-springs:
-  zero: {bodies: [seen, loose], from: o, to: a, rate: 0}
-  far: {bodies: [unseen, ground], from: a, to: o, rate: 5}
-  near: {bodies: [seen, ground], from: o, to: a, rate: 5}
-loads:
-  push: {on: seen, at: o, force: [0, 0, 1]}
-  lost: {on: unseen, at: a, force: [0, 0, 1]}
-  spare: {on: seen, at: o, force: [1, 0, 0]}
-branches:
-  up: )" + branches +
-           "\nprobes: {tip: {on: seen, at: a}}\n";
-}
-
-TEST(Branch, ThatMovesNothingOfInterestIsRefused) {
-    const std::string begin =
-        "rig.yaml:18: branches.up: changes nothing that an output depends on: ";
-    const std::string unseen = "no output is connected to it";
-    EXPECT_EQ(complaint(two_parts("{load: lost, to: 1, steps: 1}")),
-              begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
-    EXPECT_EQ(complaint(two_parts("{drive: joints.other, to: 1, steps: 1}")),
-              begin + "joint 'other.drive' is left out: a body that it connects is left out");
-    EXPECT_EQ(complaint(two_parts("{drive: springs.far.free_length, to: 1, steps: 1}")),
-              begin + "element 'far' is left out: a body that it connects is left out");
-    EXPECT_EQ(complaint(two_parts("{load: lost, to: 1, steps: 1, static_loads: {push: 1}}")),
-              begin + "load 'lost' acts on body 'unseen', which is left out: " + unseen);
-    EXPECT_EQ(complaint(two_parts("{load: [lost, push], to: 1, steps: 1}")), "none");
-    EXPECT_EQ(complaint(two_parts("{drive: springs.zero.preload, to: 1, steps: 1}")),
-              "rig.yaml:18: branches.up.drive: 'springs.zero.preload' is of a spring of rate zero, "
-              "on which it has no effect");
-}
-
 TEST(Branch, LoadsThatNoneUsesAreNamed) {
-    const Scene scene = parsed(two_parts("{load: push, to: 1, steps: 1, static_loads: [lost]}"));
+    const Scene scene =
+        parsed(replaced(fixture("two_parts"), "load: push,", "load: push, static_loads: [lost],"));
     ASSERT_EQ(scene.omitted.size(), 1U);
     EXPECT_EQ(scene.omitted[0].what, "load 'spare'");
     EXPECT_EQ(scene.omitted[0].why, "no branch uses it");

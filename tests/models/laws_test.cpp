@@ -9,7 +9,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "models/laws.hpp"
-#include "tests/models/laws_scene.hpp"
+#include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
 namespace {

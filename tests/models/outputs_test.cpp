@@ -6,27 +6,14 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "tests/models/mistakes.hpp"
+#include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
 namespace {
 
 using Eigen::Vector3d;
 
-const std::string strut = R"(elastocheck: 1
-name: strut
-units: {length: mm, angle: deg, force: kN}
-points: {ball: [-20, 600, 200], hub: [0, 700, 300], patch: [0, 710, 0], lower: [-10, 610, 500], top: [-30, 580, 900]}
-bodies: {hub: {origin: hub}, rod: {origin: top}}
-joints: {tube: {type: cylindrical, bodies: [hub, rod], at: lower, axis: [lower, top]}}
-springs: {coil: {bodies: [hub, rod], from: lower, to: top, rate: 0.03, bump_stop: {clearance: 20, rate: 1}}}
-bushings: {mount: {bodies: [rod, ground], at: top, rates: [9, 9, 9], rotational_rates: [9, 9, 9]}}
-loads: {push: {on: hub, at: hub, force: [0, 0, 1]}}
-branches: {up: {load: push, to: 1, steps: 5}}
-wheel: {body: hub, centre: hub, contact_patch: patch, spin_axis: y, side: left, steering_axis: [ball, {on: rod, at: top}]}
-dampers: {damper: {bodies: [hub, ground], from: lower, to: top}}
-vehicle: {wheelbase: 2700, cg_height: 550, axle: rear, brake_share: 0.3, drive_share: 1}
-)";
+const std::string strut = fixture("strut");
 
 Scene parsed(const std::string& text) { return parse_scene(text, "scene.yaml"); }
 
@@ -127,66 +114,6 @@ TEST(Outputs, KnowWhatTheirElementsWereWrittenAs) {
     EXPECT_EQ(of("coil"), WrittenAs::itself);
     EXPECT_EQ(of("coil.bump_stop"), WrittenAs::stop);
     EXPECT_EQ(of("mount"), WrittenAs::itself);
-}
-
-TEST(Outputs, SayWhatIsWrong) {
-    const std::string axis = "steering_axis: [ball, {on: rod, at: top}]",
-                      missing = ": missing; this field is required";
-    expect_complaints(
-        strut,
-        {{axis, "steering_axis: ball",
-          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper, found 'ball'"},
-         {axis, "steering_axis: [ball]",
-          "wheel.steering_axis: expected a list of 2 ends, the lower and the upper, found a list "
-          "of 1"},
-         {axis, "steering_axis: [ball, {on: ground, at: ball}]",
-          "wheel.steering_axis: both ends are at the same position; an axis needs two different "
-          "ones"},
-         {axis, "steering_axis: [ball, tip]",
-          "wheel.steering_axis: there is no hardpoint called 'tip', did you mean 'top'? defined: "
-          "ball, hub, lower, patch, top"},
-         {axis, "steering_axis: [ball, {on: rot, at: top}]",
-          "wheel.steering_axis.on: there is no body called 'rot', did you mean 'rod'? defined: "
-          "ground, hub, rod"},
-         {axis, "steering_axis: [ball, {on: rod}]", "wheel.steering_axis.at" + missing},
-         {axis, "steering_axis: [ball, {at: top}]", "wheel.steering_axis.on" + missing},
-         {axis, "steering_axis: [ball, {of: rod, at: top}]",
-          "wheel.steering_axis: unknown field 'of'; allowed: on, at"},
-         {"{bodies: [hub, ground], from: lower, to: top}}",
-          "{bodies: [hub, ground], from: top, to: top}}",
-          "dampers.damper.to: the same position as `from`; a damper needs a length"},
-         {"{bodies: [hub, ground], from: lower", "{bodies: [hub, hub], from: lower",
-          "dampers.damper.bodies: both bodies are 'hub'; two different bodies are needed"},
-         {"[hub, ground], from: lower, to: top}}", "[hub, ground], from: lower, to: top, rate: 3}}",
-          "dampers.damper: unknown field 'rate'; allowed: bodies, from, to"},
-         {"{damper: {bodies", "{coil: {bodies",
-          "dampers.coil: a spring has the same name 'coil', and each has an output of that name; "
-          "rename one of the two"},
-         {"wheelbase: 2700, ", "", "vehicle.wheelbase" + missing},
-         {"cg_height: 550, ", "", "vehicle.cg_height" + missing},
-         {"axle: rear, ", "", "vehicle.axle" + missing},
-         {"brake_share: 0.3, ", "", "vehicle.brake_share" + missing},
-         {", drive_share: 1", "", "vehicle.drive_share" + missing},
-         {"wheelbase: 2700", "wheelbase: 0",
-          "vehicle.wheelbase: '0' is not a wheelbase; allowed: above zero"},
-         {"wheelbase: 2700", "wheelbase: long",
-          "vehicle.wheelbase: expected a number, found 'long'"},
-         {"cg_height: 550", "cg_height: -1",
-          "vehicle.cg_height: '-1' is not a height; allowed: above zero"},
-         {"axle: rear", "axle: middle",
-          "vehicle.axle: 'middle' is not an axle; allowed: front, rear"},
-         {"brake_share: 0.3", "brake_share: 30",
-          "vehicle.brake_share: '30' is not a share; allowed: 0 to 1"},
-         {"drive_share: 1", "drive_share: -0.1",
-          "vehicle.drive_share: '-0.1' is not a share; allowed: 0 to 1"},
-         {"wheelbase: 2700", "wheel_base: 2700",
-          "vehicle: unknown field 'wheel_base', did you mean 'wheelbase'? allowed: wheelbase, "
-          "cg_height, "
-          "axle, "
-          "brake_share, drive_share"}});
-    // A stop has no output of this name.
-    EXPECT_EQ(complaint_of(replaced(strut, "{damper: {bodies", "{coil.bump_stop: {bodies")),
-              "none");
 }
 
 }  // namespace

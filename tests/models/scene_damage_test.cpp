@@ -5,54 +5,22 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <random>
 #include <regex>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "tests/models/axle_scene.hpp"
-#include "tests/models/bench_scene.hpp"
-#include "tests/models/laws_scene.hpp"
+#include "tests/models/fixtures.hpp"
 #include "tests/models/scene_numbers.hpp"
-#include "tests/support/folder.hpp"
 
 namespace elastocheck {
 namespace {
 
-// Parts missing in the other scenes: beams, tyres, trim, gravity, torsion springs with a mirror.
-const std::string car_scene = R"(elastocheck: 1
-name: car
-units: {length: mm, angle: deg, force: kN}
-mirror: left -> right
-gravity: [0, 0, -9.81]
-points: {hub_left: [0, 700, 0], road_left: [0, 700, -300], end_left: [90, 500, 9], mid: [200, 0, 9], top_left: [0, 500, 400]}
-bodies:
-  hub_left: {origin: hub_left, mass: 40, centre_of_gravity: road_left}
-joints:
-  hub_left: {type: translational, bodies: [hub_left, ground], at: hub_left, axis: [1, 0, 5]}
-springs:
-  coil_left: {bodies: [hub_left, ground], from: hub_left, to: top_left, rate: 0.03, preload: 3}
-torsion_springs:
-  bar_left: {bodies: [hub_left, ground], at: hub_left, axis: y, rate: 2}
-beams:
-  bar: {bodies: [hub_left, hub_right], through: [end_left, mid, end_right], segments: 4, E: 206, G: 79, diameter: 22, wall: 3}
-  rod_left: {bodies: [hub_left, bar.mid], through: [top_left, mid], segments: 2, up: z,
-             E: 206, G: 79, A: 90, I_y: 50, I_z: 70, J: 80, shear_y: 60, shear_z: 60}
-tyres:
-  tyre_left: {wheel: left, rate: 0.2, preload: 3}
-loads:
-  push_left: {on: hub_left, at: road_left, force: [0, 0, 1]}
-trim: {adjust: [springs.coil_left.preload, springs.coil_right.preload], until: {left.travel: 0, right.travel: 1}, under: {push_left: 3}}
-branches:
-  bumps: {drive: {tyres.tyre_left.road: 1, tyres.tyre_right.road: -1}, from: -9, to: 50, steps: 6}
-wheels:
-  left: {body: hub_left, centre: hub_left, contact_patch: road_left, spin_axis: y, side: left}
-)";
-
 // These texts contain every field; the scenes in models/scenes/ would only add run time.
 std::vector<std::string> sound_texts() {
-    std::vector<std::string> texts{bench_scene, axle_scene, laws_scene(every_law), car_scene};
+    std::vector<std::string> texts{bench_scene, axle_scene, fixture("every_law"), fixture("car")};
     for (const char* name : {"arch_driven", "pendulum"})
         texts.push_back(support::text_of(std::filesystem::path(ELASTOCHECK_SCENES) /
                                          (std::string(name) + ".yaml")));
@@ -96,57 +64,64 @@ TEST(DamagedScene, IsSoundToBeginWith) {
     EXPECT_EQ(tally.errors, 0);
 }
 
-TEST(DamagedScene, WithoutAnyOneLine) {
-    Tally tally;
-    for (const std::string& text : sound_texts())
-        for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
-            end = std::min(text.find('\n', begin), text.size());
-            read_damaged(text.substr(0, begin) + text.substr(std::min(end + 1, text.size())),
-                         tally);
-        }
-    report(tally);
+// Every text with one line or byte missing or repeated, or cut at any byte.
+TEST(DamagedScene, AtAnyOnePlace) {
+    using Text = const std::string&;
+    const auto end_of_line = [](Text text, std::size_t at) {
+        return std::min(text.find('\n', at), text.size());
+    };
+    const auto begins_line = [](Text text, std::size_t at) {
+        return at == 0 || text[at - 1] == '\n';
+    };
+    const std::function<std::string(Text, std::size_t)> damages[] = {
+        [&](Text text, std::size_t at) {  // without a line
+            const auto next = std::min(end_of_line(text, at) + 1, text.size());
+            return begins_line(text, at) ? text.substr(0, at) + text.substr(next) : "";
+        },
+        [&](Text text, std::size_t at) {  // a line twice
+            const auto end = end_of_line(text, at);
+            return begins_line(text, at) ? text.substr(0, end) + "\n" + text.substr(at) : "";
+        },
+        [](Text text, std::size_t at) { return text.substr(0, at); },
+        [](Text text, std::size_t at) { return text.substr(0, at) + text.substr(at + 1); },
+    };
+    for (const auto& damaged : damages) {
+        Tally tally;
+        for (const std::string& text : sound_texts())
+            for (std::size_t at = 0; at < text.size(); ++at)
+                if (const std::string damage = damaged(text, at); !damage.empty())
+                    read_damaged(damage, tally);
+        report(tally);
+    }
 }
 
-TEST(DamagedScene, WithAnyOneLineTwice) {
-    Tally tally;
-    for (const std::string& text : sound_texts())
-        for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
-            end = std::min(text.find('\n', begin), text.size());
-            read_damaged(text.substr(0, end) + "\n" + text.substr(begin), tally);
-        }
-    report(tally);
+// Bytes overwritten, or tokens inserted, at up to three random places. Characters with a meaning in
+// YAML or in a scene are the most damaging ones.
+TEST(DamagedScene, AtRandomPlaces) {
+    const char* const tokens[] = {
+        "{",    "}",   "[",     "]",        ",",           ":",      ": ", "- ",   "? ",
+        "#",    "&a ", "*a",    "!!x ",     "|",           ">",      "\"", "'",    "\n",
+        "\n  ", "\t",  "---\n", "...\n",    "<<: ",        "nan",    "-",  "1e30", "e30",
+        "e-30", "0",   "999",   "~",        "null",        "ground", "x",  "\\",   "%YAML",
+        "\r",   "@",   "`",     "\xC3\xA4", "\xEF\xBB\xBF"};
+    for (const bool overwrites : {true, false}) {
+        Tally tally;
+        std::mt19937 random(overwrites ? 20040301 : 31415);
+        for (const std::string& text : sound_texts())
+            for (int n = 0; n < 1500; ++n) {
+                std::string damaged = text;
+                for (unsigned k = 0; k <= random() % 3; ++k)
+                    if (overwrites)
+                        damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
+                    else
+                        damaged.insert(random() % damaged.size(),
+                                       tokens[random() % std::size(tokens)]);
+                read_damaged(damaged, tally);
+            }
+        report(tally);
+    }
 }
 
-TEST(DamagedScene, CutAtAnyByte) {
-    Tally tally;
-    for (const std::string& text : sound_texts())
-        for (std::size_t end = 0; end < text.size(); ++end)
-            read_damaged(text.substr(0, end), tally);
-    report(tally);
-}
-
-TEST(DamagedScene, WithoutAnyOneByte) {
-    Tally tally;
-    for (const std::string& text : sound_texts())
-        for (std::size_t at = 0; at < text.size(); ++at)
-            read_damaged(text.substr(0, at) + text.substr(at + 1), tally);
-    report(tally);
-}
-
-TEST(DamagedScene, WithBytesOverwritten) {
-    Tally tally;
-    std::mt19937 random(20040301);
-    for (const std::string& text : sound_texts())
-        for (int n = 0; n < 1500; ++n) {
-            std::string damaged = text;
-            for (unsigned k = 0; k <= random() % 3; ++k)
-                damaged[random() % damaged.size()] = static_cast<char>(random() % 256);
-            read_damaged(damaged, tally);
-        }
-    report(tally);
-}
-
-// Characters with a meaning in YAML or in a scene are the most damaging ones.
 // Lines of prose, whose numbers are not numbers of the scene.
 bool contains_comment_or_name(const std::string& line) {
     return line.find('#') != std::string::npos || line.starts_with("name:");
@@ -195,25 +170,6 @@ TEST(DamagedScene, WithAnyOneNumberAtTheEndOfItsRange) {
         for (const auto& [first, length] : numbers_in(text))
             for (const char* extreme : {"0", "1e30", "-1e30", "1e-30", "-1e-30"})
                 read_damaged(text.substr(0, first) + extreme + text.substr(first + length), tally);
-    report(tally);
-}
-
-TEST(DamagedScene, WithTokensPutAnywhere) {
-    const char* const tokens[] = {
-        "{",    "}",   "[",     "]",        ",",           ":",      ": ", "- ",   "? ",
-        "#",    "&a ", "*a",    "!!x ",     "|",           ">",      "\"", "'",    "\n",
-        "\n  ", "\t",  "---\n", "...\n",    "<<: ",        "nan",    "-",  "1e30", "e30",
-        "e-30", "0",   "999",   "~",        "null",        "ground", "x",  "\\",   "%YAML",
-        "\r",   "@",   "`",     "\xC3\xA4", "\xEF\xBB\xBF"};
-    Tally tally;
-    std::mt19937 random(31415);
-    for (const std::string& text : sound_texts())
-        for (int n = 0; n < 1500; ++n) {
-            std::string damaged = text;
-            for (unsigned k = 0; k <= random() % 3; ++k)
-                damaged.insert(random() % damaged.size(), tokens[random() % std::size(tokens)]);
-            read_damaged(damaged, tally);
-        }
     report(tally);
 }
 

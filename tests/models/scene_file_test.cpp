@@ -14,9 +14,8 @@
 #include <random>
 #include <sstream>
 
-#include "tests/models/bench_scene.hpp"
+#include "tests/models/fixtures.hpp"
 #include "tests/models/scene_numbers.hpp"
-#include "tests/support/folder.hpp"
 
 namespace elastocheck {
 namespace {
@@ -32,13 +31,6 @@ Scene shipped(const std::string& name) {
 }
 
 Scene parsed(const std::string& text) { return parse_scene(text, "text.yaml"); }
-
-template <class T>
-T element(const Scene& scene, const std::string& name) {
-    for (const auto& elastic : scene.elastics)
-        if (elastic.name == name) return std::get<T>(elastic.kind);
-    throw std::out_of_range(name);
-}
 
 double k_of(const AxialSpring& spring) { return std::get<LinearRate>(spring.law).k; }
 Matrix6 K_of(const Bushing& bushing) { return std::get<LinearStiffness>(bushing.law).K; }

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "elastocheck/read_scene.hpp"
-#include "tests/models/bench_scene.hpp"
+#include "tests/models/fixtures.hpp"
 #include "tests/models/scene_numbers.hpp"
 
 namespace elastocheck {
@@ -158,6 +158,16 @@ TEST(Settings, ThatAreNoValuesAreRefusedAsSuch) {
     EXPECT_EQ(
         complaint({{"springs.coil.rate", "-1"}}),
         "bench.yaml:22: springs.coil.rate: negative rate '-1'; allowed: zero or more (as set)");
+    const Setting falling{"springs.coil.curve.table.2.2", "-950"};
+    try {
+        parse_scene(laws_scene(spring_with("curve: {table: [[-50, -900], [0, 0]]}")), "laws.yaml",
+                    {&falling, 1});
+        ADD_FAILURE();
+    } catch (const SceneError& error) {
+        EXPECT_STREQ(error.what(),
+                     "laws.yaml:11: springs.coil.curve.table: row 2: force '-950' is smaller than "
+                     "that of the row before; it must not decrease (as set)");
+    }
     for (const std::string& text :
          {std::string(), std::string("1\n2"), std::string("\xFF"), std::string(300, '1')})
         EXPECT_NE(complaint({{"springs.coil.rate", text}})

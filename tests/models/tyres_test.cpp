@@ -7,7 +7,7 @@
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/branch.hpp"
-#include "tests/models/mistakes.hpp"
+#include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
 namespace {
@@ -15,33 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 // Two wheels, each on a suspension of one spring rate.
-const std::string axle = R"(elastocheck: 1
-name: wheels
-units: {length: mm, angle: deg, force: kN}
-mirror: left -> right
-points: {hub_left: [0, 700, 300], patch_left: [5, 710, 0]}
-bodies: {hub_left: {origin: hub_left}}
-bushings: {strut_left: {bodies: [hub_left, ground], at: hub_left, rates: [9, 9, 0.02], rotational_rates: [9, 9, 9]}}
-tyres:
-  tyre_left: {wheel: left, rate: 0.2, preload: 3.5}
-loads: {push_left: {on: hub_left, at: hub_left, force: [0, 0, 1]}}
-branches:
-  bump: {drive: [tyres.tyre_left.road, tyres.tyre_right.road], to: 50, steps: 5}
-  roll: {drive: {tyres.tyre_left.road: 1, tyres.tyre_right.road: -1}, to: 50, steps: 5}
-  load: {load: push_left, to: 1, steps: 5}
-wheels: {left: {body: hub_left, centre: hub_left, contact_patch: patch_left, spin_axis: y, side: left}}
-)";
-
-const std::string single = R"(elastocheck: 1
-name: wheel
-units: {length: m, angle: deg, force: N}
-points: {hub: [0, 0.7, 0.3]}
-bodies: {hub: {origin: hub}}
-bushings: {strut: {bodies: [hub, ground], at: hub, rates: [9, 9, 20e3], rotational_rates: [9, 9, 9]}}
-tyres: {tyre: {rate: 200e3}}
-branches: {bump: {drive: tyres.tyre.road, to: 0.05, steps: 5}}
-wheel: {body: hub, centre: hub, spin_axis: y, side: left}
-)";
+const std::string axle = fixture("tyres"), single = fixture("tyre");
 
 const Bushing& tyre(const Scene& scene, const std::string& name) {
     const auto found = std::ranges::find(scene.elastics, name, &Elastic::name);
@@ -115,39 +89,6 @@ TEST(Tyre, StandsOnARoadThatIsHeldWhereItIs) {
         ASSERT_NE(tyre, here.elastics.end());
         EXPECT_EQ(std::get<LinearStiffness>(std::get<Bushing>(tyre->kind).law).K(2, 2), 200e3);
     }
-}
-
-TEST(Tyre, HasNoPreloadThatIsDrivenLikeABushings) {
-    EXPECT_EQ(
-        complaint_of(replaced(single, "drive: tyres.tyre.road", "drive: bushings.tyre.preload.z"))
-            .substr(0, 65),
-        "branches.bump.drive: 'bushings.tyre.preload.z' cannot be driven, ");
-}
-
-TEST(Tyre, SaysWhatIsWrong) {
-    expect_complaints(
-        axle,
-        {{"wheel: left, ", "", "tyres.tyre_left.wheel: missing; this field is required"},
-         {"wheel: left, ", "wheel: lift, ",
-          "tyres.tyre_left.wheel: there is no wheel called 'lift', did you mean 'left'? defined: "
-          "left, right"},
-         {"rate: 0.2", "rate: 0", "tyres.tyre_left.rate: zero; a tyre needs a rate"},
-         {"rate: 0.2", "rate: -1",
-          "tyres.tyre_left.rate: negative rate '-1'; allowed: zero or more"},
-         {"rate: 0.2", "rates: 0.2",
-          "tyres.tyre_left: unknown field 'rates', did you mean 'rate'? allowed: wheel, rate, "
-          "preload"},
-         {"preload: 3.5}", "preload: 3.5}\n  spare_left: {wheel: left, rate: 1}",
-          "tyres.spare_left: wheel 'left' has a tyre already; allowed: one"},
-         {"  tyre_left:", "  tyre:",
-          "tyres.tyre: the mirror generates a twin of its wheel but not of the tyre; both or "
-          "neither must have 'left' in their name"}});
-    expect_complaints(
-        single, {{"{rate: 200e3}", "{wheel: hub, rate: 200e3}",
-                  "tyres.tyre.wheel: the only wheel of the scene has no name; remove this field"},
-                 {"wheel: {body: hub, centre: hub, spin_axis: y, side: left}",
-                  "probes: {p: {on: hub, at: hub}}",
-                  "tyres.tyre: the scene has no wheel; give wheel or wheels"}});
 }
 
 }  // namespace
