@@ -53,29 +53,22 @@ void check_all_held(const Cursor& scene, const Scene& result) {
                     "no joint or element is attached to it; a joint, spring or bushing is needed");
 }
 
-// The mirrored entry, still with its own name.
-Joint reflected(Joint joint, const Definitions& defs) {
-    joint.kind = twin(joint.kind, defs);
-    return joint;
+// The mirrored entry, still with its own name; first that of a joint, an element or a load.
+template <class T>
+T mirrored(T entry, const Definitions& defs) {
+    entry.kind = twin(entry.kind, defs);
+    return entry;
 }
-Elastic reflected(Elastic elastic, const Definitions& defs) {
-    elastic.kind = twin(elastic.kind, defs);
-    return elastic;
-}
-Load reflected(Load load, const Definitions& defs) {
-    load.kind = twin(load.kind, defs);
-    return load;
-}
-Probe reflected(Probe probe, const Definitions& defs) {
+Probe mirrored(Probe probe, const Definitions& defs) {
     probe.at = twin(probe.at, defs);
     return probe;
 }
-Damper reflected(Damper damper, const Definitions& defs) {
+Damper mirrored(Damper damper, const Definitions& defs) {
     damper.i = twin(damper.i, defs);
     damper.j = twin(damper.j, defs);
     return damper;
 }
-Wheel reflected(const Wheel& wheel, const Definitions& defs) { return twin(wheel, defs); }
+Wheel mirrored(Wheel wheel, const Definitions& defs) { return twin(wheel, defs); }
 
 // Reads the entries of a section and appends their twins. Sections that may exist on one side only
 // are not checked.
@@ -101,7 +94,7 @@ void read_section(const Cursor& scene, const char* key, const Definitions& defs,
     const std::size_t end = list.size();
     for (std::size_t k = begin; defs.mirror && k < end; ++k)
         if (const auto name = twin_name(*defs.mirror, list[k].name, *section)) {
-            T twin_entry = reflected(list[k], defs);
+            T twin_entry = mirrored(list[k], defs);
             twin_entry.name = *name;
             list.push_back(twin_entry);
         }

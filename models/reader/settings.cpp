@@ -62,9 +62,6 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
              fmt::format("not a single value; it contains: {}",
                          names.empty() ? "nothing" : listed(names)));
     const std::string& text = setting.value;
-    const auto is_control = [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-    };
     if (text.empty() || text.size() > longest_value || std::ranges::any_of(text, is_control) ||
         !is_utf8(text))
         fail(file, value->line, shown_path,

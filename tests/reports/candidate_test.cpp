@@ -271,7 +271,7 @@ TEST(CandidateCommand, TradeOfRunsThatCouldNotBeJudgedIsNoSuccess) {
         "trade " + scenes + "/single_bushing.yaml --candidate-command 'false {output}' -o " +
         (folder.path / "out").string());
     EXPECT_EQ(said.code, 3) << said.out << said.err;
-    EXPECT_TRUE(contains(said.out, "told [mm]")) << "tolerances are in mm\n" << said.out;
+    EXPECT_TRUE(contains(said.out, "tolerance [mm]")) << "tolerances are in mm\n" << said.out;
     EXPECT_FALSE(contains(said.out, " m,") || contains(said.out, " m\n") ||
                  contains(said.out, "[m]"))
         << said.out;

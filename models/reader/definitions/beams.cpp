@@ -165,11 +165,7 @@ struct CrossSection {
     bool is_round() const { return EI_y == EI_z && GA_y == GA_z; }
 };
 
-double positive(const Cursor& at, const Unit& unit) {
-    const double x = unit.si(at.number(unit.name));
-    if (!(x > 0)) at.fail(fmt::format("{} is too small; allowed: above zero", at.found()));
-    return x;
-}
+double positive(const Cursor& at, const Unit& unit) { return above_zero(at, "too small", unit); }
 
 // force/length², length², length⁴
 Unit modulus(const Units& u) {

@@ -122,6 +122,12 @@ double rate(const Cursor& at, const Unit& unit) {
     return unit.si(k);
 }
 
+double above_zero(const Cursor& at, const char* what, const Unit& unit) {
+    const double x = unit.si(at.number(unit.name));
+    if (!(x > 0)) at.fail(fmt::format("{} is {}; allowed: above zero", at.found(), what));
+    return x;
+}
+
 Vector3d vector(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "numbers");
     const auto si = [&](std::size_t k) { return unit.si(items[k].number(unit.name)); };
@@ -175,6 +181,21 @@ BodyPair body_pair(const Cursor& at, const Definitions& defs) {
 Point point_of(BodyId body, const Vector3d& p, const Definitions& defs) {
     if (body == ground) return {ground, p};
     return {body, p - defs.bodies[static_cast<std::size_t>(body)].design.r};
+}
+
+Marker marker_of(BodyId body, const Vector3d& p, const Eigen::Matrix3d& axes,
+                 const Definitions& defs) {
+    return {body, point_of(body, p, defs).s_local, Eigen::Quaterniond(axes).normalized()};
+}
+
+Between between(const Cursor& at, const Definitions& defs, const char* what) {
+    const auto [i, j] = body_pair(at.require("bodies"), defs);
+    const Vector3d from = hardpoint(at.require("from"), defs),
+                   to = hardpoint(at.require("to"), defs);
+    const double length = (to - from).norm();
+    if (!(length > coincident))
+        at.require("to").fail(fmt::format("the same position as `from`; {} needs a length", what));
+    return {point_of(i, from, defs), point_of(j, to, defs), length};
 }
 
 }  // namespace elastocheck::reader

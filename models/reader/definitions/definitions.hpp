@@ -46,7 +46,9 @@ Definitions read_definitions(const Cursor& scene);
 // Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
-double rate(const Cursor& at, const Unit& unit);                       // zero or more, SI
+double rate(const Cursor& at, const Unit& unit);  // zero or more, SI
+// SI; `what` completes "'0' is ...; allowed: above zero".
+double above_zero(const Cursor& at, const char* what, const Unit& unit = {});
 Eigen::Vector3d vector(const Cursor& at, const Unit& unit = {});       // three numbers, SI
 Eigen::Vector3d hardpoint(const Cursor& at, const Definitions& defs);  // [m]
 Eigen::Vector3d direction(const Cursor& at, const Definitions& defs);  // unit
@@ -60,5 +62,15 @@ BodyPair body_pair(const Cursor& at, const Definitions& defs);  // [i, j], diffe
 
 // A ground position as a point of the body: s_local = p - r, since bodies start parallel to ground.
 Point point_of(BodyId body, const Eigen::Vector3d& p, const Definitions& defs);
+Marker marker_of(BodyId body, const Eigen::Vector3d& p, const Eigen::Matrix3d& axes,
+                 const Definitions& defs);
+
+// The fields `bodies`, `from` and `to` of what lies between two points; `what` completes "... needs
+// a length".
+struct Between {
+    Point i, j;
+    double length;  // [m]
+};
+Between between(const Cursor& at, const Definitions& defs, const char* what);
 
 }  // namespace elastocheck::reader

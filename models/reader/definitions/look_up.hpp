@@ -12,17 +12,21 @@
 
 namespace elastocheck::reader {
 
+template <class T>
+std::vector<std::string> names_of(const std::map<std::string, T>& table) {
+    std::vector<std::string> names;
+    for (const auto& entry : table) names.push_back(entry.first);
+    return names;
+}
+
 // The table entry that `at` names; the error message suggests the nearest name. `kind` names the
 // kind of entry, e.g. "hardpoint".
 template <class T>
 const T& look_up(const Cursor& at, const std::string& kind, const std::map<std::string, T>& table) {
     const std::string& name = at.text("the name of a " + kind);
     if (const auto found = table.find(name); found != table.end()) return found->second;
-    std::vector<std::string> names;
-    names.reserve(table.size());
-    for (const auto& entry : table) names.push_back(entry.first);
     at.fail(fmt::format("there is no {} called {}{}", kind, quote(name),
-                        did_you_mean(name, names, "defined")));
+                        did_you_mean(name, names_of(table), "defined")));
 }
 
 }  // namespace elastocheck::reader

@@ -16,13 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool is_letter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           static_cast<unsigned char>(c) >= 0x80;
-}
+// Of any language.
+bool is_any_letter(char c) { return is_letter(c) || static_cast<unsigned char>(c) >= 0x80; }
 
-bool is_word(std::string_view text) {
-    return !text.empty() && std::ranges::all_of(text, is_letter);
+bool is_all_letters(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, is_any_letter);
 }
 
 // Whether any name in the sections of the scene contains the mirrored word.
@@ -67,7 +65,7 @@ Mirror read_mirror(const Cursor& at, const Cursor& scene) {
     if (arrow != std::string_view::npos)
         mirror = {std::string(trimmed(text.substr(0, arrow))),
                   std::string(trimmed(text.substr(arrow + 2)))};
-    if (!is_word(mirror.from) || !is_word(mirror.to) || mirror.from == mirror.to)
+    if (!is_all_letters(mirror.from) || !is_all_letters(mirror.to) || mirror.from == mirror.to)
         at.fail(fmt::format(
             "{} is not a mirror; expected two different words of letters, like left -> right",
             at.found()));
@@ -80,8 +78,8 @@ std::optional<std::string> turned(const Mirror& mirror, std::string_view name) {
     std::string result;
     bool found = false;
     while (!name.empty()) {
-        const auto end = is_letter(name.front()) ? std::ranges::find_if_not(name, is_letter)
-                                                 : std::ranges::find_if(name, is_letter);
+        const auto end = is_any_letter(name.front()) ? std::ranges::find_if_not(name, is_any_letter)
+                                                     : std::ranges::find_if(name, is_any_letter);
         const std::string_view piece = name.substr(0, static_cast<std::size_t>(end - name.begin()));
         found = found || piece == mirror.from;
         result += piece == mirror.from ? std::string_view(mirror.to) : piece;

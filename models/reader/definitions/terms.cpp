@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "models/kinds.hpp"
-#include "models/reader/document/suggestions.hpp"
+#include "models/reader/definitions/look_up.hpp"
 
 namespace elastocheck::reader {
 
@@ -30,13 +30,11 @@ std::vector<Term> terms(const Cursor& at, const std::string& what) {
 
 const Load& look_up_load(const Term& term, const Loads& loads) {
     if (const auto found = loads.find(term.name); found != loads.end()) return found->second;
-    std::vector<std::string> names;
-    for (const auto& entry : loads) names.push_back(entry.first);
-    if (names.empty())
+    if (loads.empty())
         term.at.fail(
             fmt::format("there is no load called {}; the scene has no loads", quote(term.name)));
     term.at.fail(fmt::format("there is no load called {}{}", quote(term.name),
-                             did_you_mean(term.name, names, "defined")));
+                             did_you_mean(term.name, names_of(loads), "defined")));
 }
 
 double held_value(const Term& term, const Load& load, const Units& units) {

@@ -43,4 +43,30 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
+std::string capitals(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return result;
+}
+
+std::string small_letters(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+Lines::Lines(std::string_view text)
+    : rest_(text), end_(text.find('\n') == text.npos ? '\r' : '\n') {}
+
+bool Lines::next() {
+    if (rest_.empty()) return false;
+    const std::size_t length = std::min(rest_.find(end_), rest_.size());
+    line_ = rest_.substr(0, length);
+    rest_.remove_prefix(std::min(length + 1, rest_.size()));
+    ++number_;
+    return true;
+}
+
 }  // namespace elastocheck::reader

@@ -1,6 +1,7 @@
-// UTF-8 decoding and trimming of text.
+// Characters and lines of text: UTF-8, letters, trimming.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace elastocheck::reader {
@@ -28,5 +29,27 @@ inline bool is_blank(char c) { return blanks.find(c) != blanks.npos; }
 
 // Without the blanks at both ends.
 std::string_view trimmed(std::string_view text);
+
+// ---- ASCII, in any locale.
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+inline bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+inline bool is_word(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
+inline bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
+std::string capitals(std::string_view text);
+std::string small_letters(std::string_view text);
+
+// Lines that end in LF, CR LF or CR alone.
+class Lines {
+  public:
+    explicit Lines(std::string_view text);
+    bool next();                            // false at the end
+    int number() const { return number_; }  // of the line, from 1
+    std::string_view line() const { return line_; }
+
+  private:
+    std::string_view rest_, line_;
+    char end_;
+    int number_ = 0;
+};
 
 }  // namespace elastocheck::reader

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 
@@ -16,20 +17,16 @@ namespace {
 // Range of non-zero numbers: no conversion, product or quotient then leaves the range of double.
 constexpr double least_size = 1e-30, largest_size = 1e30;
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }
-
 // Letters of any language, digits, _ and, not first, - + . and inner spaces: safe in file names,
 // column heads and command lines.
 bool is_name(std::string_view name) {
-    const auto is_letter = [](char c) {
-        const bool is_ascii =
-            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-        return is_ascii || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+    const auto is_first = [](char c) {
+        return is_word(c) || static_cast<unsigned char>(c) >= 0x80;
     };
     const auto is_allowed = [&](char c) {
-        return is_letter(c) || c == '-' || c == '+' || c == '.' || c == ' ';
+        return is_first(c) || c == '-' || c == '+' || c == '.' || c == ' ';
     };
-    return !name.empty() && name.size() <= longest_name && is_letter(name.front()) &&
+    return !name.empty() && name.size() <= longest_name && is_first(name.front()) &&
            name.back() != ' ' && std::all_of(name.begin(), name.end(), is_allowed);
 }
 

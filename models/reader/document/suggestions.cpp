@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "models/reader/document/characters.hpp"
+
 namespace elastocheck::reader {
 namespace {
 
@@ -45,9 +47,6 @@ std::string shown(std::string_view text) {
     const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
     while (is_long && end > 0 && continues(text[end])) --end;  // whole UTF-8 characters
     std::string line(text.substr(0, end));
-    const auto is_control = [](char c) {
-        return static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-    };
     std::replace_if(line.begin(), line.end(), is_control, '?');
     return is_long ? line + "..." : line;
 }

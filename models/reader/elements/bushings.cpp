@@ -285,14 +285,12 @@ Elastic read_bushing(const std::string& name, const Cursor& at, const Definition
     const Vector3d p = hardpoint(at.require("at"), defs);
     const auto frame_field = at.optional("frame");
     const FrameField frame = frame_field ? read_frame(*frame_field, defs) : FrameField{};
-    const auto marker = [&](BodyId body, const Axes& axes) {
-        return Marker{body, point_of(body, p, defs).s_local, Eigen::Quaterniond(axes).normalized()};
-    };
     const auto frame_j = at.optional("frame_j");
     const Axes axes_j = frame_j ? read_frame_j(*frame_j, frame, defs) : frame.axes;
     const Units& units = defs.units;
-    Bushing bushing{
-        .i = marker(i, frame.axes), .j = marker(j, axes_j), .law = read_spatial_law(at, defs)};
+    Bushing bushing{.i = marker_of(i, p, frame.axes, defs),
+                    .j = marker_of(j, p, axes_j, defs),
+                    .law = read_spatial_law(at, defs)};
     bushing.preload = read_pair(at, "preload", units.force, "preload_moment", units.moment);
     bushing.undeformed =
         read_pair(at, "undeformed", units.length, "undeformed_angles", units.angle);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "models/kinds.hpp"
+#include "models/reader/definitions/look_up.hpp"
 #include "models/reader/definitions/mirror.hpp"
 #include "models/reader/document/suggestions.hpp"
 
@@ -181,10 +182,8 @@ const Drivable& drivable(const Cursor& at, const std::string& name, Drivables& d
     if (found == drivables.table.end()) {
         if (const auto why = drivables.not_driven.find(name); why != drivables.not_driven.end())
             at.fail(fmt::format("{} is {}", quote(name), why->second));
-        std::vector<std::string> names;
-        for (const auto& entry : drivables.table) names.push_back(entry.first);
         at.fail(fmt::format("{} cannot be driven{}", quote(name),
-                            did_you_mean(name, names, "allowed")));
+                            did_you_mean(name, names_of(drivables.table), "allowed")));
     }
     Drivable& result = found->second;
     if (result.joint) {

@@ -68,15 +68,9 @@ JointKind fixed(const JointFields& f) {
 }
 
 JointKind distance(const JointFields& f) {
-    const double drawn = (f.position("to") - f.position("from")).norm();
-    if (!(drawn > coincident))
-        f.at.require("to").fail("the same position as `from`; a distance joint needs a length");
+    const auto [i, j, drawn] = between(f.at, f.defs, "a distance joint");
     const auto given = f.at.optional("length");
-    const Unit& unit = f.defs.units.length;
-    const double length = given ? unit.si(given->number(unit.name)) : drawn;
-    if (!(length > 0))
-        given->fail(fmt::format("{} is not a length; allowed: above zero", given->found()));
-    return Distance{f.i("from"), f.j("to"), length};
+    return Distance{i, j, given ? above_zero(*given, "not a length", f.defs.units.length) : drawn};
 }
 
 JointKind in_plane(const JointFields& f) {

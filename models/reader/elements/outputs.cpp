@@ -31,12 +31,6 @@ SteeringAxis read_steering_axis(const Cursor& at, BodyId wheel, const Definition
     return {lower.point, upper.point};
 }
 
-double above_zero(const Cursor& at, const char* what, const Unit& unit) {
-    const double x = unit.si(at.number(unit.name));
-    if (!(x > 0)) at.fail(fmt::format("{} is not {}; allowed: above zero", at.found(), what));
-    return x;
-}
-
 double share(const Cursor& at) {
     const double x = at.number();
     if (!(x >= 0 && x <= 1)) at.fail(fmt::format("{} is not a share; allowed: 0 to 1", at.found()));
@@ -75,19 +69,15 @@ Probe read_probe(const std::string& name, const Cursor& at, const Definitions& d
 
 Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs) {
     at.only_keys({"bodies", "from", "to"});
-    const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Vector3d from = hardpoint(at.require("from"), defs),
-                   to = hardpoint(at.require("to"), defs);
-    if (!((to - from).norm() > coincident))
-        at.require("to").fail("the same position as `from`; a damper needs a length");
-    return {name, point_of(i, from, defs), point_of(j, to, defs)};
+    const auto [i, j, length] = between(at, defs, "a damper");
+    return {name, i, j};
 }
 
 Vehicle read_vehicle(const Cursor& at, const Definitions& defs) {
     at.only_keys({"wheelbase", "cg_height", "axle", "brake_share", "drive_share"});
     const Unit& length = defs.units.length;
-    return {.wheelbase = above_zero(at.require("wheelbase"), "a wheelbase", length),
-            .cg_height = above_zero(at.require("cg_height"), "a height", length),
+    return {.wheelbase = above_zero(at.require("wheelbase"), "not a wheelbase", length),
+            .cg_height = above_zero(at.require("cg_height"), "not a height", length),
             .axle = at.require("axle").one_of("an axle", {"front", "rear"}) == 0 ? Axle::front
                                                                                  : Axle::rear,
             .brake_share = share(at.require("brake_share")),

@@ -8,14 +8,8 @@ namespace {
 
 // Reads the two ends as a spring that is free at the design length.
 AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
-    const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Eigen::Vector3d from = hardpoint(at.require("from"), defs),
-                          to = hardpoint(at.require("to"), defs);
-    const double length = (to - from).norm();
-    if (!(length > coincident))
-        at.require("to").fail("the same position as `from`; a spring needs a length");
-    return {
-        .i = point_of(i, from, defs), .j = point_of(j, to, defs), .law = {}, .free_length = length};
+    const auto [i, j, length] = between(at, defs, "a spring");
+    return {.i = i, .j = j, .law = {}, .free_length = length};
 }
 
 // The deflection x with f(x) = -p: a preload is positive in compression.
@@ -29,12 +23,7 @@ double free_length(const Cursor& spring, double length, const ScalarLaw& law, co
     const auto given = spring.optional("free_length");
     const auto preload = spring.optional("preload");
     if (given && preload) preload->fail("given together with free_length; allowed: one of the two");
-    if (given) {
-        const double l0 = units.length.si(given->number(units.length.name));
-        if (!(l0 > 0))
-            given->fail(fmt::format("{} is not a length; allowed: above zero", given->found()));
-        return l0;
-    }
+    if (given) return above_zero(*given, "not a length", units.length);
     if (!preload) return length;
     const double l0 = length - deflection_under(*preload, law, units);
     if (!(l0 > 0))

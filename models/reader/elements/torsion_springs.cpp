@@ -28,13 +28,9 @@ Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Def
     frame.col(2) = z;
     frame.col(0) = z.unitOrthogonal();
     frame.col(1) = z.cross(frame.col(0));
-    const Eigen::Quaterniond A = Eigen::Quaterniond(frame).normalized();
-
-    const auto marker = [&](BodyId body) {
-        return Marker{body, point_of(body, p, defs).s_local, A};
-    };
-    Bushing spring{
-        .i = marker(i), .j = marker(j), .law = about_z(read_law(at, of_angles(defs.units), defs))};
+    Bushing spring{.i = marker_of(i, p, frame, defs),
+                   .j = marker_of(j, p, frame, defs),
+                   .law = about_z(read_law(at, of_angles(defs.units), defs))};
     if (const auto moment = at.optional("preload_moment"))
         spring.preload[5] = defs.units.moment.si(moment->number(defs.units.moment.name));
     return {name, spring, false, WrittenAs::torsion_spring};

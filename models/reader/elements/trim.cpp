@@ -87,14 +87,12 @@ std::map<std::string, Output> outputs(const Scene& scene, const Units& units) {
 std::vector<Trim::Condition> read_conditions(const Cursor& at, const Scene& scene,
                                              const Units& units) {
     const auto table = outputs(scene, units);
-    std::vector<std::string> names;
-    for (const auto& entry : table) names.push_back(entry.first);
     std::vector<Trim::Condition> conditions;
     for (const Term& term : terms(at, "an output")) {
         const auto found = table.find(term.name);
         if (found == table.end())
             term.at.fail(fmt::format("{} cannot be a condition of a trim{}", quote(term.name),
-                                     did_you_mean(term.name, names, "allowed")));
+                                     did_you_mean(term.name, names_of(table), "allowed")));
         const auto& [what, unit] = found->second;
         const auto value =
             term.has_number ? std::optional(unit.si(term.number(unit.name))) : std::nullopt;

@@ -1,7 +1,5 @@
 #include "models/reader/tables/csv.hpp"
 
-#include "models/reader/document/characters.hpp"
-
 namespace elastocheck::reader {
 namespace {
 
@@ -20,20 +18,15 @@ std::string_view unquoted(std::string_view cell) {
 
 }  // namespace
 
-CsvLines::CsvLines(std::string_view text) : rest_(text) {
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
-}
+CsvLines::CsvLines(std::string_view text)
+    : lines_(text.substr(text.starts_with("\xEF\xBB\xBF") ? 3 : 0)) {}
 
 bool CsvLines::next() {
-    while (!rest_.empty()) {
-        ++number_;
-        const auto end = rest_.find('\n');
-        line_ = trimmed(rest_.substr(0, end));
-        rest_ = end == rest_.npos ? std::string_view{} : rest_.substr(end + 1);
-        if (!line_.empty()) return true;
-    }
-    return false;
+    do {
+        if (!lines_.next()) return false;
+        line_ = trimmed(lines_.line());
+    } while (line_.empty());
+    return true;
 }
 
 std::vector<std::string_view> CsvLines::cells() const {

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "models/reader/document/characters.hpp"
+
 namespace elastocheck::reader {
 
 // Reads a CSV text line by line. A byte-order mark and lines without content are skipped.
@@ -16,14 +18,14 @@ class CsvLines {
     // Advances to the next line with content; false at the end.
     bool next();
 
-    int number() const { return number_; }            // of the line, from 1
+    int number() const { return lines_.number(); }    // of the line, from 1
     std::string_view whole() const { return line_; }  // the line, trimmed
     std::vector<std::string_view> cells() const;      // trimmed, without the quotes around one; at
                                                       // most `most_cells` + 1 of them
 
   private:
-    std::string_view rest_, line_;
-    int number_ = 0;
+    Lines lines_;
+    std::string_view line_;
 };
 
 }  // namespace elastocheck::reader

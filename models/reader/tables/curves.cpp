@@ -30,8 +30,7 @@ std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& hal
 }
 
 void scale(const Cursor& at, std::vector<TablePoint>& points) {
-    const double factor = at.number();
-    if (!(factor > 0)) at.fail(fmt::format("{} is not a scale; allowed: above zero", at.found()));
+    const double factor = above_zero(at, "not a scale");
     for (TablePoint& point : points) point.f *= factor;
 }
 

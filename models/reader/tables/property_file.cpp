@@ -16,13 +16,6 @@ namespace {
 
 constexpr std::size_t most_property_rows = 100'000;
 
-std::string capitals(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return result;
-}
-
 // Splits at blanks; text in single quotes is one word, without its padding.
 std::vector<std::string> words(std::string_view line) {
     std::vector<std::string> result;
@@ -118,15 +111,11 @@ const PropertyBlock* PropertyFile::find(std::string_view block) const {
 PropertyFile parse_property_file(std::string_view text, const std::string& name) {
     PropertyFile file;
     file.file = name;
-    int line_number = 0;
     std::size_t rows = 0;
-    const auto wrong = [&](const std::string& what) { fail(name, line_number, "", what); };
-    const char line_end = text.find('\n') == text.npos ? '\r' : '\n';  // CR alone, LF, or CR LF
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(line_end), text.size());
-        std::string_view line = trimmed(without_comment(text.substr(0, end)));
-        text.remove_prefix(std::min(end + 1, text.size()));
-        ++line_number;
+    Lines lines(text);
+    const auto wrong = [&](const std::string& what) { fail(name, lines.number(), "", what); };
+    while (lines.next()) {
+        const std::string_view line = trimmed(without_comment(lines.line()));
         if (line.empty()) continue;
         const auto closed = [&](char closing) {
             const std::size_t at = line.find(closing);
@@ -134,20 +123,14 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
             return capitals(trimmed(line.substr(1, at - 1)));
         };
         if (line.front() == '[') {
-            PropertyBlock block;
-            block.name = closed(']');
-            block.line = line_number;
-            file.blocks.push_back(std::move(block));
+            file.blocks.push_back({.name = closed(']'), .line = lines.number()});
             continue;
         }
         if (file.blocks.empty())
             wrong(fmt::format("expected a block [NAME], found {}", quote(line)));
         if (line.front() == '(') {
-            PropertyBlock block;
-            block.name = file.blocks.back().name;
-            block.subblock = closed(')');
-            block.line = line_number;
-            file.blocks.push_back(std::move(block));
+            file.blocks.push_back(
+                {.name = file.blocks.back().name, .subblock = closed(')'), .line = lines.number()});
             continue;
         }
         PropertyBlock& block = file.blocks.back();
@@ -165,7 +148,7 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
             const auto given = words(line.substr(equals + 1));
             block.values.emplace_back(capitals(trimmed(line.substr(0, equals))),
                                       given.empty() ? "" : given.front());
-            block.lines.push_back(line_number);
+            block.lines.push_back(lines.number());
             continue;
         }
         if (block.table.columns.empty())
@@ -177,11 +160,23 @@ PropertyFile parse_property_file(std::string_view text, const std::string& name)
         if (++rows > most_property_rows)
             wrong(fmt::format("more than {} rows", most_property_rows));
         block.table.rows.push_back(std::move(row));
-        block.table.lines.push_back(line_number);
+        block.table.lines.push_back(lines.number());
     }
-    if (file.blocks.empty()) fail(name, line_number, "", "no block: this is not a property file");
+    if (file.blocks.empty())
+        fail(name, lines.number(), "", "no block: this is not a property file");
     read_units(file);
     return file;
+}
+
+double real(const PropertyFile& file, int line, const std::string& block, std::string_view text,
+            double largest) {
+    double value = 0;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
+        std::abs(value) > largest)
+        fail(file.file, line, block, fmt::format("{} is not a number", quote(text)));
+    return value;
 }
 
 std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock& block,
@@ -193,14 +188,7 @@ std::vector<TablePoint> curve_rows(const PropertyFile& file, const PropertyBlock
     for (std::size_t n = 0; n < block.table.rows.size(); ++n) {
         double value[2] = {0, 0};
         for (std::size_t k = 0; k < 2; ++k) {
-            std::string_view text = block.table.rows[n][k];
-            if (text.starts_with('+')) text.remove_prefix(1);
-            const auto [end, error] =
-                std::from_chars(text.data(), text.data() + text.size(), value[k]);
-            if (error != std::errc{} || end != text.data() + text.size() ||
-                !std::isfinite(value[k]))
-                fail(file.file, block.table.lines[n], block.name,
-                     fmt::format("{} is not a number", quote(text)));
+            value[k] = real(file, block.table.lines[n], block.name, block.table.rows[n][k]);
         }
         if (n > 0 && !(value[0] * x_unit > points.back().x))
             fail(file.file, block.table.lines[n], block.name,

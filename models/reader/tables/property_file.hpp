@@ -10,6 +10,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,11 +27,11 @@ struct PropertyTable {
 };
 
 struct PropertyBlock {
-    std::string name, subblock;  // "FX_CURVE"; a subblock has its own name too
+    std::string name, subblock = {};  // "FX_CURVE"; a subblock has its own name too
     int line = 0;
-    std::vector<std::pair<std::string, std::string>> values;  // in capitals, without quotes
-    std::vector<int> lines;                                   // of each value
-    PropertyTable table;
+    std::vector<std::pair<std::string, std::string>> values = {};  // in capitals, without quotes
+    std::vector<int> lines = {};                                   // of each value
+    PropertyTable table = {};
 };
 
 struct PropertyFile {
@@ -43,6 +44,10 @@ struct PropertyFile {
 
 // Throws SceneError "file:line: ..." for text in another format.
 PropertyFile parse_property_file(std::string_view text, const std::string& file);
+
+// A finite number of the file, up to `largest` in size.
+double real(const PropertyFile& file, int line, const std::string& block, std::string_view text,
+            double largest = std::numeric_limits<double>::max());
 
 // The rows of a table with two columns of numbers as points of a law: first ascending, second
 // non-decreasing.
