@@ -94,7 +94,7 @@ void drop_free_followers(Scene& scene) {
         if (!is_free_follower(graph, kept.bodies, body)) continue;
         kept.bodies[static_cast<std::size_t>(body)] = false;
         leave_out(
-            scene, named("body", scene.bodies[static_cast<std::size_t>(body)].name),
+            scene, named(scene, body),
             "it is attached to one other body only and has no load, no preload and no output");
         for (const auto& edge : graph.edges[static_cast<std::size_t>(body)])
             candidates.push_back(edge.other);

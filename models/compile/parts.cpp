@@ -137,8 +137,28 @@ bool is_zero(const ElasticKind& elastic) {
 std::string named(const char* kind, const std::string& name) {
     return std::string(kind) + " '" + name + "'";
 }
+std::string named(const Scene& scene, BodyId body) {
+    return body == ground ? "ground"
+                          : named("body", scene.bodies[static_cast<std::size_t>(body)].name);
+}
 void leave_out(Scene& scene, const std::string& what, const std::string& why) {
     scene.omitted.push_back({what, why});
+}
+
+void drop_parts(Scene& scene, const std::function<std::string(std::size_t)>& why_joint,
+                const std::function<std::string(std::size_t)>& why_elastic) {
+    Kept kept(scene);
+    const auto drop = [&](const auto& list, std::vector<bool>& stays, const char* kind,
+                          const auto& reason) {
+        for (std::size_t k = 0; k < list.size(); ++k)
+            if (const std::string why = reason(k); !why.empty()) {
+                stays[k] = false;
+                leave_out(scene, named(kind, list[k].name), why);
+            }
+    };
+    drop(scene.joints, kept.joints, "joint", why_joint);
+    drop(scene.elastics, kept.elastics, "element", why_elastic);
+    keep_only(scene, kept);
 }
 
 void keep_only(Scene& scene, Kept kept) {

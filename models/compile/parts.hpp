@@ -1,6 +1,7 @@
 // Helpers of the reduction passes: traverse, inspect and remove the parts of a scene.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,7 @@ bool is_zero(const ElasticKind& elastic);  // no law and no preload
 // ---- Removal.
 
 std::string named(const char* kind, const std::string& name);  // "body 'arm'"
+std::string named(const Scene& scene, BodyId body);            // the same, or "ground"
 void leave_out(Scene& scene, const std::string& what, const std::string& why);
 
 // Flags of the parts that stay; initially all.
@@ -66,6 +68,10 @@ struct Kept {
           elastics(scene.elastics.size(), true) {}
     std::vector<bool> bodies, joints, elastics;
 };
+
+// Removes the joints and elements for which `why` gives a reason.
+void drop_parts(Scene& scene, const std::function<std::string(std::size_t)>& why_joint,
+                const std::function<std::string(std::size_t)>& why_elastic);
 
 // Removes all other parts, which the caller has listed in omitted, and the joints, elements and
 // loads attached to a removed body, which are listed here. Drivers of removed parts are removed;

@@ -102,9 +102,7 @@ struct OnMerged {
 bool falls_on_ground(Scene& scene, const Load& load, Sets& sets, const std::string& where) {
     const BodyId body = body_of(load.kind);
     if (body == ground || sets.first(body) != ground) return false;
-    leave_out(scene, named("load", load.name),
-              named("body", scene.bodies[static_cast<std::size_t>(body)].name) +
-                  " is welded to ground" + where);
+    leave_out(scene, named("load", load.name), named(scene, body) + " is welded to ground" + where);
     return true;
 }
 
@@ -128,12 +126,9 @@ void weld(Scene& scene) {
         const BodyId first = sets.first(static_cast<BodyId>(b));
         if (first == static_cast<BodyId>(b)) continue;
         kept.bodies[b] = false;
-        leave_out(
-            scene, named("body", scene.bodies[b].name),
-            "fixed to " + (first == ground
-                               ? "ground"
-                               : named("body", scene.bodies[static_cast<std::size_t>(first)].name) +
-                                     ", with which it becomes one body"));
+        leave_out(scene, named("body", scene.bodies[b].name),
+                  "fixed to " + named(scene, first) +
+                      (first == ground ? "" : ", with which it becomes one body"));
     }
 
     std::erase_if(scene.static_loads,

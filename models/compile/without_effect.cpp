@@ -58,51 +58,40 @@ void drop_what_does_nothing(Scene& scene) {
 
 void drop_what_never_stands(Scene& scene) {
     const DrivenParts driven = driven_parts(scene);
-    Kept kept(scene);
-    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
-        if (!scene.joints[k].active_only_where_driven || driven.joints[k]) continue;
-        kept.joints[k] = false;
-        leave_out(scene, named("joint", scene.joints[k].name), "no branch drives it");
-    }
-    for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
-        const Elastic& elastic = scene.elastics[k];
-        if (driven.elastics[k] || (!elastic.active_only_where_driven && !is_zero(elastic.kind)))
-            continue;
-        kept.elastics[k] = false;
-        leave_out(scene, named("element", elastic.name),
-                  is_zero(elastic.kind) ? "its rates and preload are zero" : "no branch drives it");
-    }
-    keep_only(scene, kept);
+    drop_parts(
+        scene,
+        [&](std::size_t k) {
+            const bool stands = !scene.joints[k].active_only_where_driven || driven.joints[k];
+            return stands ? "" : "no branch drives it";
+        },
+        [&](std::size_t k) {
+            const Elastic& elastic = scene.elastics[k];
+            const bool nothing = is_zero(elastic.kind);
+            if (driven.elastics[k] || (!elastic.active_only_where_driven && !nothing)) return "";
+            return nothing ? "its rates and preload are zero" : "no branch drives it";
+        });
 }
 
 void drop_what_is_within_one_body(Scene& scene) {
     const DrivenParts driven = driven_parts(scene);
-    Kept kept(scene);
-    const auto name_of_body = [&](BodyId body) {
-        return body == ground ? "ground"
-                              : named("body", scene.bodies[static_cast<std::size_t>(body)].name);
-    };
-    for (std::size_t k = 0; k < scene.joints.size(); ++k) {
-        const auto [i, j] = ends(scene.joints[k].kind);
-        if (i != j || driven.joints[k] || is_strained_at_design(scene.joints[k].kind, scene))
-            continue;
-        kept.joints[k] = false;
-        leave_out(scene, named("joint", scene.joints[k].name),
-                  "both its ends are on " + name_of_body(i) + "; its reaction is not an output");
-    }
-    for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
-        const ElasticKind& kind = scene.elastics[k].kind;
-        const auto [i, j] = ends(kind);
-        // An element without energy may exert a net moment on its body if it is loaded.
-        const auto* formulation = member<Formulation>(kind);
-        const bool turns = i != ground && formulation != nullptr && !has_energy(*formulation) &&
-                           (driven.elastics[k] || is_loaded_at_design(kind, scene));
-        if (i != j || turns) continue;
-        kept.elastics[k] = false;
-        leave_out(scene, named("element", scene.elastics[k].name),
-                  "both its ends are on " + name_of_body(i));
-    }
-    keep_only(scene, kept);
+    const auto both_on = [&](BodyId body) { return "both its ends are on " + named(scene, body); };
+    drop_parts(
+        scene,
+        [&](std::size_t k) {
+            const JointKind& kind = scene.joints[k].kind;
+            const auto [i, j] = ends(kind);
+            const bool stays = i != j || driven.joints[k] || is_strained_at_design(kind, scene);
+            return stays ? "" : both_on(i) + "; its reaction is not an output";
+        },
+        [&](std::size_t k) {
+            const ElasticKind& kind = scene.elastics[k].kind;
+            const auto [i, j] = ends(kind);
+            // An element without energy may exert a net moment on its body if it is loaded.
+            const auto* formulation = member<Formulation>(kind);
+            const bool turns = i != ground && formulation != nullptr && !has_energy(*formulation) &&
+                               (driven.elastics[k] || is_loaded_at_design(kind, scene));
+            return i != j || turns ? "" : both_on(i);
+        });
 }
 
 }  // namespace elastocheck::reduce
