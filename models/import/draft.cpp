@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "models/reader/document/characters.hpp"
+
 namespace elastocheck::importer {
 namespace {
 
@@ -18,10 +20,6 @@ constexpr double same_place = 1e-9;  // of the model's size
 // x, tilted out of the planes in which models have points.
 const Vector3d askew = Vector3d(0.6299, 0.5774, 0.5195).normalized();
 constexpr std::size_t most_told = 40;  // parts listed for one kind of note, in the head of a scene
-
-bool is_letter_or_digit(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-}
 
 std::string printable(std::string_view text) {
     std::string result(text);
@@ -135,7 +133,7 @@ std::string Names::take(std::string_view wanted) {
     std::string name;
     for (const char c : wanted.substr(0, longest_name - 8)) {
         const bool fits =
-            is_letter_or_digit(c) || (!name.empty() && (c == '-' || c == '+' || c == '.'));
+            reader::is_word(c) || (!name.empty() && (c == '-' || c == '+' || c == '.'));
         name += fits ? c : '_';
     }
     if (name.empty()) name = "unnamed";
@@ -173,8 +171,6 @@ struct Kind {
     std::vector<const Warning*> all;
 };
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 // Groups warnings that differ only in their numbers, in the order of their first occurrence.
 std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
     std::vector<Kind> result;
@@ -184,7 +180,7 @@ std::vector<Kind> kinds(const std::vector<Warning>& warnings) {
         double first = -1;
         const std::string& what = warning.second;
         for (std::size_t k = 0; k < what.size();) {
-            if (!is_digit(what[k])) {
+            if (!reader::is_digit(what[k])) {
                 text += what[k++];
                 continue;
             }

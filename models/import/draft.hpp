@@ -36,6 +36,7 @@ class Fields {
     Fields& add(std::string_view key, std::string_view value);
     Fields& add(std::string_view key, double value) { return add(key, number(value)); }
     const std::string& text() const { return text_; }
+    std::string braced() const { return "{" + text_ + "}"; }
 
   private:
     std::string text_;

@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
 #include "models/reader/document/yaml.hpp"
@@ -56,17 +57,11 @@ std::string where(const SourceLocation& place) {
                                  fmt::format("the resulting scene is refused: {}", message)));
 }
 
-std::string extension(const std::string& file) {
-    std::string ending = std::filesystem::path(file).extension().string();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return ending;
-}
-
 }  // namespace
 
 Imported import_text(std::string_view text, const std::string& file, const Options& options) {
-    const std::string ending = extension(file);
+    const std::string ending =
+        reader::small_letters(std::filesystem::path(file).extension().string());
     if (ending != ".adm" && ending != ".json" && ending != ".sub")
         reader::fail(
             file, 0, "",

@@ -30,20 +30,17 @@ bool is_between_two(Conversion& c, const Statement& s, const Marker& I, const Ma
             at.fail(fmt::format("MARKER/{} is floating and has no position", m->statement->id));
     for (const Marker* m : {&I, &J})
         if (c.is_flexible(*m)) {
-            c.draft.notes.miss(s.place(), "it is on a flexible body, which a scene does not have");
+            c.miss(s, "it is on a flexible body, which a scene does not have");
             return false;
         }
     if (I.part != J.part) return true;
-    c.draft.notes.leave_out("since both ends are on one part", s.place());
+    c.leave_out(s, "since both ends are on one part");
     return false;
 }
 
 std::string Conversion::name(Names& names, const Statement& statement) const {
     if (!statement.name.empty()) return names.take(statement.name);
-    std::string word = statement.keyword;
-    for (char& letter : word)
-        letter = static_cast<char>(letter >= 'A' && letter <= 'Z' ? letter - 'A' + 'a' : letter);
-    return names.take(fmt::format("{}_{}", word, statement.id));
+    return names.take(fmt::format("{}_{}", reader::small_letters(statement.keyword), statement.id));
 }
 
 std::string Conversion::point(const Marker& marker) {
@@ -197,24 +194,23 @@ void sort_out(Conversion& c) {
             continue;
         }
         if (is_in(used_or_not, word)) {
-            notes.leave_out("used by no force or motion", s.place());
+            c.leave_out(s, "used by no force or motion");
             continue;
         }
         if (word == "FRICTION") {
             if (c.options.drop_dynamics)
-                notes.leave_out("by --drop dynamics", s.place());
+                c.leave_out(s, "by --drop dynamics");
             else
-                notes.miss(s.place(),
-                           "friction also acts at rest, and a scene has no friction (--drop "
-                           "dynamics leaves it out)");
+                c.miss(s,
+                       "friction also acts at rest, and a scene has no friction (--drop "
+                       "dynamics leaves it out)");
             continue;
         }
         const auto found = std::ranges::find(no_place, word,
                                              &std::pair<std::string_view, std::string_view>::first);
-        notes.miss(s.place(),
-                   found == no_place.end()
-                       ? "a scene has no equivalent"
-                       : fmt::format("{}, for which a scene has no equivalent", found->second));
+        c.miss(s, found == no_place.end()
+                      ? "a scene has no equivalent"
+                      : fmt::format("{}, for which a scene has no equivalent", found->second));
     }
 }
 
@@ -254,34 +250,20 @@ void read_times(Conversion& c) {
 
 // Arguments that have no influence at rest, by their name in any statement.
 struct WithoutInfluence {
-    std::string_view argument, called, why;
+    std::string_view called;  // empty: by its name
+    std::string_view why;
+    std::vector<std::string_view> arguments;
 };
-constexpr std::string_view of_motion = "without effect at rest";
-constexpr WithoutInfluence without_influence[] = {
-    {"C", "damping", of_motion},
-    {"CT", "damping", of_motion},
-    {"CMATRIX", "damping", of_motion},
-    {"CRATIO", "damping", of_motion},
-    {"IM", "inertia", "inertia, without effect at rest"},
-    {"IP", "inertia", "inertia, without effect at rest"},
-    {"VX", "initial velocity", of_motion},
-    {"VY", "initial velocity", of_motion},
-    {"VZ", "initial velocity", of_motion},
-    {"WX", "initial velocity", of_motion},
-    {"WY", "initial velocity", of_motion},
-    {"WZ", "initial velocity", of_motion},
-    {"VM", "initial velocity", of_motion},
-    {"WM", "initial velocity", of_motion},
-    {"VELOCITY", "initial velocity", of_motion},
-    {"EXACT", "EXACT", "used only for the assembly"},
-    {"IC", "IC", of_motion},
-    {"ICTRAN", "ICTRAN", of_motion},
-    {"ICROT", "ICROT", of_motion},
-    {"ICDISP", "ICDISP", of_motion},
-    {"ICVEL", "ICVEL", of_motion},
-    {"TYPE", "TYPE", "determined by the joints"},
-    {"NODE_ID", "NODE_ID", "only for flexible bodies"},
-    {"NODE_LABEL", "NODE_LABEL", "only for flexible bodies"}};
+const WithoutInfluence without_influence[] = {
+    {"damping", "without effect at rest", {"C", "CT", "CMATRIX", "CRATIO"}},
+    {"inertia", "inertia, without effect at rest", {"IM", "IP"}},
+    {"initial velocity",
+     "without effect at rest",
+     {"VX", "VY", "VZ", "WX", "WY", "WZ", "VM", "WM", "VELOCITY"}},
+    {"", "without effect at rest", {"IC", "ICTRAN", "ICROT", "ICDISP", "ICVEL"}},
+    {"", "used only for the assembly", {"EXACT"}},
+    {"", "determined by the joints", {"TYPE"}},
+    {"", "only for flexible bodies", {"NODE_ID", "NODE_LABEL"}}};
 
 // Reports the arguments of converted statements that were not read: as left out if they have no
 // influence at rest, else as missing.
@@ -302,15 +284,17 @@ void report_unread(Conversion& c) {
                                 {s.line, std::string(argument) + " of " + s.place().what});
                 continue;
             }
-            const auto known =
-                std::ranges::find(without_influence, argument, &WithoutInfluence::argument);
-            if (known == std::end(without_influence))
-                notes.miss(
-                    s.place(),
-                    fmt::format("{}: not used in combination with the other arguments", argument));
-            else if (listed.insert(known->called).second)
-                notes.leave_out(std::string(known->why),
-                                {s.line, fmt::format("{} of {}", known->called, s.place().what)});
+            const auto known = std::ranges::find_if(without_influence, [&](const auto& some) {
+                return is_in(some.arguments, argument);
+            });
+            if (known == std::end(without_influence)) {
+                c.miss(s, fmt::format("{}: not used in combination with the other arguments",
+                                      argument));
+                continue;
+            }
+            const std::string_view called = known->called.empty() ? argument : known->called;
+            if (listed.insert(called).second)
+                c.leave_out(s, std::string(called), std::string(known->why));
         }
     }
 }
@@ -350,19 +334,18 @@ void write_bodies(Conversion& c) {
         if (part.is_ground) continue;
         if (!c.held.contains(s.id)) {
             if (part.mass > 0 && c.draft.gravity)
-                c.draft.notes.miss(s.place(),
-                                   "no joint or element is attached to it, and it has a weight");
+                c.miss(s, "no joint or element is attached to it, and it has a weight");
             else
-                c.draft.notes.leave_out("since nothing is attached to them", s.place());
+                c.leave_out(s, "since nothing is attached to them");
             continue;
         }
-        c.draft.notes.count("PART");
+        c.count("PART");
         Fields fields;
         fields.add("origin", origin(c, s.id, part));
         const bool heavy = part.mass > 0 && (c.draft.gravity || !c.options.drop_dynamics);
         if (heavy) fields.add("mass", computed(part.mass));
         any_mass |= heavy;
-        c.draft.bodies.push_back({c.body(s.id), "{" + fields.text() + "}", s.place()});
+        c.draft.bodies.push_back({c.body(s.id), fields.braced(), s.place()});
     }
     if (!any_mass) c.draft.gravity.reset();
     std::set<std::string> there{"ground"};
@@ -388,7 +371,7 @@ void read_gravity(Conversion& c) {
         if (std::exchange(found, true)) at.fail("a second one; allowed: one");
         Vector3d g(at.number("IGRAV", 0), at.number("JGRAV", 0), at.number("KGRAV", 0));
         g *= c.geometry.units.metre / (c.geometry.units.second * c.geometry.units.second);
-        c.draft.notes.count("ACCGRAV");
+        c.count("ACCGRAV");
         if (!g.isZero(0)) c.draft.gravity = g;
     }
 }
@@ -403,44 +386,39 @@ bool is_called(const Statement& s, const std::string& wanted) {
 // The wheel: a body, or a marker on it, whose axis closest to y is the spin axis.
 void write_wheel(Conversion& c) {
     const std::string& wanted = c.options.wheel;
-    const Part* part = nullptr;
+    const auto fail = [&](const std::string& what) {
+        reader::fail(c.data.file, 0, "--wheel", what);
+    };
+    int body = 0;
     const Marker* marker = nullptr;
     std::vector<std::string> known;
-    for (const auto& [id, candidate] : c.geometry.parts) {
-        if (candidate.is_ground) continue;
+    for (const auto& [id, part] : c.geometry.parts) {
+        if (part.is_ground) continue;
         known.push_back(c.body(id));
-        if (c.body(id) == wanted || is_called(*candidate.statement, wanted)) {
-            if (part)
-                reader::fail(c.data.file, 0, "--wheel",
-                             fmt::format("{} names several parts", reader::quote(wanted)));
-            part = &candidate;
-        }
+        if (c.body(id) != wanted && !is_called(*part.statement, wanted)) continue;
+        if (body) fail(fmt::format("{} names several parts", reader::quote(wanted)));
+        body = id;
     }
-    if (!part)
+    if (!body)
         for (const auto& [id, candidate] : c.geometry.markers)
             if (!candidate.floats && is_called(*candidate.statement, wanted)) {
                 if (marker)
-                    reader::fail(c.data.file, 0, "--wheel",
-                                 fmt::format("{} names several markers; give the id of one",
-                                             reader::quote(wanted)));
+                    fail(fmt::format("{} names several markers; give the id of one",
+                                     reader::quote(wanted)));
                 marker = &candidate;
+                body = candidate.part;
             }
-    if (!part && !marker)
-        reader::fail(c.data.file, 0, "--wheel",
-                     fmt::format("there is no part or marker called {}{}", reader::quote(wanted),
-                                 reader::did_you_mean(wanted, known, "parts")));
-    int body = 0;
-    for (const auto& [id, candidate] : c.geometry.parts)
-        if (&candidate == part) body = id;
-    if (marker) body = marker->part;
+    if (!body && !marker)
+        fail(fmt::format("there is no part or marker called {}{}", reader::quote(wanted),
+                         reader::did_you_mean(wanted, known, "parts")));
     if (!c.geometry.parts.contains(body) || c.is_ground(body) || !c.held.contains(body))
-        reader::fail(c.data.file, 0, "--wheel",
-                     fmt::format("{} is not on a moving part", reader::quote(wanted)));
-    const Statement& s = marker ? *marker->statement : *part->statement;
-    const std::string centre = marker ? c.point(*marker) : origin(c, body, *part);
-    const Vector3d position = marker     ? marker->pose.r
-                              : part->cm ? c.geometry.markers.at(part->cm).pose.r
-                                         : part->pose.r;
+        fail(fmt::format("{} is not on a moving part", reader::quote(wanted)));
+    const Part& part = c.geometry.parts.at(body);
+    const Statement& s = marker ? *marker->statement : *part.statement;
+    const std::string centre = marker ? c.point(*marker) : origin(c, body, part);
+    const Vector3d position = marker    ? marker->pose.r
+                              : part.cm ? c.geometry.markers.at(part.cm).pose.r
+                                        : part.pose.r;
     Vector3d axis = Vector3d::UnitY();
     if (marker)
         for (int k = 0; k < 3; ++k)

@@ -80,6 +80,18 @@ struct Conversion {
     std::string name(Names& names, const Statement& statement) const;
     bool is_flexible(const Marker& marker) const { return !geometry.parts.contains(marker.part); }
 
+    // ---- Notes on a statement.
+    void count(const std::string& kind) { draft.notes.count(kind); }
+    void warn(const Statement& s, const std::string& what) { draft.notes.warn(s.place(), what); }
+    void miss(const Statement& s, const std::string& why) { draft.notes.miss(s.place(), why); }
+    void leave_out(const Statement& s, const std::string& why) {
+        draft.notes.leave_out(why, s.place());
+    }
+    // A part of it, "damping".
+    void leave_out(const Statement& s, const std::string& part, const std::string& why) {
+        draft.notes.leave_out(why, {s.line, part + " of " + s.place().what});
+    }
+
     // Value of a function at a time, with VARIABLEs substituted, in units of the file.
     Value function(const std::string& text, double time = 0, std::vector<double>* events = nullptr);
     Programme programme(const std::string& text);

@@ -239,11 +239,7 @@ class Parser {
             return constant(degrees ? x * std::numbers::pi / 180 : x);
         }
         std::size_t n = 0;
-        const auto fits = [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                   c == '_';
-        };
-        while (n < text_.size() && fits(text_[n])) ++n;
+        while (n < text_.size() && reader::is_word(text_[n])) ++n;
         if (n == 0)
             return give_up(fmt::format("{} cannot be read", reader::quote(text_.substr(0, 40))));
         const std::string name = capitals(text_.substr(0, n));
@@ -378,6 +374,14 @@ class Parser {
         return {};
     }
 
+    // The curve alone, of what `x` depends on.
+    static Value only(const CurveTerm& curve, const Value& x) {
+        Value value;
+        inherit(value, x);
+        value.curves.push_back(curve);
+        return value;
+    }
+
     Value spline(const std::string& name, const std::vector<Value>& p) const {
         if (p.size() < 3 || p.size() > 4) return unknown(name + " without three or four arguments");
         if (!p[1].is_constant() || p[1].constant != 0)
@@ -391,27 +395,21 @@ class Parser {
             term = p[0].curves.front();
             term.is_akima = name == "AKISPL";
             term.spline = *number;
-            Value value;
-            inherit(value, p[0]);
-            value.curves.push_back(term);
-            return value;
+            return only(term, p[0]);
         }
         term.kind = name == "AKISPL" ? CurveTerm::Kind::akima : CurveTerm::Kind::cubic;
         term.spline = *number;
         if (const std::string why = only_measure(p[0], term); !why.empty())
             return unknown(p[0].is_constant() ? name + " without a displacement" : why);
-        Value value;
-        inherit(value, p[0]);
-        value.curves.push_back(term);
-        return value;
+        return only(term, p[0]);
     }
 
     // DIM(a, b) = max(a - b, 0) of a displacement and a constant: a contact of rate 1 without
     // damping.
     static Value penetration(const std::vector<Value>& p) {
         const Value one = constant(1);
-        Value value = p[0].is_constant() ? contact(p[1], p[0], one, one, 1)
-                                         : contact(scaled(p[0], -1), scaled(p[1], -1), one, one, 1);
+        Value value = p[0].is_constant() ? contact(p[1], p[0], one, one)
+                                         : contact(scaled(p[0], -1), scaled(p[1], -1), one, one);
         value.of_velocity = p[0].of_velocity || p[1].of_velocity;
         return value;
     }
@@ -426,19 +424,18 @@ class Parser {
     // IMPACT(x, v, x1, k, e, c, d): k (x1 - x)^e below x1; its damping is zero at rest.
     static Value impact(const std::vector<Value>& p) {
         if (p.size() != 7) return unknown("IMPACT without seven arguments");
-        return contact(p[0], p[2], p[3], p[4], 1);
+        return contact(p[0], p[2], p[3], p[4]);
     }
     // BISTOP(x, v, lo, hi, k, e, c, d): the same below lo, and its mirror image above hi.
     static Value bistop(const std::vector<Value>& p) {
         if (p.size() != 8) return unknown("BISTOP without eight arguments");
-        return sum(contact(p[0], p[2], p[4], p[5], 1),
-                   scaled(contact(scaled(p[0], -1), scaled(p[3], -1), p[4], p[5], 1), -1));
+        return sum(contact(p[0], p[2], p[4], p[5]),
+                   scaled(contact(scaled(p[0], -1), scaled(p[3], -1), p[4], p[5]), -1));
     }
-    static Value contact(const Value& x, const Value& at, const Value& rate, const Value& exponent,
-                         double factor) {
+    static Value contact(const Value& x, const Value& at, const Value& rate,
+                         const Value& exponent) {
         CurveTerm term;
         term.kind = CurveTerm::Kind::impact;
-        term.factor = factor;
         for (const Value* value : {&at, &rate, &exponent})
             if (!value->is_constant())
                 return unknown(value->is_known() ? "IMPACT or BISTOP with variable parameters"
@@ -449,10 +446,8 @@ class Parser {
         term.exponent = exponent.constant;
         if (!(term.rate >= 0) || !(term.exponent > 0))
             return unknown("IMPACT or BISTOP with a tensile force");
-        Value value;
-        inherit(value, x);
+        Value value = only(term, x);
         value.of_velocity = true;
-        value.curves.push_back(term);
         return value;
     }
 

@@ -164,11 +164,10 @@ void warn_of_asymmetry(Conversion& c, const Statement& s, const Matrix6& written
                        const Matrix6& K) {
     const double off = (written - K).cwiseAbs().maxCoeff();
     if (off > 0)
-        c.draft.notes.warn(
-            s.place(),
-            fmt::format("its stiffness is not exactly symmetric; the scene has the mean with its "
-                        "transpose, which differs by {:.3g} of the largest entry",
-                        off / K.cwiseAbs().maxCoeff()));
+        c.warn(s, fmt::format(
+                      "its stiffness is not exactly symmetric; the scene has the mean with its "
+                      "transpose, which differs by {:.3g} of the largest entry",
+                      off / K.cwiseAbs().maxCoeff()));
 }
 
 void convert_bushing(Conversion& c, const Statement& s) {
@@ -182,15 +181,15 @@ void convert_bushing(Conversion& c, const Statement& s) {
     Vector6 F;
     F << vector(at.numbers("FORCE", 3, 3)), vector(at.numbers("TORQUE", 3, 3));
     if (K.diagonal().minCoeff() < 0)
-        return c.draft.notes.miss(s.place(), "a negative rate, which a scene does not allow");
+        return c.miss(s, "a negative rate, which a scene does not allow");
     const double apart = (I.pose.r - J.pose.r).norm();
     if (apart > far * c.geometry.size)
-        c.draft.notes.warn(
-            s.place(),
+        c.warn(
+            s,
             fmt::format(
                 "its markers are {:.4g} {} apart in the file: it is preloaded by that deformation",
                 apart, units.length_name));
-    c.draft.notes.count("BUSHING");
+    c.count("BUSHING");
     Element{c, s, at, I, J.part, J.pose}.put(
         {.K = in_scene_units(K, units), .preload = wrench_in_scene_units(F, units)});
 }
@@ -198,12 +197,10 @@ void convert_bushing(Conversion& c, const Statement& s) {
 void convert_field(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, field_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
-    if (at.has("FUNCTION"))
-        return c.draft.notes.miss(s.place(), "its force is a user-written function");
+    if (at.has("FUNCTION")) return c.miss(s, "its force is a user-written function");
     const std::string formulated = at.word("FORMULATION");
     if (!formulated.empty() && !std::string_view("LINEAR").starts_with(formulated))
-        return c.draft.notes.miss(s.place(),
-                                  fmt::format("FORMULATION={}, an unsupported law", formulated));
+        return c.miss(s, fmt::format("FORMULATION={}, an unsupported law", formulated));
     if (!is_between_two(c, s, I, J, at)) return;
     const Units& units = c.geometry.units;
     const auto k = at.numbers("KMATRIX", 36, 36);
@@ -211,7 +208,7 @@ void convert_field(Conversion& c, const Statement& s) {
     // by columns
     const Matrix6 written = in_scene_units(Eigen::Map<const Matrix6>(k.data()), units);
     Matrix6 K = written;
-    if (const std::string why = fault(K); !why.empty()) return c.draft.notes.miss(s.place(), why);
+    if (const std::string why = fault(K); !why.empty()) return c.miss(s, why);
     warn_of_asymmetry(c, s, written, K);
     SixLaws laws{.K = K};
     // The last three values are angles, and may have the suffix for degrees.
@@ -223,7 +220,7 @@ void convert_field(Conversion& c, const Statement& s) {
     if (at.has("FORCE"))
         laws.preload = wrench_in_scene_units(
             Eigen::Map<const Vector6>(at.numbers("FORCE", 6, 6).data()), units);
-    c.draft.notes.count("FIELD");
+    c.count("FIELD");
     Element{c, s, at, I, J.part, J.pose}.put(laws);
 }
 
@@ -301,14 +298,13 @@ void warn_of_spline(Conversion& c, const Statement& s, const CurveTerm& term, co
         term.kind == CurveTerm::Kind::impact ? term.is_akima : term.kind == CurveTerm::Kind::akima;
     const Apart apart = is_akima ? off_akima(rows) : off_natural(rows);
     if (apart.force <= 1e-6 * apart.of) return;
-    c.draft.notes.warn(
-        s.place(),
-        fmt::format("differs by up to {:.3g} {} (of {:.4g}), at {:.4g} {}: between the points of "
-                    "SPLINE/{} the file has {}, the scene the monotone interpolant",
-                    apart.force,
-                    is_angle ? units.force_name + " " + units.length_name : units.force_name,
-                    apart.of, apart.at, is_angle ? "rad" : units.length_name, term.spline,
-                    is_akima ? "Akima's curve" : "a cubic spline"));
+    c.warn(s, fmt::format(
+                  "differs by up to {:.3g} {} (of {:.4g}), at {:.4g} {}: between the points of "
+                  "SPLINE/{} the file has {}, the scene the monotone interpolant",
+                  apart.force,
+                  is_angle ? units.force_name + " " + units.length_name : units.force_name,
+                  apart.of, apart.at, is_angle ? "rad" : units.length_name, term.spline,
+                  is_akima ? "Akima's curve" : "a cubic spline"));
 }
 
 // Converts all terms of `value`, which are in one measure, to `law`. Returns the reason if a scene
@@ -359,12 +355,11 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
                     stop.curve.emplace_back(p, factor * std::pow(p, term.exponent));
                 }
                 const Apart apart = off_power(stop.curve, factor, term.exponent);
-                c.draft.notes.warn(
-                    s.place(),
-                    fmt::format("differs by up to {:.2g} {} (of {:.4g}): a contact with exponent "
-                                "{:g} becomes a table of {} rows up to {:.4g} {}",
-                                apart.force, unit_of_force, apart.of, term.exponent,
-                                rows_of_power + 1, depth, unit_of_x));
+                c.warn(s, fmt::format(
+                              "differs by up to {:.2g} {} (of {:.4g}): a contact with exponent "
+                              "{:g} becomes a table of {} rows up to {:.4g} {}",
+                              apart.force, unit_of_force, apart.of, term.exponent,
+                              rows_of_power + 1, depth, unit_of_x));
             }
             law.stops.push_back(stop);
             continue;
@@ -394,6 +389,10 @@ std::string one_law(Conversion& c, const Statement& s, const Value& value, doubl
     return {};
 }
 
+std::string curve_text(const Rows& rows, bool goes_on) {
+    return fmt::format("{{table: {}{}}}", table(rows), goes_on ? "" : ", outside: unknown");
+}
+
 Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
     Fields fields;
     fields.add("clearance", computed(stop.bump ? drawn - stop.touches : stop.touches - drawn,
@@ -401,8 +400,7 @@ Fields stop_fields(const OneLaw::Stop& stop, double drawn) {
     if (stop.curve.empty())
         fields.add("rate", stop.rate);
     else
-        fields.add("curve", fmt::format("{{table: {}{}}}", table(stop.curve),
-                                        stop.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve", curve_text(stop.curve, stop.goes_on));
     return fields;
 }
 
@@ -412,39 +410,26 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
     const Units& units = c.geometry.units;
     const double drawn = (I.pose.r - J.pose.r).norm();
     const std::string name = c.name(c.element_names, s);
-    const auto ends = [&] {
-        return Fields{}
-            .add("bodies", c.pair(I.part, J.part))
-            .add("from", c.point(I))
-            .add("to", c.point(J));
+    const auto ends = [&](const std::string& bodies) {
+        return Fields{}.add("bodies", bodies).add("from", c.point(I)).add("to", c.point(J));
     };
-    if (!(drawn > 1e-9 * c.geometry.size))
-        return c.draft.notes.miss(s.place(), "its ends coincide in the file");
+    if (!(drawn > 1e-9 * c.geometry.size)) return c.miss(s, "its ends coincide in the file");
     OneLaw law;
     const std::string why =
         one_law(c, s, value, 0, 2 * drawn, units.length, units.force, false, law);
-    if (!why.empty()) return c.draft.notes.miss(s.place(), why);
+    if (!why.empty()) return c.miss(s, why);
     if (law.stops.size() > 2 || (law.stops.size() == 2 && law.stops[0].bump == law.stops[1].bump))
-        return c.draft.notes.miss(s.place(), "more than one stop per direction");
+        return c.miss(s, "more than one stop per direction");
     const bool is_nothing =
         law.curve.empty() && law.rate == 0 && law.at_zero == 0 && law.stops.empty();
     if (is_nothing) {
-        if (!is_damper || c.options.drop_dynamics)
-            return c.draft.notes.leave_out("without force at rest", s.place());
+        if (!is_damper || c.options.drop_dynamics) return c.leave_out(s, "without force at rest");
         // A damper does not hold a part: it is written if something else holds both its parts.
-        c.draft.dampers.push_back(
-            {name,
-             "{" +
-                 Fields{}
-                     .add("bodies", fmt::format("[{}, {}]", c.body(I.part), c.body(J.part)))
-                     .add("from", c.point(I))
-                     .add("to", c.point(J))
-                     .text() +
-                 "}",
-             s.place()});
+        const std::string bodies = fmt::format("[{}, {}]", c.body(I.part), c.body(J.part));
+        c.draft.dampers.push_back({name, ends(bodies).braced(), s.place()});
         return;
     }
-    Fields fields = ends();
+    Fields fields = ends(c.pair(I.part, J.part));
     // ℓ₀ where the law is zero; for a curve the file's reference length, if there is one.
     if (law.curve.empty() && law.rate > 0) {
         const double free = -law.at_zero / law.rate;
@@ -452,32 +437,27 @@ void put_spring(Conversion& c, const Statement& s, const Marker& I, const Marker
             // A spring needs a positive length: write the same straight line as a table over the
             // drawn length.
             const double h = 0.5 * drawn, f = law.at_zero + law.rate * drawn;
-            fields.add("curve",
-                       "{table: " + table({{-h, f - law.rate * h}, {h, f + law.rate * h}}) + "}");
+            fields.add("curve", curve_text({{-h, f - law.rate * h}, {h, f + law.rate * h}}, true));
         } else {
             fields.add("rate", law.rate).add("free_length", computed(free));
             if (free < drawn * (1 - 1e-9))
-                c.draft.notes.warn(s.place(),
-                                   "this spring is in tension at the position in the file");
+                c.warn(s, "this spring is in tension at the position in the file");
         }
     } else if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", fmt::format("{{table: {}{}}}", table(law.curve),
-                                        law.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve", curve_text(law.curve, law.goes_on));
     } else if (law.at_zero != 0) {
-        fields.add(
-            "curve",
-            "{table: " + table({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}) + "}");
+        fields.add("curve",
+                   curve_text({{-0.5 * drawn, law.at_zero}, {0.5 * drawn, law.at_zero}}, true));
     } else {
         for (const auto& stop : law.stops)
-            fields.add(stop.bump ? "bump" : "rebound", "{" + stop_fields(stop, drawn).text() + "}");
-        c.draft.stops.push_back({name, "{" + fields.text() + "}", s.place()});
+            fields.add(stop.bump ? "bump" : "rebound", stop_fields(stop, drawn).braced());
+        c.draft.stops.push_back({name, fields.braced(), s.place()});
         return;
     }
     for (const auto& stop : law.stops)
-        fields.add(stop.bump ? "bump_stop" : "rebound_stop",
-                   "{" + stop_fields(stop, drawn).text() + "}");
-    c.draft.springs.push_back({name, "{" + fields.text() + "}", s.place()});
+        fields.add(stop.bump ? "bump_stop" : "rebound_stop", stop_fields(stop, drawn).braced());
+    c.draft.springs.push_back({name, fields.braced(), s.place()});
 }
 
 // A torque about z, positive on I; `value` is a function of AZ(I, J).
@@ -493,25 +473,22 @@ void put_torsion(Conversion& c, const Statement& s, const Arguments& at, const M
     OneLaw law;
     const std::string why =
         one_law(c, s, value, -3.14, 3.14, 1, units.force * units.length, true, law);
-    if (!why.empty()) return c.draft.notes.miss(s.place(), why);
-    if (!law.stops.empty())
-        return c.draft.notes.miss(s.place(), "a stop of a rotation, which a scene does not have");
+    if (!why.empty()) return c.miss(s, why);
+    if (!law.stops.empty()) return c.miss(s, "a stop of a rotation, which a scene does not have");
     if (law.curve.empty() && law.rate == 0 && law.at_zero == 0)
-        return c.draft.notes.leave_out("without force at rest", s.place());
+        return c.leave_out(s, "without force at rest");
     Fields fields;
     fields.add("bodies", c.pair(J.part, I.part)).add("at", c.point(I)).add("axis", direction(z));
     if (!law.curve.empty()) {
         for (auto& [x, f] : law.curve) x -= drawn;
-        fields.add("curve", fmt::format("{{table: {}{}}}", table(law.curve),
-                                        law.goes_on ? "" : ", outside: unknown"));
+        fields.add("curve", curve_text(law.curve, law.goes_on));
     } else {
         fields.add("rate", law.rate);
         const double moment = law.at_zero + law.rate * drawn;
         if (std::abs(moment) > 1e-12 * (std::abs(law.at_zero) + std::abs(law.rate)))
             fields.add("preload_moment", computed(moment));
     }
-    c.draft.torsion_springs.push_back(
-        {c.name(c.element_names, s), "{" + fields.text() + "}", s.place()});
+    c.draft.torsion_springs.push_back({c.name(c.element_names, s), fields.braced(), s.place()});
 }
 
 Value linear_in(Measure::Kind kind, double k, double free, double force) {
@@ -527,11 +504,10 @@ void convert_springdamper(Conversion& c, const Statement& s) {
     const bool rotates = at.has("ROTATIONAL");
     if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
     if (!is_between_two(c, s, I, J, at)) return;
-    c.draft.notes.count("SPRINGDAMPER");
+    c.count("SPRINGDAMPER");
     const double k = at.number(rotates ? "KT" : "K", 0);
     const bool damps = at.number(rotates ? "CT" : "C", 0) != 0;
-    if (damps && k != 0)
-        c.draft.notes.leave_out("without effect at rest", {s.line, "damping of " + s.place().what});
+    if (damps && k != 0) c.leave_out(s, "damping", "without effect at rest");
     if (rotates)
         put_torsion(c, s, at, I, J,
                     linear_in(Measure::Kind::AZ, k, at.angle("ANGLE", 0), at.number("TORQUE", 0)));
@@ -597,10 +573,9 @@ std::string held_at_its_end(Conversion& c, const Statement& s, const Programme& 
             "a force between two parts that changes with time, {:g} to {:g}, which a scene cannot "
             "represent",
             programme.least, programme.most);
-    c.draft.notes.warn(s.place(),
-                       fmt::format("a force between two parts that changes from {:g} to {:g} over "
-                                   "{:g} of time; the scene has its final value",
-                                   first, last, c.times.back()));
+    c.warn(s, fmt::format("a force between two parts that changes from {:g} to {:g} over "
+                          "{:g} of time; the scene has its final value",
+                          first, last, c.times.back()));
     value.constant = last;
     return {};
 }
@@ -610,34 +585,31 @@ void convert_sforce(Conversion& c, const Statement& s) {
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     const bool rotates = at.has("ROTATIONAL");
     if (!rotates && !at.has("TRANSLATIONAL")) at.fail("neither TRANSLATIONAL nor ROTATIONAL");
-    if (at.has("ROUTINE"))
-        return c.draft.notes.miss(s.place(), "its force is a user-written function");
+    if (at.has("ROUTINE")) return c.miss(s, "its force is a user-written function");
     const std::string* text = at.expression("FUNCTION");
     if (!text) at.fail("FUNCTION is missing");
     const Programme programme = c.programme(*text);
     Value value = programme.first;
-    if (!value.is_known()) return c.draft.notes.miss(s.place(), value.unknown);
+    if (!value.is_known()) return c.miss(s, value.unknown);
     if (value.is_constant() && value.constant == 0 && !programme.varies() && !value.of_velocity) {
-        c.draft.notes.leave_out("without force at rest", s.place());
+        c.leave_out(s, "without force at rest");
         return;
     }
     if (at.has("ACTIONONLY")) {
         if (I.floats || c.is_flexible(I) || c.is_ground(I.part))
-            return c.draft.notes.leave_out("acting on ground only", s.place());
+            return c.leave_out(s, "acting on ground only");
         if (!value.is_constant())
-            return c.draft.notes.miss(s.place(),
-                                      "a force on a single part that depends on displacements");
+            return c.miss(s, "a force on a single part that depends on displacements");
         if (value.constant == 0 && !programme.varies())
-            return c.draft.notes.leave_out("without force at rest", s.place());
+            return c.leave_out(s, "without force at rest");
         const bool follows = J.part == I.part;
         if (!follows && !c.is_ground(J.part))
-            return c.draft.notes.miss(
-                s.place(), "a force on a single part along an axis of another moving part");
-        c.draft.notes.count("SFORCE");
+            return c.miss(s, "a force on a single part along an axis of another moving part");
+        c.count("SFORCE");
         return put_load(c, s, I, {{J.pose.A.col(2), rotates, programme}}, follows);
     }
     if (const std::string why = held_at_its_end(c, s, programme, value); !why.empty())
-        return c.draft.notes.miss(s.place(), why);
+        return c.miss(s, why);
     if (!is_between_two(c, s, I, J, at)) return;
     // Whichever marker is named first: DM is symmetric in the two, AZ changes its sign.
     Value own;
@@ -652,17 +624,17 @@ void convert_sforce(Conversion& c, const Statement& s) {
     };
     const char* const other = "a force that depends on a displacement between other markers";
     for (const auto& [measure, k] : value.linear) {
-        if (!sign(measure)) return c.draft.notes.miss(s.place(), other);
+        if (!sign(measure)) return c.miss(s, other);
         own.linear[{.kind = kind}] += sign(measure) * k;
     }
     for (CurveTerm term : value.curves) {
-        if (!sign(term.of)) return c.draft.notes.miss(s.place(), other);
+        if (!sign(term.of)) return c.miss(s, other);
         term.scale *= sign(term.of);
         own.curves.push_back(term);
     }
     if (value.of_velocity && (!own.linear.empty() || !own.curves.empty()))
-        c.draft.notes.leave_out("without effect at rest", {s.line, "damping of " + s.place().what});
-    c.draft.notes.count("SFORCE");
+        c.leave_out(s, "damping", "without effect at rest");
+    c.count("SFORCE");
     if (rotates)
         put_torsion(c, s, at, I, J, own);
     else
@@ -672,7 +644,7 @@ void convert_sforce(Conversion& c, const Statement& s) {
 // Three or six components in the axes of RM, acting at I, and the opposite on the part of JFLOAT.
 void convert_vector(Conversion& c, const Statement& s) {
     const Arguments at(c.data.file, s, vector_shape());
-    const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
+    const auto miss = [&](const std::string& why) { c.miss(s, why); };
     if (at.has("FUNCTION") || at.has("ROUTINE"))
         return miss("its force is a user-written function");
     const Marker &I = c.marker(at, "I"), &floating = c.marker(at, "JFLOAT");
@@ -698,9 +670,8 @@ void convert_vector(Conversion& c, const Statement& s) {
             component[k].is_constant() && component[k].constant == 0 && !programmes[k].varies();
         damps |= component[k].of_velocity;
     }
-    if (is_zero) return c.draft.notes.leave_out("without force at rest", s.place());
-    if (I.part == floating.part)
-        return c.draft.notes.leave_out("since both ends are on one part", s.place());
+    if (is_zero) return c.leave_out(s, "without force at rest");
+    if (I.part == floating.part) return c.leave_out(s, "since both ends are on one part");
     SixLaws laws;
     Vector6 F;
     const bool on_ground = c.is_ground(floating.part);
@@ -709,7 +680,7 @@ void convert_vector(Conversion& c, const Statement& s) {
         // On one moving part: a dead or a follower load.
         const bool turns = !c.is_ground(RM.part);
         if (!on_ground) return miss("a constant force on a part at a marker of ground");
-        c.draft.notes.count(s.keyword);
+        c.count(s.keyword);
         std::vector<LoadComponent> components;
         for (std::size_t k = 0; k < 6; ++k)
             if (!programmes[k].path.empty())
@@ -797,9 +768,8 @@ void convert_vector(Conversion& c, const Statement& s) {
         std::ranges::any_of(laws.curves, [](const auto& curve) { return !curve.empty(); });
     if (has_curves && !(laws.K - Matrix6(laws.K.diagonal().asDiagonal())).isZero(0))
         return miss("a spline in combination with a coupled stiffness");
-    if (damps)
-        c.draft.notes.leave_out("without effect at rest", {s.line, "damping of " + s.place().what});
-    c.draft.notes.count(s.keyword);
+    if (damps) c.leave_out(s, "damping", "without effect at rest");
+    c.count(s.keyword);
     Element{c, s, at, I, floating.part, {from ? from->pose.r : I.pose.r, RM.pose.A}}.put(laws);
 }
 
@@ -823,7 +793,7 @@ void read_splines(Conversion& c) {
         if (s.keyword != "SPLINE") continue;
         const Arguments at(c.data.file, s, shape);
         if (at.has("FILE") || at.has("Z")) {  // reported as missing by the statements that use it
-            c.draft.notes.leave_out("with points in another file, or of two variables", s.place());
+            c.leave_out(s, "with points in another file, or of two variables");
             continue;
         }
         Table table{.x = at.numbers("X", 2, 10'000),
@@ -837,7 +807,7 @@ void read_splines(Conversion& c) {
             if (!(table.x[n] > table.x[n - 1]))
                 at.fail(fmt::format("X: {:g} is not larger than the value before", table.x[n]));
         if (!c.splines.emplace(s.id, table).second) at.fail("duplicate id");
-        c.draft.notes.count("SPLINE");
+        c.count("SPLINE");
     }
 }
 

@@ -96,18 +96,21 @@ Units read_units(const Dataset& data) {
                        {{}, {"FORCE", "MASS", "LENGTH", "TIME", "SYSTEM", "UCF"}, {}});
     double force = 1, mass = 1, length = 1, time = 1;
     if (at.has("SYSTEM")) {
-        const std::string system = at.word("SYSTEM");
-        if (system == "MKS") {
-        } else if (system == "CGS") {
-            force = 1e-5, mass = 1e-3, length = 1e-2;
-        } else if (system == "FPS") {
-            force = pound * g_n, mass = pound, length = 12 * inch;
-        } else if (system == "IPS") {
-            force = pound * g_n, mass = pound, length = inch;
-        } else
+        struct System {
+            std::string_view name;
+            double force, mass, length;
+        };
+        constexpr System systems[] = {{"MKS", 1, 1, 1},
+                                      {"CGS", 1e-5, 1e-3, 1e-2},
+                                      {"FPS", pound * g_n, pound, 12 * inch},
+                                      {"IPS", pound * g_n, pound, inch}};
+        const std::string word = at.word("SYSTEM");
+        const auto system = std::ranges::find(systems, word, &System::name);
+        if (system == std::end(systems))
             at.fail(
                 fmt::format("SYSTEM: {} is not a known system of units; known: MKS, CGS, FPS, IPS",
-                            reader::quote(system)));
+                            reader::quote(word)));
+        force = system->force, mass = system->mass, length = system->length;
     }
     if (at.has("FORCE")) force = unit(at, "FORCE", forces);
     if (at.has("MASS")) mass = unit(at, "MASS", masses);
@@ -221,9 +224,6 @@ Frame placed(const Frame& a, const Frame& b) { return {a.r + a.A * b.r, a.A * b.
 Geometry read_geometry(const Dataset& data) {
     Geometry geometry;
     geometry.units = read_units(data);
-    const auto add = [&](auto& map, const Statement& statement, auto entry) {
-        map.emplace(statement.id, std::move(entry));
-    };
     int ground = 0;
     for (const Statement& statement : data.statements) {
         if (statement.keyword != "PART" && statement.keyword != "POINT_MASS") continue;
@@ -232,7 +232,7 @@ Geometry read_geometry(const Dataset& data) {
             fail(data.file, statement,
                  fmt::format("a second ground; the first is PART/{}", ground));
         if (part.is_ground) ground = statement.id;
-        add(geometry.parts, statement, part);
+        geometry.parts.emplace(statement.id, part);
     }
     if (!ground)
         reader::fail(data.file, data.last_line, "PART", "none of them is GROUND; one must be");
@@ -242,10 +242,9 @@ Geometry read_geometry(const Dataset& data) {
     int last_body = 0;
     std::set<int> flexible;
     for (const Statement& statement : data.statements) {
-        if (statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART")
-            flexible.insert(statement.id);
-        if (statement.keyword == "PART" || statement.keyword == "POINT_MASS" ||
-            statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART")
+        const bool is_flexible = statement.keyword == "FLEX_BODY" || statement.keyword == "FE_PART";
+        if (is_flexible) flexible.insert(statement.id);
+        if (is_flexible || statement.keyword == "PART" || statement.keyword == "POINT_MASS")
             last_body = statement.id;
         if (statement.keyword != "MARKER") continue;
         const Arguments at(data.file, statement, marker_shape);
@@ -253,14 +252,12 @@ Geometry read_geometry(const Dataset& data) {
         marker.statement = &statement;
         marker.part = last_body;
         marker.floats = at.has("FLOATING");
-        if (at.has("PART")) marker.part = at.id("PART");
-        if (at.has("POINT_MASS")) marker.part = at.id("POINT_MASS");
-        for (const char* flexible_part : {"FLEX_BODY", "FE_PART"})
-            if (at.has(flexible_part)) marker.part = at.id(flexible_part);
+        for (const char* part : {"PART", "POINT_MASS", "FLEX_BODY", "FE_PART"})
+            if (at.has(part)) marker.part = at.id(part);
         if (!geometry.parts.contains(marker.part) && !flexible.contains(marker.part))
             at.fail(marker.part ? fmt::format("there is no PART/{}", marker.part)
                                 : "belongs to no part");
-        add(geometry.markers, statement, marker);
+        geometry.markers.emplace(statement.id, marker);
         local[statement.id] = {read_frame(at, "QP", "ZP", "XP", geometry.units.length),
                                at.id("RM")};
     }

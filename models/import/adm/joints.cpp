@@ -77,7 +77,7 @@ struct JointConversion {
             at.fail(misalignment +
                     ": the parts do not meet in the file; write the file after the assembly of the "
                     "model");
-        c.draft.notes.warn(place(), misalignment + " in the file; in the scene they coincide");
+        c.warn(s, misalignment + " in the file; in the scene they coincide");
     }
     void require_small_angle(double angle, const std::string& what) const {
         const double degree = std::numbers::pi / 180;
@@ -102,9 +102,9 @@ struct JointConversion {
             std::atan2(axis(I, k).cross(axis(J, k)).norm(), either_way ? std::abs(cosine) : cosine);
         require_small_angle(angle, fmt::format("axes {} of I and J are apart by", "xyz"[k]));
         if (cosine < 0)
-            c.draft.notes.warn(place(), fmt::format("axes {} of I and J point in opposite "
-                                                    "directions; in the scene they are one line",
-                                                    "xyz"[k]));
+            c.warn(s, fmt::format("axes {} of I and J point in opposite "
+                                  "directions; in the scene they are one line",
+                                  "xyz"[k]));
     }
     // Two perpendicular directions; the second is made exactly perpendicular.
     std::pair<Vector3d, Vector3d> perpendicular(const Vector3d& u, const Vector3d& v) const {
@@ -114,7 +114,7 @@ struct JointConversion {
     }
 
     std::size_t put(const std::string& name, Fields fields) const {
-        c.draft.joints.push_back({name, "{" + fields.text() + "}", place()});
+        c.draft.joints.push_back({name, fields.braced(), place()});
         return c.draft.joints.size() - 1;
     }
     Fields fields(const char* type) const {
@@ -123,89 +123,77 @@ struct JointConversion {
     std::size_t along(const std::string& name, const char* type, const char* key) const {
         return put(name, fields(type).add("at", c.point(I)).add(key, direction(axis(J, 2))));
     }
-    std::size_t cross(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
-        const auto [u, v] = perpendicular(on_i, on_j);
-        return put(name, fields("universal")
-                             .add("at", c.point(I))
-                             .add("axis_i", triple(u))
-                             .add("axis_j", triple(v)));
-    }
-    void cross_only(const std::string& name, const Vector3d& on_i, const Vector3d& on_j) const {
-        const auto [u, v] = perpendicular(on_i, on_j);
-        put(name, fields("perpendicular").add("axis_i", triple(u)).add("axis_j", triple(v)));
-    }
 };
 
-void convert_joint(Conversion& c, const Statement& s) {
-    const Arguments at(c.data.file, s, joint_shape);
-    const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
-    if (!is_between_two(c, s, I, J, at)) return;
-    const JointConversion joint{c, s, at, I, J};
-    std::string kind;
-    for (const std::string& flag : at.flags()) {
-        if (!kind.empty())
-            at.fail(fmt::format("is both {} and {}; exactly one type is needed", kind, flag));
-        kind = flag;
+// A joint or primitive of ADAMS, by its flag, and what a scene has for it.
+struct JointOfAdams {
+    std::string_view flag;
+    const char* type;  // in a scene
+    void (JointConversion::*require_position)() const = nullptr;
+    enum class Parallel { none, z, z_and_x, one_way } parallel = Parallel::none;
+    const char* along = nullptr;  // its field for the axis z of J
+    bool has_point = true;
+    int axis_i = -1, axis_j = -1;  // of the markers, which the joint keeps perpendicular
+};
+using Parallel = JointOfAdams::Parallel;
+constexpr auto meet = &JointConversion::require_meeting,
+               on_line = &JointConversion::require_on_line,
+               on_plane = &JointConversion::require_in_plane;
+constexpr JointOfAdams joints_of_adams[] = {
+    {"REVOLUTE", "revolute", meet, Parallel::z, "axis"},
+    {"CYLINDRICAL", "cylindrical", on_line, Parallel::z, "axis"},
+    {"TRANSLATIONAL", "translational", on_line, Parallel::z_and_x, "axis"},
+    {"SPHERICAL", "spherical", meet},
+    {"FIXED", "fixed", meet, Parallel::one_way},
+    {"PLANAR", "planar", on_plane, Parallel::z, "normal"},
+    {"HOOKE", "universal", meet, Parallel::none, nullptr, true, 0, 1},
+    {"UNIVERSAL", "universal", meet, Parallel::none, nullptr, true, 2, 2},
+    {"ATPOINT", "spherical", meet},
+    {"INLINE", "in_line", on_line, Parallel::none, "axis"},
+    {"INPLANE", "in_plane", on_plane, Parallel::none, "normal"},
+    {"PARALLEL_AXES", "parallel", nullptr, Parallel::z, "axis", false},
+    {"PERPENDICULAR", "perpendicular", nullptr, Parallel::none, nullptr, false, 2, 2},
+    {"ORIENTATION", "parallel", nullptr, Parallel::one_way, "axis", false},
+};
+// Keeps ORIENTATION from turning about z.
+constexpr JointOfAdams about_z{"ORIENTATION", "perpendicular", nullptr, Parallel::none,
+                               nullptr,       false,           0,       1};
+
+std::size_t write(const JointConversion& joint, const std::string& name, const JointOfAdams& kind) {
+    const bool either_way = kind.parallel != Parallel::one_way;
+    if (kind.require_position) (joint.*kind.require_position)();
+    if (kind.parallel != Parallel::none) joint.require_parallel(2, either_way);
+    if (kind.parallel == Parallel::z_and_x || kind.parallel == Parallel::one_way)
+        joint.require_parallel(0, either_way);
+    Fields fields = joint.fields(kind.type);
+    if (kind.has_point) fields.add("at", joint.c.point(joint.I));
+    if (kind.along) fields.add(kind.along, direction(joint.axis(joint.J, 2)));
+    if (kind.axis_i >= 0) {
+        const auto [u, v] =
+            joint.perpendicular(joint.axis(joint.I, kind.axis_i), joint.axis(joint.J, kind.axis_j));
+        fields.add("axis_i", triple(u)).add("axis_j", triple(v));
     }
-    if (kind.empty()) at.fail("has no type");
-    if (kind == "CONVEL" || kind == "RACKPIN" || kind == "SCREW") {
-        c.draft.notes.miss(
-            s.place(),
-            kind == "CONVEL"
-                ? "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
-                  "joint transmits another angle)"
-                : kind +
-                      ": it couples a rotation with a displacement, which no joint of a scene can");
-        return;
-    }
-    const std::string name = c.name(c.joint_names, s);
-    c.draft.notes.count("JOINT " + kind);
+    return joint.put(name, fields);
+}
+
+// Notes the arguments of friction, which a scene does not have.
+void leave_out_friction(Conversion& c, const Statement& s, const Arguments& at) {
     std::string friction;
     for (const char* field : of_friction)
         if (at.has(field)) {
             at.mark_read(field);
             friction += (friction.empty() ? "" : ", ") + std::string(field);
         }
-    if (!friction.empty()) {
-        if (c.options.drop_dynamics)
-            c.draft.notes.leave_out("by --drop dynamics",
-                                    {s.line, friction + " of " + s.place().what});
-        else
-            c.draft.notes.miss(s.place(), friction +
-                                              ": its friction also acts at rest, and a scene has "
-                                              "no friction (--drop dynamics leaves it out)");
-    }
-    std::size_t entry = 0;
-    if (kind == "REVOLUTE") {
-        joint.require_meeting(), joint.require_parallel(2);
-        entry = joint.along(name, "revolute", "axis");
-    } else if (kind == "CYLINDRICAL") {
-        joint.require_on_line(), joint.require_parallel(2);
-        entry = joint.along(name, "cylindrical", "axis");
-    } else if (kind == "TRANSLATIONAL") {
-        joint.require_on_line(), joint.require_parallel(2), joint.require_parallel(0);
-        entry = joint.along(name, "translational", "axis");
-    } else if (kind == "SPHERICAL") {
-        joint.require_meeting();
-        entry = joint.put(name, joint.fields("spherical").add("at", c.point(I)));
-    } else if (kind == "FIXED") {
-        joint.require_meeting(), joint.require_parallel(2, false), joint.require_parallel(0, false);
-        entry = joint.put(name, joint.fields("fixed").add("at", c.point(I)));
-    } else if (kind == "PLANAR") {
-        joint.require_in_plane(), joint.require_parallel(2);
-        entry = joint.along(name, "planar", "normal");
-    } else if (kind == "HOOKE") {
-        joint.require_meeting();
-        entry = joint.cross(name, joint.axis(I, 0), joint.axis(J, 1));
-    } else {
-        joint.require_meeting();
-        entry = joint.cross(name, joint.axis(I, 2), joint.axis(J, 2));
-    }
-    c.joints[s.id] = {kind, entry, I.statement->id, J.statement->id};
+    if (friction.empty()) return;
+    if (c.options.drop_dynamics) return c.leave_out(s, friction, "by --drop dynamics");
+    c.miss(s, friction +
+                  ": its friction also acts at rest, and a scene has no friction (--drop dynamics "
+                  "leaves it out)");
 }
 
-void convert_jprim(Conversion& c, const Statement& s) {
-    const Arguments at(c.data.file, s, jprim_shape);
+// JOINT and JPRIM.
+void convert_joint(Conversion& c, const Statement& s) {
+    const Arguments at(c.data.file, s, s.keyword == "JOINT" ? joint_shape : jprim_shape);
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
     if (!is_between_two(c, s, I, J, at)) return;
     const JointConversion joint{c, s, at, I, J};
@@ -216,27 +204,20 @@ void convert_jprim(Conversion& c, const Statement& s) {
         kind = flag;
     }
     if (kind.empty()) at.fail("has no type");
-    c.draft.notes.count("JPRIM " + kind);
+    if (kind == "CONVEL")
+        return c.miss(s,
+                      "CONVEL: a constant-velocity joint, which a scene does not have (a universal "
+                      "joint transmits another angle)");
+    if (kind == "RACKPIN" || kind == "SCREW")
+        return c.miss(
+            s, kind + ": it couples a rotation with a displacement, which no joint of a scene can");
     const std::string name = c.name(c.joint_names, s);
-    if (kind == "ATPOINT") {
-        joint.require_meeting();
-        joint.put(name, joint.fields("spherical").add("at", c.point(I)));
-    } else if (kind == "INLINE") {
-        joint.require_on_line();
-        joint.along(name, "in_line", "axis");
-    } else if (kind == "INPLANE") {
-        joint.require_in_plane();
-        joint.along(name, "in_plane", "normal");
-    } else if (kind == "PARALLEL_AXES") {
-        joint.require_parallel(2);
-        joint.put(name, joint.fields("parallel").add("axis", direction(joint.axis(J, 2))));
-    } else if (kind == "PERPENDICULAR") {
-        joint.cross_only(name, joint.axis(I, 2), joint.axis(J, 2));
-    } else {  // ORIENTATION: z parallel, and no rotation about it
-        joint.require_parallel(2, false), joint.require_parallel(0, false);
-        joint.put(name, joint.fields("parallel").add("axis", direction(joint.axis(J, 2))));
-        joint.cross_only(c.joint_names.take(name + ".about"), joint.axis(I, 0), joint.axis(J, 1));
-    }
+    c.count(s.keyword + " " + kind);
+    if (s.keyword == "JOINT") leave_out_friction(c, s, at);
+    const auto& found = *std::ranges::find(joints_of_adams, kind, &JointOfAdams::flag);
+    const std::size_t entry = write(joint, name, found);
+    if (kind == about_z.flag) write(joint, c.joint_names.take(name + ".about"), about_z);
+    if (s.keyword == "JOINT") c.joints[s.id] = {kind, entry, I.statement->id, J.statement->id};
 }
 
 // k DM(i, j) + c = 0 is a rigid link of length -c/k; k D*(i, j, rm) + c = 0 keeps i in a plane.
@@ -246,7 +227,7 @@ void convert_gcon(Conversion& c, const Statement& s) {
     if (!text) at.fail("FUNCTION is missing");
     at.mark_read("I");  // where ADAMS shows the reaction
     const Value value = c.function(*text);
-    const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
+    const auto miss = [&](const std::string& why) { c.miss(s, why); };
     if (!value.is_known()) return miss(value.unknown);
     if (value.of_time || value.curves.size() || value.linear.size() != 1)
         return miss("a constraint other than of one distance or one displacement");
@@ -260,15 +241,13 @@ void convert_gcon(Conversion& c, const Statement& s) {
     if (measure.kind == Measure::Kind::DM) {
         const double drawn = (I.pose.r - J.pose.r).norm();
         if (!(offset > 0) || !(drawn > 0)) return miss("a distance that is zero or negative");
-        c.draft.notes.count("GCON of a distance");
+        c.count("GCON of a distance");
         Fields fields = joint.fields("distance").add("from", c.point(I)).add("to", c.point(J));
         if (std::abs(offset - drawn) > 1e-9 * c.geometry.size) {
             fields.add("length", computed(offset, c.geometry.size));
-            c.draft.notes.warn(
-                s.place(),
-                fmt::format(
-                    "the markers are {:.6g} {} apart in the file, and constrained to {:.6g}", drawn,
-                    c.geometry.units.length_name, offset));
+            c.warn(s, fmt::format(
+                          "the markers are {:.6g} {} apart in the file, and constrained to {:.6g}",
+                          drawn, c.geometry.units.length_name, offset));
         }
         joint.put(name, fields);
         return;
@@ -281,7 +260,7 @@ void convert_gcon(Conversion& c, const Statement& s) {
     const Vector3d normal = c.marker(at, measure.rm).pose.A.col(axis);
     joint.require_small(std::abs(normal.dot(I.pose.r - J.pose.r) - offset), c.geometry.size,
                         "the constraint is off by", c.geometry.units.length_name);
-    c.draft.notes.count("GCON of a displacement");
+    c.count("GCON of a displacement");
     joint.put(name,
               joint.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
 }
@@ -302,8 +281,8 @@ std::optional<Displacement> displacement(Conversion& c, const Statement& s, cons
     at.has("DISPLACEMENT");
     const Programme f = c.programme(*text);
     if (!f.first.is_constant()) {
-        c.draft.notes.miss(s.place(), f.first.is_known() ? "a motion that depends on displacements"
-                                                         : "its motion: " + f.first.unknown);
+        c.miss(s, f.first.is_known() ? "a motion that depends on displacements"
+                                     : "its motion: " + f.first.unknown);
         return std::nullopt;
     }
     if (!is_velocity && !is_acceleration) return Displacement{f.path, f.least, f.most, false};
@@ -316,11 +295,11 @@ std::optional<Displacement> displacement(Conversion& c, const Statement& s, cons
         return result;
     }
     if (c.options.drop_dynamics)
-        c.draft.notes.leave_out("by --drop dynamics: the coordinate remains free", s.place());
+        c.leave_out(s, "by --drop dynamics: the coordinate remains free");
     else
-        c.draft.notes.miss(s.place(),
-                           "a motion with a variable velocity or an acceleration (--drop dynamics "
-                           "leaves the coordinate free)");
+        c.miss(s,
+               "a motion with a variable velocity or an acceleration (--drop dynamics "
+               "leaves the coordinate free)");
     return std::nullopt;
 }
 
@@ -363,8 +342,7 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
         if (found == c.joints.end()) {
             if (!in_the_file.contains(at.id("JOINT")))
                 at.fail(fmt::format("there is no JOINT/{}", at.id("JOINT")));
-            c.draft.notes.miss(s.place(),
-                               fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
+            c.miss(s, fmt::format("JOINT/{} is not in the scene", at.id("JOINT")));
             return;
         }
         if (!by) return;
@@ -387,7 +365,7 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
             at.fail(fmt::format("{} of a {} joint, which does not have this coordinate",
                                 rotates ? "ROTATIONAL" : "TRANSLATIONAL", joint.kind));
         }
-        c.draft.notes.count("MOTION");
+        c.count("MOTION");
         return;
     }
     const Marker &I = c.marker(at, "I"), &J = c.marker(at, "J");
@@ -395,9 +373,8 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
     for (int k = 0; k < 3; ++k)
         if (at.has(std::string(1, "XYZ"[k]))) axis = k;
     if (axis < 0) {
-        c.draft.notes.miss(
-            s.place(),
-            "a motion of an angle between two markers; only the angle of a joint can be driven");
+        c.miss(s,
+               "a motion of an angle between two markers; only the angle of a joint can be driven");
         return;
     }
     if (!by || !is_between_two(c, s, I, J, at)) return;
@@ -407,7 +384,7 @@ void convert_motion(Conversion& c, const Statement& s, const std::set<int>& in_t
     plane.put(name,
               plane.fields("in_plane").add("at", c.point(I)).add("normal", direction(normal)));
     drive(c, s, "joints." + name, *by, length, normal.dot(I.pose.r - J.pose.r), false);
-    c.draft.notes.count("MOTION");
+    c.count("MOTION");
 }
 
 // COUPLER: Σ scale · displacement = 0 for two or three joints. A scene has no such joint. If
@@ -418,7 +395,7 @@ void convert_coupler(Conversion& c, const Statement& s) {
     const auto joints = at.ids("JOINTS");
     const auto scales = at.numbers("SCALES", 1, 3);
     if (joints.size() < 2 || joints.size() > 3) at.fail("JOINTS: two or three are needed");
-    const auto miss = [&](const std::string& why) { c.draft.notes.miss(s.place(), why); };
+    const auto miss = [&](const std::string& why) { c.miss(s, why); };
     if (at.has("FUNCTION")) return miss("it couples by a user-written function");
     // For two joints one scale may be missing: that of the first is then 1.
     std::vector<double> scale = scales;
@@ -464,11 +441,10 @@ void convert_coupler(Conversion& c, const Statement& s) {
     std::tie(drive.least, drive.most) =
         std::pair(std::ranges::min(drive.path), std::ranges::max(drive.path));
     c.drives.push_back(std::move(drive));
-    c.draft.notes.count("COUPLER");
-    c.draft.notes.warn(s.place(),
-                       fmt::format("{} is driven in proportion: it has the coupler's motion, but "
-                                   "its reaction is that of a separate drive",
-                                   quantity(joint)));
+    c.count("COUPLER");
+    c.warn(s, fmt::format("{} is driven in proportion: it has the coupler's motion, but "
+                          "its reaction is that of a separate drive",
+                          quantity(joint)));
 }
 
 }  // namespace
@@ -483,8 +459,7 @@ const Shape& motion_shape() {
 
 void convert_joints(Conversion& c) {
     for (const Statement& s : c.data.statements) {
-        if (s.keyword == "JOINT") convert_joint(c, s);
-        if (s.keyword == "JPRIM") convert_jprim(c, s);
+        if (s.keyword == "JOINT" || s.keyword == "JPRIM") convert_joint(c, s);
         if (s.keyword == "GCON") convert_gcon(c, s);
     }
     std::set<int> in_the_file;

@@ -16,7 +16,7 @@
 namespace elastocheck::importer::adm {
 namespace {
 
-using reader::is_blank, reader::trimmed;
+using reader::is_blank, reader::is_digit, reader::trimmed;
 
 // All keywords of a dataset, to resolve abbreviations.
 constexpr std::string_view keywords[] = {
@@ -33,9 +33,8 @@ constexpr std::string_view keywords[] = {
     "SPLINE",  "SPRINGDAMPER", "STRING",   "SURFACE",     "TFSISO",     "TIRE",
     "UCON",    "UNITS",        "VARIABLE", "VFORCE",      "VTORQUE",    "WHEEL"};
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_name(char c) { return is_letter(c) || is_digit(c); }
+bool is_letter(char c) { return reader::is_letter(c) || c == '_'; }
+bool is_name(char c) { return reader::is_word(c); }
 
 // Words that an abbreviation can mean: the exact match alone, else all that begin with it.
 std::vector<std::string_view> meant(std::string_view beginning,
@@ -146,13 +145,6 @@ SourceLocation Statement::place() const {
                               name.empty() ? "" : fmt::format(" '{}'", reader::shown(name)))};
 }
 
-std::string capitals(std::string_view text) {
-    std::string result(text);
-    for (char& c : result)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return result;
-}
-
 Dataset read_statements(std::string_view text, const std::string& file) {
     Dataset data;
     data.file = file;
@@ -161,12 +153,10 @@ Dataset read_statements(std::string_view text, const std::string& file) {
             file, 0, "",
             fmt::format("larger than {} MiB, the limit for a dataset", largest_dataset >> 20));
     Reading reading{data};
-    const char line_end = text.find('\n') == text.npos ? '\r' : '\n';  // CR alone, LF, or CR LF
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(line_end), text.size());
-        const std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        if (++data.last_line == 1) {
+    for (reader::Lines lines(text); lines.next();) {
+        const std::string_view line = lines.line();
+        data.last_line = lines.number();
+        if (data.last_line == 1) {
             if (line.find('\0') != line.npos) reading.fail("a NUL byte: this is not a dataset");
             data.title = trimmed(line);
             continue;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "models/import/draft.hpp"
+#include "models/reader/document/characters.hpp"
 
 namespace elastocheck::importer::adm {
 
@@ -102,6 +103,6 @@ class Arguments {
 // if none.
 std::size_t number_at(std::string_view text, double& value, bool& is_in_degrees);
 
-std::string capitals(std::string_view text);
+using reader::capitals;
 
 }  // namespace elastocheck::importer::adm

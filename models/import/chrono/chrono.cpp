@@ -17,165 +17,138 @@ namespace {
 using reader::Cursor;
 
 const Matrix3d no_turn = Matrix3d::Identity();
+using OuterEnd = Suspension::OuterEnd;
 
-std::optional<Cursor> bushing_of(const Suspension& s, const char* path) {
-    if (!s.has(path)) return std::nullopt;
-    return s.at(path);
+// An arm on an axis through two points: chassis to arm at their middle.
+void arm(Suspension& s, const std::string& name, const std::string& part,
+         const char* front = "Location Chassis Front", const char* back = "Location Chassis Back") {
+    s.body(name + "*", s.point(part + "/COM"), part);
+    const FilePoint f = s.point(part + "/" + front), b = s.point(part + "/" + back);
+    const Vector3d middle = s.midpoint(name + ".axis", "front", f, "rear", b);
+    s.joint_or_bushing(Kind::revolute, name + ".axis*", "ground", name + "*", {middle, part},
+                       frame_along(f - b, Vector3d::UnitZ()), s.optional(part + "/Bushing Data"));
 }
 
-// An arm on an axis through two points: chassis to arm at their middle, arm to upright at its ball
-// joint.
-void arm(Suspension& s, const std::string& name, const char* part, const char* front,
-         const char* back, const char* ball, const std::string& upright) {
-    const std::string p(part);
-    const auto path = [&](const char* key) { return p + "/" + key; };
-    const std::string of = s.sided(name), data = path("Bushing Data");
-    s.body(of, s.point(path("COM").c_str()), part);
-    const Vector3d f = s.point(path(front).c_str()), b = s.point(path(back).c_str());
-    const Vector3d middle =
-        s.midpoint(name + ".axis", "front", path(front).c_str(), "rear", path(back).c_str());
-    s.joint_or_bushing(Kind::revolute, s.sided(name + ".axis"), "ground", of, middle,
-                       frame_along(f - b, Vector3d::UnitZ()), part, bushing_of(s, data.c_str()));
-    if (ball)
-        s.spherical(s.sided(name + ".ball_joint"), of, upright, s.point(path(ball).c_str()),
-                    path(ball).c_str());
+// The same with a ball joint on the upright.
+void wishbone(Suspension& s, const std::string& name, const std::string& part) {
+    arm(s, name, part);
+    s.spherical(name + ".ball_joint*", name + "*", "upright*", s.point(part + "/Location Upright"));
 }
 
-void upright_body(Suspension& s) { s.body(s.sided("upright"), s.point("Upright/COM"), "Upright"); }
+void upright_body(Suspension& s) { s.body("upright*", s.point("Upright/COM"), "Upright"); }
 
-void spring_and_shock(Suspension& s, const char* end, const std::string& on,
-                      const char* spring = "Spring") {
-    for (const char* part : {spring, "Shock"}) {
-        if (!s.has(part)) continue;
-        const std::string p(part);
-        std::string name = p == "Shock" ? "damper" : p == "Spring" ? "spring" : "auxiliary_spring";
-        s.tsda(s.sided(name), "ground", s.point((p + "/Location Chassis").c_str()), on,
-               s.point((p + "/" + end).c_str()), s.at(part));
+void spring_and_shock(Suspension& s, const std::string& end, const std::string& on,
+                      const std::string& spring = "Spring") {
+    for (const std::string& part : {spring, std::string("Shock")}) {
+        const auto data = s.optional(part);
+        if (!data) continue;
+        const char* name = part == "Shock"    ? "damper*"
+                           : part == "Spring" ? "spring*"
+                                              : "auxiliary_spring*";
+        s.tsda(s.on_side(name), "ground", s.point(part + "/Location Chassis"), s.on_side(on),
+               s.point(part + "/" + end), *data);
     }
 }
 
+void wheel_on(Suspension& s, const char* carrier) { s.spindle(s.on_side(carrier)); }
+
 // ---- Independent suspensions: one side, mirrored by the scene.
+
+// What all with an upright have besides their links; the spring acts on `on`.
+void tierod_spring_and_wheel(Suspension& s, const char* end, const char* on) {
+    s.tierod("Location Chassis", "Location Upright", "upright*");
+    spring_and_shock(s, end, on);
+    wheel_on(s, "upright*");
+}
 
 void double_wishbone(Suspension& s) {
     upright_body(s);
-    const std::string upright = s.sided("upright");
-    arm(s, "upper_arm", "Upper Control Arm", "Location Chassis Front", "Location Chassis Back",
-        "Location Upright", upright);
-    arm(s, "lower_arm", "Lower Control Arm", "Location Chassis Front", "Location Chassis Back",
-        "Location Upright", upright);
-    s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
-    spring_and_shock(s, "Location Arm", s.sided("lower_arm"));
-    s.spindle(upright);
+    wishbone(s, "upper_arm", "Upper Control Arm");
+    wishbone(s, "lower_arm", "Lower Control Arm");
+    tierod_spring_and_wheel(s, "Location Arm", "lower_arm*");
 }
 
 void double_wishbone_reduced(Suspension& s) {
     upright_body(s);
-    const std::string upright = s.sided("upright");
-    for (const auto& [name, part] :
-         {std::pair{"upper", "Upper Control Arm"}, {"lower", "Lower Control Arm"}})
-        for (const auto& [way, key] :
-             {std::pair{"front", "Location Chassis Front"}, {"rear", "Location Chassis Back"}}) {
-            const std::string from = std::string(part) + "/" + key,
-                              to = std::string(part) + "/Location Upright";
-            s.distance(s.sided(fmt::format("{}_{}", name, way)), "ground", s.point(from.c_str()),
-                       from.c_str(), upright, s.point(to.c_str()), to.c_str());
-        }
-    s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
-    spring_and_shock(s, "Location Upright", upright);
-    s.spindle(upright);
+    for (const std::string way : {"upper", "lower"}) {
+        const std::string part =
+            (way == "upper" ? "Upper" : "Lower") + std::string(" Control Arm/");
+        const FilePoint outer = s.point(part + "Location Upright");
+        s.distance(way + "_front*", "ground", s.point(part + "Location Chassis Front"), "upright*",
+                   outer);
+        s.distance(way + "_rear*", "ground", s.point(part + "Location Chassis Back"), "upright*",
+                   outer);
+    }
+    tierod_spring_and_wheel(s, "Location Upright", "upright*");
 }
 
 void mcpherson(Suspension& s) {
     upright_body(s);
-    const std::string upright = s.sided("upright"), strut = s.sided("strut");
-    arm(s, "arm", "Control Arm", "Location Chassis Front", "Location Chassis Back",
-        "Location Upright", upright);
-    const Vector3d top = s.point("Spring/Location Chassis"),
-                   seat = s.point("Spring/Location Upright");
-    s.body(strut, 0.5 * (top + seat), "Strut");
+    wishbone(s, "arm", "Control Arm");
+    const FilePoint top = s.point("Spring/Location Chassis"),
+                    seat = s.point("Spring/Location Upright");
+    s.body("strut*", 0.5 * (top + seat), "Strut");
     const Matrix3d A = frame_along(seat - top, Vector3d::UnitX());
-    s.universal(s.sided("strut.mount"), "ground", strut, top, A.col(0), A.col(1),
-                "Spring/Location Chassis");
-    s.joint(s.sided("strut.tube"), "cylindrical", strut, upright,
-            Fields{}
-                .add("at", s.hardpoint(s.sided("strut.tube"), seat, "Spring/Location Upright"))
-                .add("axis", direction(A.col(2))),
-            s.place("Spring/Location Upright"));
-    s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
-    spring_and_shock(s, "Location Upright", upright);
-    s.spindle(upright);
-}
-
-// x of the universal joint is fixed to the link, y to the chassis.
-void axes_link(Suspension& s, const std::string& name, const char* part,
-               const std::string& upright) {
-    const std::string p(part), of = s.sided(name);
-    const auto at = [&](const char* key) { return p + "/" + key; };
-    s.body(of, s.point(at("COM").c_str()), part);
-    s.spherical(s.sided(name + ".outer"), of, upright, s.point(at("Location Upright").c_str()),
-                at("Location Upright").c_str());
-    s.universal(s.sided(name + ".inner"), of, "ground", s.point(at("Location Chassis").c_str()),
-                s.point(at("Universal Joint Axis Chassis").c_str()),
-                s.point(at("Universal Joint Axis Link").c_str()), at("Location Chassis").c_str());
+    s.universal("strut.mount*", "ground", "strut*", top, A);
+    s.joint("strut.tube*", "cylindrical", "strut*", "upright*",
+            Fields{}.add("at", s.hardpoint("strut.tube*", seat)).add("axis", direction(A.col(2))),
+            s.place(seat.path));
+    tierod_spring_and_wheel(s, "Location Upright", "upright*");
 }
 
 void multi_link(Suspension& s) {
     upright_body(s);
-    const std::string upright = s.sided("upright");
-    arm(s, "upper_arm", "Upper Arm", "Location Chassis Front", "Location Chassis Back",
-        "Location Upright", upright);
-    axes_link(s, "lateral", "Lateral", upright);
-    axes_link(s, "trailing_link", "Trailing Link", upright);
-    s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
-    spring_and_shock(s, "Location Link", s.sided("trailing_link"));
-    s.spindle(upright);
+    wishbone(s, "upper_arm", "Upper Arm");
+    // x of the universal joint is fixed to the link, y to the chassis.
+    for (const auto& [name, part] : {std::pair<std::string, std::string>{"lateral", "Lateral"},
+                                     {"trailing_link", "Trailing Link"}}) {
+        s.body(name + "*", s.point(part + "/COM"), part);
+        s.spherical(name + ".outer*", name + "*", "upright*", s.point(part + "/Location Upright"));
+        s.universal(name + ".inner*", name + "*", "ground", s.point(part + "/Location Chassis"),
+                    s.point(part + "/Universal Joint Axis Chassis"),
+                    s.point(part + "/Universal Joint Axis Link"));
+    }
+    tierod_spring_and_wheel(s, "Location Link", "trailing_link*");
 }
 
 void semi_trailing_arm(Suspension& s) {
     s.left("Trailing Arm/Location Spindle");
-    arm(s, "arm", "Trailing Arm", "Location Chassis Outer", "Location Chassis Inner", nullptr, "");
-    spring_and_shock(s, "Location Arm", s.sided("arm"));
-    s.spindle(s.sided("arm"));
+    arm(s, "arm", "Trailing Arm", "Location Chassis Outer", "Location Chassis Inner");
+    spring_and_shock(s, "Location Arm", "arm*");
+    wheel_on(s, "arm*");
 }
 
 void three_link_irs(Suspension& s) {
     s.left("Trailing Arm/Location Spindle");
-    const std::string arm_name = s.sided("arm");
-    s.body(arm_name, s.point("Trailing Arm/COM"), "Trailing Arm");
-    const auto on_chassis = bushing_of(s, "Bushing Data Chassis"),
-               on_arm = bushing_of(s, "Bushing Data Arm");
-    s.joint_or_bushing(Kind::spherical, s.sided("arm.joint"), "ground", arm_name,
-                       s.point("Trailing Arm/Location Chassis"), no_turn,
-                       "Trailing Arm/Location Chassis", on_chassis);
+    s.body("arm*", s.point("Trailing Arm/COM"), "Trailing Arm");
+    const auto on_chassis = s.optional("Bushing Data Chassis"),
+               on_arm = s.optional("Bushing Data Arm");
+    s.joint_or_bushing(Kind::spherical, "arm.joint*", "ground", "arm*",
+                       s.point("Trailing Arm/Location Chassis"), no_turn, on_chassis);
     for (const auto& [name, part] :
-         {std::pair{"upper_link", "Upper Link"}, {"lower_link", "Lower Link"}}) {
-        const std::string of = s.sided(name), p(part), inner = p + "/Location Chassis",
-                          outer = p + "/Location Arm";
-        s.body(of, s.point((p + "/COM").c_str()), part);
-        const Vector3d c = s.point(inner.c_str()), a = s.point(outer.c_str());
-        s.joint_or_bushing(Kind::spherical, s.sided(std::string(name) + ".outer"), of, arm_name, a,
-                           no_turn, outer.c_str(), on_arm);
-        s.joint_or_bushing(Kind::universal, s.sided(std::string(name) + ".inner"), of, "ground", c,
-                           frame_along(c - a, s.point((p + "/Universal Joint Axis").c_str())),
-                           inner.c_str(), on_chassis);
+         {std::pair<std::string, std::string>{"upper_link", "Upper Link"},
+          {"lower_link", "Lower Link"}}) {
+        s.body(name + "*", s.point(part + "/COM"), part);
+        const FilePoint c = s.point(part + "/Location Chassis"),
+                        a = s.point(part + "/Location Arm");
+        s.joint_or_bushing(Kind::spherical, name + ".outer*", name + "*", "arm*", a, no_turn,
+                           on_arm);
+        s.joint_or_bushing(Kind::universal, name + ".inner*", name + "*", "ground", c,
+                           frame_along(c - a, s.point(part + "/Universal Joint Axis")), on_chassis);
     }
-    spring_and_shock(s, "Location Arm", arm_name);
-    s.spindle(arm_name);
+    spring_and_shock(s, "Location Arm", "arm*");
+    wheel_on(s, "arm*");
 }
 
 void single_wishbone(Suspension& s) {
     upright_body(s);
-    const std::string upright = s.sided("upright"), arm_name = s.sided("arm");
-    s.body(arm_name, s.point("Control Arm/COM"), "Control Arm");
-    s.joint_or_bushing(Kind::revolute, s.sided("arm.axis"), "ground", arm_name,
-                       s.point("Control Arm/Location Chassis"),
-                       frame_along(Vector3d::UnitX(), Vector3d::UnitZ()),
-                       "Control Arm/Location Chassis", bushing_of(s, "Control Arm/Bushing Data"));
-    s.revolute(s.sided("king_pin"), arm_name, upright, s.point("Control Arm/Location Upright"),
-               Vector3d::UnitZ(), "Control Arm/Location Upright");
-    s.tierod("Tierod", "Location Chassis", "Location Upright", upright);
-    spring_and_shock(s, "Location Arm", arm_name);
-    s.spindle(upright);
+    s.body("arm*", s.point("Control Arm/COM"), "Control Arm");
+    s.joint_or_bushing(
+        Kind::revolute, "arm.axis*", "ground", "arm*", s.point("Control Arm/Location Chassis"),
+        frame_along(Vector3d::UnitX(), Vector3d::UnitZ()), s.optional("Control Arm/Bushing Data"));
+    s.revolute("king_pin*", "arm*", "upright*", s.point("Control Arm/Location Upright"),
+               Vector3d::UnitZ());
+    tierod_spring_and_wheel(s, "Location Arm", "arm*");
 }
 
 // ---- Axles: both sides written out, since their shared parts are not symmetric.
@@ -193,51 +166,56 @@ void axle_tube(Suspension& s) { s.body("axle", s.left("Axle Tube/COM"), "Axle Tu
 // A knuckle on the axle's king pin.
 void knuckle(Suspension& s, const char* lower = "Knuckle/Location Lower",
              const char* upper = "Knuckle/Location Upper") {
-    s.body(s.sided("knuckle"), s.point("Knuckle/COM"), "Knuckle");
-    const Vector3d middle = s.midpoint("king_pin", "lower", lower, "upper", upper);
-    s.revolute(s.sided("king_pin"), "axle", s.sided("knuckle"), middle,
-               s.point(lower) - s.point(upper), "Knuckle");
+    s.body("knuckle*", s.point("Knuckle/COM"), "Knuckle");
+    const FilePoint low = s.point(lower), high = s.point(upper);
+    const Vector3d middle = s.midpoint("king_pin", "lower", low, "upper", high);
+    s.revolute("king_pin*", "axle", "knuckle*", {middle, "Knuckle"}, low - high);
 }
 
-// The track rod between both knuckles, and the drag link from ground to one of them.
+// Spring, shock and wheel of both sides, and the knuckles of a steered axle.
+enum class Axle { rigid, steered };
+void spring_and_wheel(Suspension& s, Axle axle, const char* spring = "Spring") {
+    if (axle == Axle::steered) knuckle(s);
+    spring_and_shock(s, "Location Axle", "axle", spring);
+    wheel_on(s, axle == Axle::steered ? "knuckle*" : "axle");
+}
+
+// The track rod between both knuckles.
 void shared_tierod(Suspension& s) {
-    const Vector3d end = s.left("Tierod/Location Knuckle");
+    const FilePoint end = s.left("Tierod/Location Knuckle");
     s.side = -1;
-    const Vector3d other = s.point("Tierod/Location Knuckle");
+    const FilePoint other = s.point("Tierod/Location Knuckle");
     s.side = +1;
     s.body("tierod", 0.5 * (end + other), "Tierod");
-    s.spherical("tierod.left", "tierod", "knuckle_left", end, "Tierod/Location Knuckle");
+    s.spherical("tierod.left", "tierod", "knuckle_left", end);
     s.universal("tierod.right", "tierod", "knuckle_right", other, Vector3d::UnitX(),
-                Vector3d::UnitZ(), "Tierod/Location Knuckle");
+                Vector3d::UnitZ());
 }
 
-void draglink(Suspension& s, bool universal) {
-    const Vector3d chassis = s.left("Draglink/Location Chassis");
-    const Vector3d end = s.left("Knuckle/Location Draglink");  // the sign of y tells the knuckle
-    s.link("draglink", "Draglink", 0.5 * (chassis + end), "ground", chassis,
-           end.y() > 0 ? "knuckle_left" : "knuckle_right", end, universal,
-           "Draglink/Location Chassis", "Knuckle/Location Draglink");
+// The drag link from ground to one of the knuckles, as the sign of y says.
+void draglink(Suspension& s, OuterEnd outer) {
+    const FilePoint end = s.left("Knuckle/Location Draglink");
+    s.link("draglink", "Draglink", "ground", s.left("Draglink/Location Chassis"),
+           end.y() > 0 ? "knuckle_left" : "knuckle_right", end, outer);
 }
 
 void solid_axle(Suspension& s) {
     axle_tube(s);
     both(s, [&] {
         knuckle(s);
-        for (const auto& [name, part, other] :
-             {std::tuple{"upper_link", "Upper Link", "Lower Link"},
-              std::tuple{"lower_link", "Lower Link", "Upper Link"}}) {
-            const std::string of = s.sided(name), p(part), inner = p + "/Location Chassis",
-                              outer = p + "/Location Axle";
-            const Vector3d c = s.point(inner.c_str()), a = s.point(outer.c_str());
-            s.body(of, s.point((p + "/COM").c_str()), part);
-            const Vector3d beside = s.point((std::string(other) + "/Location Axle").c_str());
-            const Matrix3d A = frame_along(c - a, a - beside);
-            s.universal(s.sided(std::string(name) + ".inner"), "ground", of, c, A.col(0), A.col(1),
-                        inner.c_str());
-            s.spherical(s.sided(std::string(name) + ".outer"), "axle", of, a, outer.c_str());
+        for (const std::string way : {"upper", "lower"}) {
+            const std::string name = way + "_link",
+                              part = way == "upper" ? "Upper Link" : "Lower Link",
+                              beside = way == "upper" ? "Lower Link" : "Upper Link";
+            const FilePoint c = s.point(part + "/Location Chassis"),
+                            a = s.point(part + "/Location Axle");
+            s.body(name + "*", s.point(part + "/COM"), part);
+            s.universal(name + ".inner*", "ground", name + "*", c,
+                        frame_along(c - a, a - s.point(beside + "/Location Axle")));
+            s.spherical(name + ".outer*", "axle", name + "*", a);
         }
         spring_and_shock(s, "Location Axle", "axle");
-        s.spindle(s.sided("knuckle"));
+        wheel_on(s, "knuckle*");
     });
     shared_tierod(s);
     if (s.has("Trackbar")) {  // without it the non-parallel links already hold the axle sideways
@@ -246,104 +224,92 @@ void solid_axle(Suspension& s) {
             s.place("Trackbar"),
             "links and track bar leave the axle a single, poorly determined degree of freedom: the "
             "branch drives the left wheel, the right one follows");
-        const Vector3d a = s.left("Trackbar/Location Axle"),
-                       c = s.left("Trackbar/Location Chassis");
-        s.link("trackbar", "Trackbar", 0.5 * (a + c), "ground", c, "axle", a, false,
-               "Trackbar/Location Chassis", "Trackbar/Location Axle");
+        s.link("trackbar", "Trackbar", "ground", s.left("Trackbar/Location Chassis"), "axle",
+               s.left("Trackbar/Location Axle"));
     }
     // Drag link, bell crank, and the pin of the bell crank in the track rod's plane.
-    const Vector3d d = s.left("Draglink/Location Bell Crank"),
-                   steering = s.left("Draglink/Location Chassis");
-    const Vector3d pivot = s.left("Bell Crank/Location Axle"),
-                   pin = s.left("Bell Crank/Location Tierod");
+    const FilePoint d = s.left("Draglink/Location Bell Crank"),
+                    pivot = s.left("Bell Crank/Location Axle"),
+                    pin = s.left("Bell Crank/Location Tierod");
     s.body("bell_crank", (d + pivot + pin) / 3, "Bell Crank");
-    s.link("draglink", "Draglink", 0.5 * (d + steering), "ground", steering, "bell_crank", d, true,
-           "Draglink/Location Chassis", "Draglink/Location Bell Crank");
+    s.link("draglink", "Draglink", "ground", s.left("Draglink/Location Chassis"), "bell_crank", d,
+           OuterEnd::universal);
     const Vector3d axis = (d - pivot).cross(pin - pivot);
     if (!(axis.norm() > 1e-12))
-        s.at("Bell Crank/Location Axle")
-            .fail("on one line with the other points of the bell crank");
-    s.revolute("bell_crank.pivot", "bell_crank", "axle", pivot, axis, "Bell Crank/Location Axle");
-    s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY(),
-               s.place("Bell Crank/Location Tierod"));
+        s.at(pivot.path).fail("on one line with the other points of the bell crank");
+    s.revolute("bell_crank.pivot", "bell_crank", "axle", pivot, axis);
+    s.in_plane("bell_crank.pin", "bell_crank", "tierod", pin, Vector3d::UnitY(), pin.path);
 }
 
 // Triangle and links of the three-link axles.
 void three_links(Suspension& s) {
-    Vector3d c = s.left("Triangular Link/Location Chassis"),
-             a = s.left("Triangular Link/Location Axle");
+    FilePoint c = s.left("Triangular Link/Location Chassis"),
+              a = s.left("Triangular Link/Location Axle");
     c.y() = a.y() = 0;  // the middle of both sides
-    s.draft().points.at(c, "triangle.axis", {0, "Triangular Link/Location Chassis, at y = 0"});
-    s.draft().points.at(a, "triangle.ball_joint", {0, "Triangular Link/Location Axle, at y = 0"});
+    s.draft().points.at(c, "triangle.axis", {0, c.path + ", at y = 0"});
+    s.draft().points.at(a, "triangle.ball_joint", {0, a.path + ", at y = 0"});
     s.body("triangle", 0.5 * (c + a), "Triangular Link");
-    s.revolute("triangle.axis", "triangle", "ground", c, Vector3d::UnitY(),
-               "Triangular Link/Location Chassis");
-    s.spherical("triangle.ball_joint", "triangle", "axle", a, "Triangular Link/Location Axle");
+    s.revolute("triangle.axis", "triangle", "ground", c, Vector3d::UnitY());
+    s.spherical("triangle.ball_joint", "triangle", "axle", a);
     both(s, [&] {
-        const Vector3d chassis = s.point("Longitudinal Link/Location Chassis"),
-                       axle = s.point("Longitudinal Link/Location Axle");
-        s.body(s.sided("link"), 0.5 * (chassis + axle), "Longitudinal Link");
-        s.spherical(s.sided("link.outer"), s.sided("link"), "axle", axle,
-                    "Longitudinal Link/Location Axle");
-        const Matrix3d A = frame_along(chassis - axle, Vector3d::UnitY());
-        s.universal(s.sided("link.inner"), s.sided("link"), "ground", chassis, A.col(0), A.col(1),
-                    "Longitudinal Link/Location Chassis");
+        const FilePoint chassis = s.point("Longitudinal Link/Location Chassis"),
+                        axle = s.point("Longitudinal Link/Location Axle");
+        s.body("link*", 0.5 * (chassis + axle), "Longitudinal Link");
+        s.spherical("link.outer*", "link*", "axle", axle);
+        s.universal("link.inner*", "link*", "ground", chassis,
+                    frame_along(chassis - axle, Vector3d::UnitY()));
     });
 }
 
 void solid_three_link(Suspension& s) {
     axle_tube(s);
     three_links(s);
-    both(s, [&] {
-        spring_and_shock(s, "Location Axle", "axle");
-        s.spindle("axle");
-    });
+    both(s, [&] { spring_and_wheel(s, Axle::rigid); });
 }
 
 void solid_bellcrank_three_link(Suspension& s) {
     axle_tube(s);
     three_links(s);
-    const Vector3d pivot = s.left("Bellcrank/Location Axle");
+    const FilePoint pivot = s.left("Bellcrank/Location Axle");
     s.body("bellcrank", pivot, "Bellcrank");
-    s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ(),
-               "Bellcrank/Location Axle");
-    const Vector3d d = s.left("Draglink/Location Bellcrank"),
-                   steering = s.left("Draglink/Location Steering");
-    s.link("draglink", "Draglink", 0.5 * (d + steering), "ground", steering, "bellcrank", d, true,
-           "Draglink/Location Steering", "Draglink/Location Bellcrank");
+    s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ());
+    s.link("draglink", "Draglink", "ground", s.left("Draglink/Location Steering"), "bellcrank",
+           s.left("Draglink/Location Bellcrank"), OuterEnd::universal);
     both(s, [&] {
         knuckle(s);
-        const Vector3d inner = s.point("Bellcrank/Location Tierod"),
-                       outer = s.point("Knuckle/Location Tierod");
-        s.link(s.sided("tierod"), "Tierod", 0.5 * (inner + outer), "bellcrank", inner,
-               s.sided("knuckle"), outer, false, "Bellcrank/Location Tierod",
-               "Knuckle/Location Tierod");
+        s.link("tierod*", "Tierod", "bellcrank", s.point("Bellcrank/Location Tierod"), "knuckle*",
+               s.point("Knuckle/Location Tierod"));
         spring_and_shock(s, "Location Axle", "axle");
-        s.spindle(s.sided("knuckle"));
+        wheel_on(s, "knuckle*");
     });
 }
 
-// De Dion axle: ball joint on the chassis, and a Watt linkage for lateral guidance.
-void dedion(Suspension& s) {
+// The axle's ball joint on the chassis.
+void axle_on_a_ball(Suspension& s) {
     axle_tube(s);
-    s.spherical("axle.ball_joint", "axle", "ground", s.left("Axle Tube/Location Connector Chassis"),
-                "Axle Tube/Location Connector Chassis");
-    const Vector3d left = s.left("Watt Mechanism/Location Left Link to Center"),
-                   right = s.left("Watt Mechanism/Location Right Link to Center");
+    s.spherical("axle.ball_joint", "axle", "ground",
+                s.left("Axle Tube/Location Connector Chassis"));
+}
+
+// De Dion axle, with a Watt linkage for lateral guidance.
+void dedion(Suspension& s) {
+    axle_on_a_ball(s);
+    const std::string watt = "Watt Mechanism/Location ";
+    const Vector3d middle =
+        0.5 * (s.left(watt + "Left Link to Center") + s.left(watt + "Right Link to Center"));
     s.draft().points.at(
-        0.5 * (left + right), "watt_centre.pivot",
+        middle, "watt_centre.pivot",
         {0, "midpoint of Watt Mechanism/Location Left Link to Center and Right Link to Center"});
-    s.body("watt_centre", 0.5 * (left + right), "Watt Mechanism", "Center Link Mass");
-    s.revolute("watt_centre.pivot", "watt_centre", "axle", 0.5 * (left + right), Vector3d::UnitX(),
-               "Watt Mechanism");
-    for (const auto& [name, centre, chassis] :
-         {std::tuple{"watt_link_left", "Watt Mechanism/Location Left Link to Center",
-                     "Watt Mechanism/Location Left Link to Chassis"},
-          std::tuple{"watt_link_right", "Watt Mechanism/Location Right Link to Center",
-                     "Watt Mechanism/Location Right Link to Chassis"}}) {
-        s.body(name, 0.5 * (s.left(centre) + s.left(chassis)), "Watt Mechanism", "Side Link Mass");
-        s.spherical(std::string(name) + ".inner", name, "watt_centre", s.left(centre), centre);
-        s.spherical(std::string(name) + ".outer", name, "ground", s.left(chassis), chassis);
+    s.body("watt_centre", middle, "Watt Mechanism", "Center Link Mass");
+    s.revolute("watt_centre.pivot", "watt_centre", "axle", {middle, "Watt Mechanism"},
+               Vector3d::UnitX());
+    for (const std::string way : {"Left", "Right"}) {
+        const std::string name = way == "Left" ? "watt_link_left" : "watt_link_right";
+        const FilePoint centre = s.left(watt + way + " Link to Center"),
+                        chassis = s.left(watt + way + " Link to Chassis");
+        s.body(name, 0.5 * (centre + chassis), "Watt Mechanism", "Side Link Mass");
+        s.spherical(name + ".inner", name, "watt_centre", centre);
+        s.spherical(name + ".outer", name, "ground", chassis);
     }
 }
 
@@ -351,150 +317,125 @@ void dedion(Suspension& s) {
 void leafspring_guide(Suspension& s) {
     axle_tube(s);
     const Vector3d p = s.left("Axle Tube/COM");
-    s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX(), s.place("Axle Tube"));
-    s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY(), s.place("Axle Tube"));
+    s.in_plane("axle.fore_aft", "axle", "ground", p, Vector3d::UnitX(), "Axle Tube");
+    s.in_plane("axle.lateral", "axle", "ground", p, Vector3d::UnitY(), "Axle Tube");
     s.joint("axle.roll_axis", "parallel", "axle", "ground", Fields{}.add("axis", "x"),
             s.place("Axle Tube"));
 }
 
-void panhard_rod(Suspension& s, const char* chassis, const char* axle) {
-    const Vector3d c = s.left(chassis), a = s.left(axle);
-    s.link("panhard_rod", "Panhard Rod", 0.5 * (c + a), "ground", c, "axle", a, false, chassis,
-           axle);
+// `on`: how the fields of its ends begin.
+void panhard_rod(Suspension& s, const std::string& on) {
+    s.link("panhard_rod", "Panhard Rod", "ground", s.left(on + "Chassis"), "axle",
+           s.left(on + "Axle"));
 }
 
 void push_pipe(Suspension& s) {
-    axle_tube(s);
-    if (s.has("Axle Tube/Portal Offset") && s.real("Axle Tube/Portal Offset") != 0)
+    axle_on_a_ball(s);
+    if (const auto offset = s.optional("Axle Tube/Portal Offset"); offset && offset->number() != 0)
         s.draft().notes.miss(s.place("Axle Tube/Portal Offset"),
                              "a portal axle, whose gears are not supported");
-    s.spherical("axle.ball_joint", "axle", "ground", s.left("Axle Tube/Location Connector Chassis"),
-                "Axle Tube/Location Connector Chassis");
-    panhard_rod(s, "Panhard Rod/Location Connector Chassis", "Panhard Rod/Location Connector Axle");
+    panhard_rod(s, "Panhard Rod/Location Connector ");
 }
 
 void rigid_panhard(Suspension& s) {
     axle_tube(s);
-    s.joint("axle.guide", "planar", "ground", "axle",
-            Fields{}
-                .add("at", s.hardpoint("axle.guide", s.left("Axle Tube/COM"), "Axle Tube/COM"))
-                .add("normal", "x"),
-            s.place("Axle Tube"));
-    panhard_rod(s, "Panhard Rod/Location Chassis", "Panhard Rod/Location Axle");
+    s.joint(
+        "axle.guide", "planar", "ground", "axle",
+        Fields{}.add("at", s.hardpoint("axle.guide", s.left("Axle Tube/COM"))).add("normal", "x"),
+        s.place("Axle Tube"));
+    panhard_rod(s, "Panhard Rod/Location ");
     // An anti-roll bar in two halves: the left one rotates in the chassis, the right one relative
     // to it.
-    const Vector3d chassis = s.left("Anti Roll Bar/Location Chassis");
-    const Vector3d middle(chassis.x(), 0, chassis.z());
-    s.draft().points.at(middle, "antiroll_bar.bearing",
-                        {0, "Anti Roll Bar/Location Chassis, at y = 0"});
+    const FilePoint chassis = s.left("Anti Roll Bar/Location Chassis"),
+                    middle{Vector3d(chassis.x(), 0, chassis.z()), chassis.path};
+    s.draft().points.at(middle, "antiroll_bar.bearing", {0, chassis.path + ", at y = 0"});
     both(s, [&] {
-        s.body(s.sided("antiroll_bar"), 0.5 * (s.point("Anti Roll Bar/Location Chassis") + middle),
+        s.body("antiroll_bar*", 0.5 * (s.point("Anti Roll Bar/Location Chassis") + middle),
                "Anti Roll Bar");
     });
-    s.revolute("antiroll_bar.bearing", "ground", "antiroll_bar_left", middle, Vector3d::UnitY(),
-               "Anti Roll Bar/Location Chassis");
+    s.revolute("antiroll_bar.bearing", "ground", "antiroll_bar_left", middle, Vector3d::UnitY());
     s.revolute("antiroll_bar.middle", "antiroll_bar_left", "antiroll_bar_right", middle,
-               Vector3d::UnitY(), "Anti Roll Bar/Location Chassis");
-    s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right", middle,
-              Vector3d::UnitY(), s.real("Anti Roll Bar/Rotational Stiffness"), 0,
-              "Anti Roll Bar/Rotational Stiffness");
+               Vector3d::UnitY());
+    const char* const rate = "Anti Roll Bar/Rotational Stiffness";
+    s.torsion("antiroll_bar.twist", "antiroll_bar_left", "antiroll_bar_right", {middle, rate},
+              Vector3d::UnitY(), s.real(rate), 0);
     both(s, [&] {
-        s.in_plane(s.sided("antiroll_bar.slide"), s.sided("antiroll_bar"), "axle",
-                   s.point("Anti Roll Bar/Location Axle"), Vector3d::UnitZ(),
-                   s.place("Anti Roll Bar/Location Axle"));
+        const FilePoint end = s.point("Anti Roll Bar/Location Axle");
+        s.in_plane("antiroll_bar.slide*", "antiroll_bar*", "axle", end, Vector3d::UnitZ(),
+                   end.path);
     });
 }
 
 void rigid_wheels(Suspension& s) {
-    both(s, [&] {
-        spring_and_shock(s, "Location Axle", "axle");
-        s.spindle("axle");
-    });
+    both(s, [&] { spring_and_wheel(s, Axle::rigid); });
 }
 
-void steered_wheels(Suspension& s, bool universal_draglink) {
-    both(s, [&] {
-        knuckle(s);
-        spring_and_shock(s, "Location Axle", "axle");
-        s.spindle(s.sided("knuckle"));
-    });
+void steered_wheels(Suspension& s, OuterEnd draglink_end = OuterEnd::universal) {
+    both(s, [&] { spring_and_wheel(s, Axle::steered); });
     shared_tierod(s);
-    draglink(s, universal_draglink);
+    draglink(s, draglink_end);
 }
 
 // A leaf spring in two halves (SAE): a spring about y and one about z at each clamp. The preload is
 // shared equally.
 void leaf(Suspension& s) {
-    const Vector3d hanger = s.point("Leafspring/Location Front Hanger"),
-                   a = s.point("Leafspring/Location Clamp A"),
-                   b = s.point("Leafspring/Location Clamp B"),
-                   shackle = s.point("Leafspring/Location Shackle"),
-                   rear = s.point("Leafspring/Location Rear Hanger");
-    const double bias = s.real("Leafspring/Stiffness Bias"),
-                 preload = s.real("Leafspring/Vertical Preload Force");
-    const double vertical = s.real("Leafspring/Vertical Stiffness") / (1 + bias),
-                 lateral = s.real("Leafspring/Lateral Stiffness") / (1 + bias);
-    const auto mass = [&](const char* part, const std::string& name, const Vector3d& p) {
-        s.body(name, p, part);
-    };
-    const std::string front_leaf = s.sided("front_leaf"), rear_leaf = s.sided("rear_leaf"),
-                      clamp_a = s.sided("clamp_a"), clamp_b = s.sided("clamp_b"),
-                      shackle_name = s.sided("shackle");
-    mass("Leafspring/Frontleaf", front_leaf, 0.5 * (hanger + a));
-    mass("Leafspring/Rearleaf", rear_leaf, 0.5 * (shackle + b));
-    mass("Leafspring/Half Clamp", clamp_a, 0.75 * a + 0.25 * b);
-    mass("Leafspring/Half Clamp", clamp_b, 0.75 * b + 0.25 * a);
-    mass("Leafspring/Shackle", shackle_name, 0.5 * (rear + shackle));
+    const std::string in = "Leafspring/";
+    const FilePoint hanger = s.point(in + "Location Front Hanger"),
+                    a = s.point(in + "Location Clamp A"), b = s.point(in + "Location Clamp B"),
+                    shackle = s.point(in + "Location Shackle"),
+                    rear = s.point(in + "Location Rear Hanger");
+    const double bias = s.real(in + "Stiffness Bias"),
+                 preload = s.real(in + "Vertical Preload Force");
+    const double vertical = s.real(in + "Vertical Stiffness") / (1 + bias),
+                 lateral = s.real(in + "Lateral Stiffness") / (1 + bias);
+    s.body("front_leaf*", 0.5 * (hanger + a), in + "Frontleaf");
+    s.body("rear_leaf*", 0.5 * (shackle + b), in + "Rearleaf");
+    s.body("clamp_a*", 0.75 * a + 0.25 * b, in + "Half Clamp");
+    s.body("clamp_b*", 0.75 * b + 0.25 * a, in + "Half Clamp");
+    s.body("shackle*", 0.5 * (rear + shackle), in + "Shackle");
     const Matrix3d about_y = frame_along(-Vector3d::UnitY(), Vector3d::UnitZ());
-    const auto on_shackle = bushing_of(s, "Leafspring/Shackle Bushing Data"),
-               on_clamp = bushing_of(s, "Leafspring/Clamp Bushing Data"),
-               on_leaf = bushing_of(s, "Leafspring/Leafspring Bushing Data");
-    s.joint_or_bushing(Kind::revolute, s.sided("shackle.hanger"), shackle_name, "ground", rear,
-                       about_y, "Leafspring/Location Rear Hanger", on_shackle);
-    s.spherical(s.sided("front_leaf.hanger"), front_leaf, "ground", hanger,
-                "Leafspring/Location Front Hanger");
-    s.spherical(s.sided("rear_leaf.shackle"), rear_leaf, shackle_name, shackle,
-                "Leafspring/Location Shackle");
+    const auto on_shackle = s.optional(in + "Shackle Bushing Data"),
+               on_clamp = s.optional(in + "Clamp Bushing Data"),
+               on_leaf = s.optional(in + "Leafspring Bushing Data");
+    s.joint_or_bushing(Kind::revolute, "shackle.hanger*", "shackle*", "ground", rear, about_y,
+                       on_shackle);
+    s.spherical("front_leaf.hanger*", "front_leaf*", "ground", hanger);
+    s.spherical("rear_leaf.shackle*", "rear_leaf*", "shackle*", shackle);
     struct Half {
-        const char *name, *path;
-        const std::string &clamp, &leaf;
-        Vector3d p, arm;
+        std::string name, leaf;
+        FilePoint p;
+        Vector3d arm;
         double share;
     };
-    for (const Half& half :
-         {Half{"clamp_a", "Leafspring/Location Clamp A", clamp_a, front_leaf, a, a - hanger, 1},
-          Half{"clamp_b", "Leafspring/Location Clamp B", clamp_b, rear_leaf, b, b - shackle,
-               bias}}) {
-        const std::string name(half.name);
-        const double square = half.arm.squaredNorm();
-        s.joint_or_bushing(Kind::revolute, s.sided(name + ".yaw"), half.clamp, "axle", half.p,
-                           no_turn, half.path, on_clamp);
-        s.torsion(s.sided(name + ".lateral"), half.clamp, "axle", half.p, Vector3d::UnitZ(),
-                  half.share * lateral * square, 0, half.path);
-        s.joint_or_bushing(Kind::revolute, s.sided(name + ".pitch"), half.clamp, half.leaf, half.p,
-                           about_y, half.path, on_leaf);
+    for (const auto& [name, half, p, arm, share] :
+         {Half{"clamp_a", "front_leaf*", a, a - hanger, 1},
+          Half{"clamp_b", "rear_leaf*", b, b - shackle, bias}}) {
+        const double square = arm.squaredNorm();
+        s.joint_or_bushing(Kind::revolute, name + ".yaw*", name + "*", "axle", p, no_turn,
+                           on_clamp);
+        s.torsion(name + ".lateral*", name + "*", "axle", p, Vector3d::UnitZ(),
+                  share * lateral * square, 0);
+        s.joint_or_bushing(Kind::revolute, name + ".pitch*", name + "*", half, p, about_y, on_leaf);
         // Moment about y on the leaf whose far end then pushes the chassis up with half the
         // preload: arm × force.
-        s.torsion(s.sided(name + ".vertical"), half.clamp, half.leaf, half.p, Vector3d::UnitY(),
-                  half.share * vertical * square, -0.5 * preload * half.arm.x(), half.path);
+        s.torsion(name + ".vertical*", name + "*", half, p, Vector3d::UnitY(),
+                  share * vertical * square, -0.5 * preload * arm.x());
     }
     if (preload != 0 && s.side > 0)
-        s.draft().notes.warn(s.place("Leafspring/Vertical Preload Force"),
+        s.draft().notes.warn(s.place(in + "Vertical Preload Force"),
                              "interpreted as the force that supports the chassis at the design "
                              "position: the sign of Chrono's rest angle is not documented");
 }
 
-void sae_leafspring(Suspension& s, bool steered) {
+void sae_leafspring(Suspension& s, Axle axle) {
     axle_tube(s);
     both(s, [&] {
         leaf(s);
-        if (steered) knuckle(s);
-        spring_and_shock(s, "Location Axle", "axle", "Auxiliary Spring");
-        s.spindle(steered ? s.sided("knuckle") : "axle");
+        spring_and_wheel(s, axle, "Auxiliary Spring");
     });
-    if (!steered) return;
+    if (axle == Axle::rigid) return;
     shared_tierod(s);
-    draglink(s, true);
+    draglink(s, OuterEnd::universal);
 }
 
 // The lower shock end is on the housing, as in Chrono.
@@ -508,35 +449,28 @@ void hendrickson(Suspension& s) {
     both(s, [&] {
         knuckle(s, "Knuckle/Lower Attachment Point", "Knuckle/Upper Attachment Point");
         for (const auto& [name, part] :
-             {std::pair{"torque_rod", "Torque Rod"}, {"lower_beam", "Lower Beam"}}) {
-            const std::string of = s.sided(name), p(part), inner = p + "/Chassis Attachment Point",
-                              outer = p + "/Axle Housing Attachment Point";
-            s.body(of, s.point((p + "/COM").c_str()), part);
-            s.revolute(s.sided(std::string(name) + ".inner"), "ground", of, s.point(inner.c_str()),
-                       Vector3d::UnitY(), inner.c_str());
-            s.spherical(s.sided(std::string(name) + ".outer"), "axle", of, s.point(outer.c_str()),
-                        outer.c_str());
+             {std::pair<std::string, std::string>{"torque_rod", "Torque Rod"},
+              {"lower_beam", "Lower Beam"}}) {
+            s.body(name + "*", s.point(part + "/COM"), part);
+            s.revolute(name + ".inner*", "ground", name + "*",
+                       s.point(part + "/Chassis Attachment Point"), Vector3d::UnitY());
+            s.spherical(name + ".outer*", "axle", name + "*",
+                        s.point(part + "/Axle Housing Attachment Point"));
         }
-        s.spherical(s.sided("transverse_beam.end"), s.sided("lower_beam"), "transverse_beam",
-                    s.point("Lower Beam/Transverse Beam Attachment Point"),
-                    "Lower Beam/Transverse Beam Attachment Point");
-        s.tierod("Tierod", "Location Chassis", "Location Knuckle", s.sided("knuckle"));
-        for (const auto& [name, part, end] :
-             {std::tuple{"housing_shock", "Shock Axle Housing", "Location Axle Housing"},
-              std::tuple{"beam_shock", "Shock Lower Beam", "Location Lower Beam"}})
-            s.tsda(s.sided(name), "ground",
-                   s.point((std::string(part) + "/Location Chassis").c_str()), "axle",
-                   s.point((std::string(part) + "/" + end).c_str()), s.at(part));
-        s.spindle(s.sided("knuckle"));
+        s.spherical("transverse_beam.end*", "lower_beam*", "transverse_beam",
+                    s.point("Lower Beam/Transverse Beam Attachment Point"));
+        s.tierod("Location Chassis", "Location Knuckle", "knuckle*");
+        for (const std::string end : {"Axle Housing", "Lower Beam"}) {
+            const std::string part = "Shock " + end;
+            s.tsda(s.sided(end == "Lower Beam" ? "beam_shock" : "housing_shock"), "ground",
+                   s.point(part + "/Location Chassis"), "axle", s.point(part + "/Location " + end),
+                   s.at(part));
+        }
+        wheel_on(s, "knuckle*");
     });
 }
 
 // ---- GenericWheeledSuspension: parts and joints by name.
-
-Vector3d vector(const Cursor& at) {
-    const auto items = at.list(3, "numbers");
-    return {items[0].number(), items[1].number(), items[2].number()};
-}
 
 // On the right side the y components of the frame's x and z change sign; y completes the frame.
 Matrix3d rotation(const Suspension& s, const Cursor& at) {
@@ -611,6 +545,25 @@ struct Generic {
     }
 };
 
+// Joints of Chrono: one that a bushing may replace, or the type in a scene with the name of its
+// direction and the axis of the joint's frame; neither: one that Chrono's reader treats as a lock.
+struct ChronoJoint {
+    std::string_view name, capitals;
+    std::optional<Kind> bushing_in_place = {};
+    const char *type = nullptr, *direction = nullptr;
+    int axis = 0;
+};
+constexpr ChronoJoint chrono_joints[] = {
+    {"Revolute", "REVOLUTE", Kind::revolute},
+    {"Spherical", "SPHERICAL", Kind::spherical},
+    {"Universal", "UNIVERSAL", Kind::universal},
+    {"Lock", "LOCK", {}, "fixed"},
+    {"Point Line", "POINTLINE", {}, "in_line", "axis", 0},
+    {"Point Plane", "POINTPLANE", {}, "in_plane", "normal", 2},
+    {"Prismatic", "PRISMATIC"},
+    {"Cylindrical", "CYLINDRICAL"},
+};
+
 void generic(Suspension& s) {
     Generic g{s, {}, {}};
     if (s.has("Bodies"))
@@ -637,40 +590,29 @@ void generic(Suspension& s) {
         const SourceLocation from{entry.value->line, "Joints/" + name};
         const auto data = entry.optional("Bushing Data");
         const std::string at = draft.points.at(p, name, from);
-        const auto is = [&](std::initializer_list<const char*> names) {
-            return std::ranges::any_of(names, [&](const char* other) { return type == other; });
-        };
-        if (is({"Revolute", "REVOLUTE"}))
-            s.joint_or_bushing(Kind::revolute, name, i, j, p, A, "Joints", data);
-        else if (is({"Spherical", "SPHERICAL"}))
-            s.joint_or_bushing(Kind::spherical, name, i, j, p, A, "Joints", data);
-        else if (is({"Universal", "UNIVERSAL"}))
-            s.joint_or_bushing(Kind::universal, name, i, j, p, A, "Joints", data);
-        else if (is({"Lock", "LOCK"})) {
-            if (data) {
-                s.ignore(*data, "a bushing instead of a lock");
-                draft.notes.miss(from, "a bushing instead of a lock");
-            }
-            s.joint(name, "fixed", i, j, Fields{}.add("at", at), from);
-        } else if (is({"Point Line", "POINTLINE"})) {
-            if (data)
-                s.ignore(*data,
-                         "Chrono ignores the bushing of this joint; the scene has the joint");
-            s.joint(name, "in_line", i, j, Fields{}.add("at", at).add("axis", direction(A.col(0))),
-                    from);
-        } else if (is({"Point Plane", "POINTPLANE"})) {
-            if (data)
-                s.ignore(*data,
-                         "Chrono ignores the bushing of this joint; the scene has the joint");
-            s.joint(name, "in_plane", i, j,
-                    Fields{}.add("at", at).add("normal", direction(A.col(2))), from);
-        } else if (is({"Prismatic", "PRISMATIC", "Cylindrical", "CYLINDRICAL"})) {
+        const auto found = std::ranges::find_if(chrono_joints, [&](const ChronoJoint& joint) {
+            return type == joint.name || type == joint.capitals;
+        });
+        if (found == std::end(chrono_joints))
+            entry.require("Type").fail(fmt::format("{} is not a supported joint of Chrono",
+                                                   entry.require("Type").found()));
+        if (found->bushing_in_place)
+            return s.joint_or_bushing(*found->bushing_in_place, name, i, j, {p, "Joints"}, A, data);
+        if (!found->type)
             entry.require("Type").fail(
                 "Chrono reads this as a lock, probably not intended; write Lock, or change the "
                 "joint");
-        } else
-            entry.require("Type").fail(fmt::format("{} is not a supported joint of Chrono",
-                                                   entry.require("Type").found()));
+        const bool is_lock = std::string_view(found->type) == "fixed";
+        if (data) {
+            s.ignore(*data, is_lock ? "a bushing instead of a lock"
+                                    : "Chrono ignores the bushing of this joint; the scene has the "
+                                      "joint");
+            if (is_lock) draft.notes.miss(from, "a bushing instead of a lock");
+        }
+        Fields fields;
+        fields.add("at", at);
+        if (found->direction) fields.add(found->direction, direction(A.col(found->axis)));
+        s.joint(name, found->type, i, j, fields, from);
     });
     g.each("Distance Constraints", [&](const Cursor& entry, const std::string& name) {
         const SourceLocation from{entry.value->line, "Distance Constraints/" + name};
@@ -711,17 +653,16 @@ const Template templates[] = {
     {"SolidThreeLinkAxle", false, solid_three_link},
     {"SolidBellcrankThreeLinkAxle", false, solid_bellcrank_three_link},
     {"DeDionAxle", false, [](Suspension& s) { dedion(s), rigid_wheels(s); }},
-    {"ToeBarDeDionAxle", false, [](Suspension& s) { dedion(s), steered_wheels(s, false); }},
+    {"ToeBarDeDionAxle", false,
+     [](Suspension& s) { dedion(s), steered_wheels(s, OuterEnd::spherical); }},
     {"LeafspringAxle", false, [](Suspension& s) { leafspring_guide(s), rigid_wheels(s); }},
-    {"ToeBarLeafspringAxle", false,
-     [](Suspension& s) { leafspring_guide(s), steered_wheels(s, true); }},
+    {"ToeBarLeafspringAxle", false, [](Suspension& s) { leafspring_guide(s), steered_wheels(s); }},
     {"PushPipeAxle", false, [](Suspension& s) { push_pipe(s), rigid_wheels(s); }},
-    {"ToeBarPushPipeAxle", false, [](Suspension& s) { push_pipe(s), steered_wheels(s, true); }},
+    {"ToeBarPushPipeAxle", false, [](Suspension& s) { push_pipe(s), steered_wheels(s); }},
     {"RigidPanhardAxle", false, [](Suspension& s) { rigid_panhard(s), rigid_wheels(s); }},
-    {"ToeBarRigidPanhardAxle", false,
-     [](Suspension& s) { rigid_panhard(s), steered_wheels(s, true); }},
-    {"SAELeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, false); }},
-    {"SAEToeBarLeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, true); }},
+    {"ToeBarRigidPanhardAxle", false, [](Suspension& s) { rigid_panhard(s), steered_wheels(s); }},
+    {"SAELeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, Axle::rigid); }},
+    {"SAEToeBarLeafspringAxle", false, [](Suspension& s) { sae_leafspring(s, Axle::steered); }},
     {"HendricksonPRIMAXX", false, hendrickson},
     {"GenericWheeledSuspension", false, generic},
 };

@@ -17,42 +17,21 @@ namespace {
 
 using reader::Cursor;
 
-Vector3d vector(const Cursor& at) {
-    const auto items = at.list(3, "numbers");
-    return {items[0].number(), items[1].number(), items[2].number()};
-}
-
 // Fields that Chrono has and that do not influence an equilibrium, by their name in any object.
+constexpr std::string_view of_motion = "without effect at rest";
 struct WithoutInfluence {
-    std::string_view key, why;
+    std::string_view why;
+    std::vector<std::string> keys;
 };
-constexpr std::string_view of_motion = "without effect at rest",
-                           of_pictures = "only for visualisation",
-                           of_nothing = "without effect on the mechanism";
-constexpr WithoutInfluence without_influence[] = {
-    {"Inertia", of_motion},
-    {"Moments of Inertia", of_motion},
-    {"Products of Inertia", of_motion},
-    {"Vehicle-Frame Inertia", of_motion},
-    {"Center Link Inertia", of_motion},
-    {"Side Link Inertia", of_motion},
-    {"Damping Coefficient", of_motion},
-    {"Damping Curve Data", of_motion},
-    {"Degressivity Compression", of_motion},
-    {"Degressivity Expansion", of_motion},
-    {"Damping Linear", of_motion},
-    {"Damping Rotational", of_motion},
-    {"Rotational Damping", of_motion},
-    {"Radius", of_pictures},
-    {"Width", of_pictures},
-    {"Link Radius", of_pictures},
-    {"Visualization", of_pictures},
-    {"Name", of_nothing},
-    {"Output", of_nothing},
-    {"Independent", of_nothing},
-    {"Steerable", of_nothing},
-    {"Antiroll Body", "of an anti-roll bar, which is another file"},
-    {"Location Stabilizer", "of an anti-roll bar, which is another file"}};
+const WithoutInfluence without_influence[] = {
+    {of_motion,
+     {"Inertia", "Moments of Inertia", "Products of Inertia", "Vehicle-Frame Inertia",
+      "Center Link Inertia", "Side Link Inertia", "Damping Coefficient", "Damping Curve Data",
+      "Degressivity Compression", "Degressivity Expansion", "Damping Linear", "Damping Rotational",
+      "Rotational Damping"}},
+    {"only for visualisation", {"Radius", "Width", "Link Radius", "Visualization"}},
+    {"without effect on the mechanism", {"Name", "Output", "Independent", "Steerable"}},
+    {"of an anti-roll bar, which is another file", {"Antiroll Body", "Location Stabilizer"}}};
 
 // Linear interpolation between the rows; constant beyond the ends.
 double value_at(const Rows& rows, double x) {
@@ -81,33 +60,24 @@ Matrix3d frame_along(const Vector3d& w, const Vector3d& towards) {
 
 // ---- Reading
 
-Cursor Suspension::at(const char* path) const {
-    Cursor found = file_;
-    std::string_view rest(path);
-    for (;;) {
-        const std::size_t end = std::min(rest.find('/'), rest.size());
-        found = found.require(std::string(rest.substr(0, end)));
-        if (end == rest.size()) return found;
-        rest.remove_prefix(end + 1);
-    }
+Vector3d vector(const Cursor& at) {
+    const auto items = at.list(3, "numbers");
+    return {items[0].number(), items[1].number(), items[2].number()};
 }
 
-bool Suspension::has(const char* path) const {
+std::optional<Cursor> Suspension::find(const std::string& path, bool required) const {
     std::optional<Cursor> found = file_;
-    std::string_view rest(path);
-    for (;;) {
+    for (std::string_view rest(path);;) {
         const std::size_t end = std::min(rest.find('/'), rest.size());
-        if (found->value->kind != reader::Value::Kind::map) return false;
-        found = found->optional(std::string(rest.substr(0, end)));
-        if (!found) return false;
-        if (end == rest.size()) return true;
+        const std::string key(rest.substr(0, end));
+        if (!required && found->value->kind != reader::Value::Kind::map) return std::nullopt;
+        found = required ? found->require(key) : found->optional(key);
+        if (!found || end == rest.size()) return found;
         rest.remove_prefix(end + 1);
     }
 }
 
-Vector3d Suspension::left(const char* path) const { return vector(at(path)); }
-
-SourceLocation Suspension::place(const char* path) const { return {at(path).value->line, path}; }
+FilePoint Suspension::left(const std::string& path) const { return {vector(at(path)), path}; }
 
 namespace {
 
@@ -166,7 +136,9 @@ void Suspension::report_unread() {
     // (reason, key) -> " of part, part"
     std::map<std::pair<std::string_view, std::string>, std::string> omitted;
     for (const auto& [object, value, path, key] : unread) {
-        const auto known = std::ranges::find(without_influence, key, &WithoutInfluence::key);
+        const auto known = std::ranges::find_if(without_influence, [&](const auto& some) {
+            return std::ranges::find(some.keys, key) != some.keys.end();
+        });
         if (known != std::end(without_influence)) {
             const std::string of =
                 path.size() > key.size() ? path.substr(0, path.size() - key.size() - 1) : "";
@@ -182,7 +154,8 @@ void Suspension::report_unread() {
         std::erase_if(allowed, [&](const std::string& name) {
             return std::ranges::find(object->keys, name) != object->keys.end();
         });
-        for (const auto& field : without_influence) allowed.emplace_back(field.key);
+        for (const auto& some : without_influence)
+            allowed.insert(allowed.end(), some.keys.begin(), some.keys.end());
         notes.miss({value->line, path}, is_known
                                             ? "not used in combination with the other fields"
                                             : "not a field of this template" +
@@ -194,107 +167,103 @@ void Suspension::report_unread() {
 
 // ---- Writing
 
-Vector3d Suspension::midpoint(const std::string& name, const char* first, const char* first_path,
-                              const char* second, const char* second_path) {
-    const Vector3d a = point(first_path), b = point(second_path), middle = 0.5 * (a + b);
-    hardpoint(sided(name + "." + first), a, first_path);
-    hardpoint(sided(name + "." + second), b, second_path);
+Vector3d Suspension::midpoint(const std::string& name, const std::string& first, const FilePoint& a,
+                              const std::string& second, const FilePoint& b) {
+    const Vector3d middle = 0.5 * (a + b);
+    hardpoint(sided(name + "." + first), a);
+    hardpoint(sided(name + "." + second), b);
     draft_.points.at(middle, sided(name),
-                     {0, fmt::format("midpoint of {} and {}", first_path, second_path)});
+                     {0, fmt::format("midpoint of {} and {}", a.path, b.path)});
     return middle;
 }
 
-std::string Suspension::hardpoint(const std::string& name, const Vector3d& p, const char* path) {
-    return draft_.points.at(p, name, path ? place(path) : SourceLocation{});
+std::string Suspension::hardpoint(const std::string& name, const Vector3d& p,
+                                  const std::string& path) {
+    return draft_.points.at(p, on_side(name), path.empty() ? SourceLocation{} : place(path));
 }
 
-void Suspension::body(const std::string& name, const Vector3d& com, const char* part,
+void Suspension::body(const std::string& name, const Vector3d& com, const std::string& part,
                       const char* mass) {
+    const std::string called = on_side(name);
     Fields fields;
-    fields.add("origin", hardpoint(name + ".cm", com, nullptr));
-    const std::string path = std::string(part) + "/" + mass;
-    if (has(path.c_str())) {
-        const double m = real(path.c_str());
+    fields.add("origin", hardpoint(called + ".cm", com, ""));
+    if (const auto given = optional(part + "/" + mass)) {
+        const double m = given->number();
         if (!options_.drop_dynamics && m > 0) fields.add("mass", m);
     }
-    draft_.bodies.push_back({body_names_.take(name), "{" + fields.text() + "}", place(part)});
+    draft_.bodies.push_back({body_names_.take(called), "{" + fields.text() + "}", place(part)});
     draft_.notes.count("bodies");
 }
 
 void Suspension::joint(const std::string& name, const char* type, const std::string& i,
-                       const std::string& j, Fields fields, const SourceLocation& from) {
+                       const std::string& j, const Fields& fields, const SourceLocation& from) {
     Fields all;
-    all.add("type", type).add("bodies", "[" + i + ", " + j + "]");
+    all.add("type", type).add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]");
     draft_.joints.push_back(
-        {joint_names_.take(name), "{" + all.text() + ", " + fields.text() + "}", from});
+        {joint_names_.take(on_side(name)), "{" + all.text() + ", " + fields.text() + "}", from});
     draft_.notes.count("joints");
 }
 
 void Suspension::spherical(const std::string& name, const std::string& i, const std::string& j,
-                           const Vector3d& p, const char* path) {
-    joint(name, "spherical", i, j, Fields{}.add("at", hardpoint(name, p, path)), place(path));
+                           const FilePoint& at) {
+    joint(name, "spherical", i, j, Fields{}.add("at", hardpoint(name, at)), place(at.path));
 }
 
 void Suspension::universal(const std::string& name, const std::string& i, const std::string& j,
-                           const Vector3d& p, const Vector3d& x, const Vector3d& y,
-                           const char* path) {
+                           const FilePoint& at, const Vector3d& x, const Vector3d& y) {
     const Vector3d u = x.normalized(), v = (y - u.dot(y) * u).normalized();
     if (const double off = std::abs(u.dot(y.normalized())); off > 1e-9)
-        draft_.notes.warn(place(path),
+        draft_.notes.warn(place(at.path),
                           fmt::format("the axes of the universal joint deviate from the right "
                                       "angle by {:.2g} deg; the scene has a corrected second axis",
                                       std::asin(std::min(off, 1.0)) * 180 / std::numbers::pi));
     joint(name, "universal", i, j,
           Fields{}
-              .add("at", hardpoint(name, p, path))
+              .add("at", hardpoint(name, at))
               .add("axis_i", direction(u))
               .add("axis_j", direction(v)),
-          place(path));
+          place(at.path));
 }
 
 void Suspension::revolute(const std::string& name, const std::string& i, const std::string& j,
-                          const Vector3d& p, const Vector3d& axis, const char* path) {
+                          const FilePoint& at, const Vector3d& axis) {
     joint(name, "revolute", i, j,
-          Fields{}.add("at", hardpoint(name, p, path)).add("axis", direction(axis.normalized())),
-          place(path));
+          Fields{}.add("at", hardpoint(name, at)).add("axis", direction(axis.normalized())),
+          place(at.path));
 }
 
 void Suspension::fixed(const std::string& name, const std::string& i, const std::string& j,
-                       const Vector3d& p, const char* path) {
+                       const Vector3d& p, const std::string& path) {
     joint(name, "fixed", i, j, Fields{}.add("at", hardpoint(name, p, path)), place(path));
 }
 
-void Suspension::distance(const std::string& name, const std::string& i, const Vector3d& from,
-                          const char* path_i, const std::string& j, const Vector3d& to,
-                          const char* path_j) {
-    joint(name, "distance", i, j,
+void Suspension::distance(const std::string& name, const std::string& i, const FilePoint& from,
+                          const std::string& j, const FilePoint& to) {
+    const std::string called = on_side(name);
+    joint(called, "distance", i, j,
           Fields{}
-              .add("from", hardpoint(name + ".inner", from, path_i))
-              .add("to", hardpoint(name + ".outer", to, path_j)),
-          place(path_j));
+              .add("from", hardpoint(called + ".inner", from))
+              .add("to", hardpoint(called + ".outer", to)),
+          place(to.path));
 }
 
 void Suspension::in_plane(const std::string& name, const std::string& i, const std::string& j,
-                          const Vector3d& p, const Vector3d& normal, const SourceLocation& from) {
+                          const Vector3d& p, const Vector3d& normal, const std::string& path) {
     joint(name, "in_plane", i, j,
-          Fields{}
-              .add("at", hardpoint(name, p, nullptr))
-              .add("normal", direction(normal.normalized())),
-          from);
+          Fields{}.add("at", hardpoint(name, p, "")).add("normal", direction(normal.normalized())),
+          place(path));
 }
 
 // A bushing with its frame fixed in body 2: F = K_lin δ, T = K_rot θ, θ the rotation vector, both
 // along its axes. F is isotropic, so it acts along the line of both points. T has an energy if
 // K_rot is isotropic. Otherwise, as in place of a revolute, it is not conjugate, as in Chrono.
 void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
-                                  const std::string& body2, const Vector3d& p,
-                                  const Matrix3d& frame, const char* path,
-                                  const std::optional<Cursor>& data) {
+                                  const std::string& body2, const FilePoint& at,
+                                  const Matrix3d& frame, const std::optional<Cursor>& data) {
     if (!data) {
-        if (kind == Kind::revolute) return revolute(name, body1, body2, p, frame.col(2), path);
-        if (kind == Kind::universal)
-            return universal(name, body1, body2, p, frame.col(0), frame.col(1), path);
-        return spherical(name, body1, body2, p, path);
+        if (kind == Kind::revolute) return revolute(name, body1, body2, at, frame.col(2));
+        if (kind == Kind::universal) return universal(name, body1, body2, at, frame);
+        return spherical(name, body1, body2, at);
     }
     const double linear = data->require("Stiffness Linear").number(),
                  rotational = data->require("Stiffness Rotational").number();
@@ -310,7 +279,8 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
         return is_free ? free : rotational;
     };
     Fields fields;
-    fields.add("bodies", "[" + body2 + ", " + body1 + "]").add("at", hardpoint(name, p, path));
+    fields.add("bodies", "[" + on_side(body2) + ", " + on_side(body1) + "]")
+        .add("at", hardpoint(name, at));
     const bool is_round = rate(0) == rate(1) && rate(1) == rate(2);
     if (!is_round)
         fields.add("frame", fmt::format("{{z: {}, x: {}}}", direction(frame.col(2)),
@@ -319,7 +289,8 @@ void Suspension::joint_or_bushing(Kind kind, const std::string& name, const std:
         .add("rotational_rates",
              fmt::format("[{}, {}, {}]", number(rate(0)), number(rate(1)), number(rate(2))));
     if (!is_round) fields.add("formulation", "{conjugate: false}");
-    draft_.bushings.push_back({element_names_.take(name), "{" + fields.text() + "}", place(path)});
+    draft_.bushings.push_back(
+        {element_names_.take(on_side(name)), "{" + fields.text() + "}", place(at.path)});
     draft_.notes.count("bushings");
 }
 
@@ -534,23 +505,22 @@ void Suspension::rsda(const std::string& name, const std::string& i, const std::
 }
 
 void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
-                         const Vector3d& p, const Vector3d& axis, double rate, double moment,
-                         const char* path) {
+                         const FilePoint& at, const Vector3d& axis, double rate, double moment) {
     Fields law;
     law.add("rate", rate);
     if (moment != 0) law.add("preload_moment", computed(moment));
-    torsion(name, i, j, p, axis, law, place(path));
+    torsion(name, i, j, at, axis, law, place(at.path));
 }
 
 void Suspension::torsion(const std::string& name, const std::string& i, const std::string& j,
                          const Vector3d& p, const Vector3d& axis, const Fields& law,
                          const SourceLocation& from) {
     Fields fields;
-    fields.add("bodies", "[" + i + ", " + j + "]")
-        .add("at", hardpoint(name, p, nullptr))
+    fields.add("bodies", "[" + on_side(i) + ", " + on_side(j) + "]")
+        .add("at", hardpoint(name, p, ""))
         .add("axis", direction(axis));
     draft_.torsion_springs.push_back(
-        {element_names_.take(name), "{" + fields.text() + ", " + law.text() + "}", from});
+        {element_names_.take(on_side(name)), "{" + fields.text() + ", " + law.text() + "}", from});
     draft_.notes.count("torsion springs");
 }
 
@@ -583,42 +553,34 @@ void Suspension::spindle(const std::string& carrier) {
                              place("Spindle")});
 }
 
-void Suspension::link(const std::string& name, const char* part, const Vector3d& com,
-                      const std::string& i, const Vector3d& at_i, const std::string& j,
-                      const Vector3d& at_j, bool universal_at_j, const char* path_i,
-                      const char* path_j) {
-    body(name, com, part);
-    spherical(name + ".inner", i, name, at_i, path_i);
-    if (!universal_at_j) return spherical(name + ".outer", name, j, at_j, path_j);
-    const Matrix3d A = frame_along(at_j - at_i, Vector3d::UnitX());
-    universal(name + ".outer", name, j, at_j, A.col(0), A.col(1), path_j);
+void Suspension::link(const std::string& name, const std::string& part, const std::string& i,
+                      const FilePoint& at_i, const std::string& j, const FilePoint& at_j,
+                      OuterEnd outer) {
+    const std::string called = on_side(name);
+    body(called, 0.5 * (at_i + at_j), part);
+    spherical(called + ".inner", i, called, at_i);
+    if (outer == OuterEnd::spherical) return spherical(called + ".outer", called, j, at_j);
+    universal(called + ".outer", called, j, at_j, frame_along(at_j - at_i, Vector3d::UnitX()));
 }
 
-void Suspension::tierod(const char* part, const char* chassis_end, const char* outer_end,
+void Suspension::tierod(const std::string& chassis_end, const std::string& outer_end,
                         const std::string& on_outer) {
-    const std::string inner_path = std::string(part) + "/" + chassis_end,
-                      outer_path = std::string(part) + "/" + outer_end;
-    const Vector3d inner = point(inner_path.c_str()), outer = point(outer_path.c_str());
-    const std::string name = sided("tierod"), path(part);
-    const bool is_body = has((path + "/Mass").c_str()) && has((path + "/Inertia").c_str()) &&
-                         has((path + "/Radius").c_str());
-    if (!is_body) {
-        for (const char* field : {"/Mass", "/Bushing Data"})
-            if (has((path + field).c_str()))
-                ignore(at((path + field).c_str()),
+    const std::string name = sided("tierod");
+    const FilePoint inner = point("Tierod/" + chassis_end), outer = point("Tierod/" + outer_end);
+    const auto bushing = optional("Tierod/Bushing Data");
+    if (!has("Tierod/Mass") || !has("Tierod/Inertia") || !has("Tierod/Radius")) {
+        for (const auto& field : {optional("Tierod/Mass"), bushing})
+            if (field)
+                ignore(*field,
                        "a tie rod without Mass, Inertia and Radius is a rigid massless distance in "
                        "Chrono");
-        return distance(name, "ground", inner, inner_path.c_str(), on_outer, outer,
-                        outer_path.c_str());
+        return distance(name, "ground", inner, on_outer, outer);
     }
-    body(name, 0.5 * (inner + outer), part);
-    std::optional<Cursor> data;
-    if (has((path + "/Bushing Data").c_str())) data = at((path + "/Bushing Data").c_str());
-    Matrix3d A = frame_along(outer - inner, Vector3d::UnitX());
+    body(name, 0.5 * (inner + outer), "Tierod");
     joint_or_bushing(Kind::spherical, name + ".outer", on_outer, name, outer, Matrix3d::Identity(),
-                     outer_path.c_str(), data);
-    joint_or_bushing(Kind::universal, name + ".inner", "ground", name, inner, A, inner_path.c_str(),
-                     data);
+                     bushing);
+    joint_or_bushing(Kind::universal, name + ".inner", "ground", name, inner,
+                     frame_along(outer - inner, Vector3d::UnitX()), bushing);
 }
 
 }  // namespace elastocheck::importer::chrono

@@ -22,6 +22,12 @@ extern const Rows stop_table;
 // Joints of Chrono that a template may replace by a bushing.
 enum class Kind { revolute, spherical, universal };
 
+// A position, and the field of the file that it is from.
+struct FilePoint : Vector3d {
+    FilePoint(const Vector3d& p, std::string field) : Vector3d(p), path(std::move(field)) {}
+    std::string path;
+};
+
 class Suspension {
   public:
     Suspension(const reader::Cursor& file, const Options& options, Draft& draft)
@@ -37,48 +43,61 @@ class Suspension {
     std::string sided(const std::string& name) const {
         return name + (side > 0 ? "_left" : "_right");
     }
+    // The names of bodies, joints and hardpoints below may end in *, which stands for the side.
+    std::string on_side(const std::string& name) const {
+        return name.ends_with('*') ? sided(name.substr(0, name.size() - 1)) : name;
+    }
     Vector3d mirrored(Vector3d v) const {
         if (side < 0) v.y() = -v.y();
         return v;
     }
 
     // ---- Reading. Fields are named "Part/Field".
-    reader::Cursor at(const char* path) const;
-    bool has(const char* path) const;
-    Vector3d left(const char* path) const;  // as in the file
-    Vector3d point(const char* path) const { return mirrored(left(path)); }
-    double real(const char* path) const { return at(path).number(); }
-    SourceLocation place(const char* path) const;
+    reader::Cursor at(const std::string& path) const { return *find(path, true); }
+    std::optional<reader::Cursor> optional(const std::string& path) const {
+        return find(path, false);
+    }
+    bool has(const std::string& path) const { return optional(path).has_value(); }
+    FilePoint left(const std::string& path) const;  // as in the file
+    FilePoint point(const std::string& path) const { return {mirrored(left(path)), path}; }
+    double real(const std::string& path) const { return at(path).number(); }
+    SourceLocation place(const std::string& path) const { return {at(path).value->line, path}; }
 
-    // ---- Writing. A body or a hardpoint is named by the caller, sided or not.
-    // Midpoint of two points of the file, named `name` on its side. Both points stay hardpoints,
-    // "name.first" and "name.second".
-    Vector3d midpoint(const std::string& name, const char* first, const char* first_path,
-                      const char* second, const char* second_path);
-    std::string hardpoint(const std::string& name, const Vector3d& p, const char* path);
-    void body(const std::string& name, const Vector3d& com, const char* part,
+    // ---- Writing.
+    // The midpoint of two points of the file. Both stay hardpoints, "name.first" and "name.second".
+    Vector3d midpoint(const std::string& name, const std::string& first, const FilePoint& a,
+                      const std::string& second, const FilePoint& b);
+    std::string hardpoint(const std::string& name, const Vector3d& p, const std::string& path);
+    std::string hardpoint(const std::string& name, const FilePoint& p) {
+        return hardpoint(name, p, p.path);
+    }
+    void body(const std::string& name, const Vector3d& com, const std::string& part,
               const char* mass = "Mass");
     void joint(const std::string& name, const char* type, const std::string& i,
-               const std::string& j, Fields fields, const SourceLocation& from);
+               const std::string& j, const Fields& fields, const SourceLocation& from);
     void spherical(const std::string& name, const std::string& i, const std::string& j,
-                   const Vector3d& p, const char* path);
+                   const FilePoint& at);
     // x is fixed to body i and y to body j.
     void universal(const std::string& name, const std::string& i, const std::string& j,
-                   const Vector3d& p, const Vector3d& x, const Vector3d& y, const char* path);
+                   const FilePoint& at, const Vector3d& x, const Vector3d& y);
+    void universal(const std::string& name, const std::string& i, const std::string& j,
+                   const FilePoint& at, const Matrix3d& frame) {
+        universal(name, i, j, at, frame.col(0), frame.col(1));
+    }
     void revolute(const std::string& name, const std::string& i, const std::string& j,
-                  const Vector3d& p, const Vector3d& axis, const char* path);
+                  const FilePoint& at, const Vector3d& axis);
     void fixed(const std::string& name, const std::string& i, const std::string& j,
-               const Vector3d& p, const char* path);
-    void distance(const std::string& name, const std::string& i, const Vector3d& from,
-                  const char* path_i, const std::string& j, const Vector3d& to, const char* path_j);
+               const Vector3d& p, const std::string& path);
+    void distance(const std::string& name, const std::string& i, const FilePoint& from,
+                  const std::string& j, const FilePoint& to);
     void in_plane(const std::string& name, const std::string& i, const std::string& j,
-                  const Vector3d& p, const Vector3d& normal, const SourceLocation& from);
+                  const Vector3d& p, const Vector3d& normal, const std::string& path);
 
-    // A joint of Chrono: with "Bushing Data" under `data` a bushing at its frame, else a joint of
+    // A joint of Chrono: with `data`, its "Bushing Data", a bushing at its frame, else a joint of
     // the given kind.
     void joint_or_bushing(Kind kind, const std::string& name, const std::string& body1,
-                          const std::string& body2, const Vector3d& p, const Matrix3d& frame,
-                          const char* path, const std::optional<reader::Cursor>& data);
+                          const std::string& body2, const FilePoint& at, const Matrix3d& frame,
+                          const std::optional<reader::Cursor>& data);
     // A translational spring and damper from `i` (on the chassis) to `j`.
     void tsda(const std::string& name, const std::string& i, const Vector3d& from,
               const std::string& j, const Vector3d& to, const reader::Cursor& data);
@@ -86,17 +105,18 @@ class Suspension {
     void rsda(const std::string& name, const std::string& i, const std::string& j,
               const Vector3d& p, const Vector3d& axis, const reader::Cursor& data);
     void torsion(const std::string& name, const std::string& i, const std::string& j,
-                 const Vector3d& p, const Vector3d& axis, double rate, double moment,
-                 const char* path);
+                 const FilePoint& at, const Vector3d& axis, double rate, double moment);
 
     // The spindle, held on `carrier`, and the wheel on it.
     void spindle(const std::string& carrier);
     // A link between a spherical and a universal joint, or a distance if it has no mass.
-    void tierod(const char* part, const char* chassis_end, const char* outer_end,
+    void tierod(const std::string& chassis_end, const std::string& outer_end,
                 const std::string& on_outer);
-    void link(const std::string& name, const char* part, const Vector3d& com, const std::string& i,
-              const Vector3d& at_i, const std::string& j, const Vector3d& at_j, bool universal_at_j,
-              const char* path_i, const char* path_j);
+    // A body from a spherical joint on `i` to one on `j`, or to a universal joint.
+    enum class OuterEnd { spherical, universal };
+    void link(const std::string& name, const std::string& part, const std::string& i,
+              const FilePoint& at_i, const std::string& j, const FilePoint& at_j,
+              OuterEnd outer = OuterEnd::spherical);
 
     // Notes a field without influence, with the reason. ignore() warns, for a field that a user may
     // expect to have an influence.
@@ -107,6 +127,7 @@ class Suspension {
     void report_unread();
 
   private:
+    std::optional<reader::Cursor> find(const std::string& path, bool required) const;
     enum class Law { none, damper, linear, curve, map };
     Law law_of(const reader::Cursor& data);
     static Rows rows_of(const reader::Cursor& curve, double offset, double preload);
@@ -121,6 +142,9 @@ class Suspension {
     Draft& draft_;
     Names body_names_, joint_names_, element_names_;
 };
+
+// Three numbers of the file.
+Vector3d vector(const reader::Cursor& at);
 
 // Right-handed frame with the third axis along w and the second closest to w × towards.
 Matrix3d frame_along(const Vector3d& w, const Vector3d& towards);

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "models/import/import.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -15,14 +13,7 @@ namespace elastocheck::importer {
 namespace {
 
 double real(const reader::PropertyFile& file, int line, std::string_view text) {
-    double value = 0;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
-        std::abs(value) > 1e30)
-        reader::fail(file.file, line, "HARDPOINT",
-                     fmt::format("{} is not a number", reader::quote(text)));
-    return value;
+    return reader::real(file, line, "HARDPOINT", text, 1e30);
 }
 
 }  // namespace
