@@ -11,7 +11,6 @@
 #include "models/laws.hpp"
 #include "models/reader/tables/interpolant.hpp"
 #include "tests/models/fixtures.hpp"
-#include "tests/models/scene_numbers.hpp"
 #include "tests/support/folder.hpp"
 #include "tests/support/pipe.hpp"
 
@@ -250,60 +249,6 @@ TEST(Curve, ScaleMultipliesTheForceAndOffsetMovesTheTable) {
     }
 }
 
-// The same law with lengths in mm or m, angles in deg or rad, forces in N or kN.
-TEST(Curve, IsTheSameInAnyUnits) {
-    const auto in = [](const char* length, double L, const char* angle, double A, const char* f,
-                       double F) {
-        const auto row = [](double x, double y) { return fmt::format("[{:.17g}, {:.17g}]", x, y); };
-        const std::string rows =
-            row(-0.05 * L, -900 * F) + ", " + row(0, 0) + ", " + row(0.05 * L, 1400 * F);
-        const std::string angles = row(-0.2 * A, -30 * F * L) + ", " + row(0.1 * A, 11 * F * L) +
-                                   ", " + row(0.3 * A, 12 * F * L);
-        const std::string end =
-            row(0, 0) + ", " + row(0.01 * L, 900 * F) + ", " + row(0.02 * L, 4000 * F);
-        std::string text = laws_scene(
-            fmt::format(
-                "springs:\n  coil: {{bodies: [arm, ground], from: p, to: t, curve: {{table: [{}], "
-                "offset: "
-                "{:.17g}}}, "
-                "preload: {:.17g}, bump_stop: {{clearance: {:.17g}, curve: {{table: [{}]}}}}, "
-                "rebound_stop: {{clearance: 0, rate: {:.17g}}}}}\n"
-                "torsion_springs:\n  bar: {{bodies: [arm, ground], at: p, axis: y, curve: {{table: "
-                "[{}]}}, "
-                "preload_moment: {:.17g}}}\n"
-                "bushings:\n  mount: {{bodies: [arm, ground], at: p, curves: {{x: {{table: [{}]}}, "
-                "ry: "
-                "{{table: "
-                "[{}]}}}}, undeformed: [{:.17g}, 0, 0], undeformed_angles: [0, {:.17g}, 0]}}",
-                rows, 0.002 * L, 500 * F, 0.01 * L, end, 3e5 * F / L, angles, 7 * F * L, rows,
-                angles, 0.001 * L, 0.01 * A),
-            fmt::format("length: {}, angle: {}, force: {}", length, angle, f),
-            "drive: springs.coil.free_length, to: 1, steps: 1");
-        for (const auto& [from, to] :
-             {std::pair<std::string, double>{"[50, 0, 0]", 0}, {"[50, 0, 400]", 0.4}}) {
-            const std::string point = fmt::format("[{:.17g}, 0, {:.17g}]", 0.05 * L, to * L);
-            text.replace(text.find(from), from.size(), point);
-        }
-        Scene scene = parse_scene(text, "laws.yaml");
-        scene.branches[0].to = 1;  // a unit of length
-        return numbers(scene);
-    };
-    const auto si = in("m", 1, "rad", 1, "N", 1);
-    for (const auto& other :
-         {in("mm", 1e3, "rad", 1, "kN", 1e-3), in("mm", 1e3, "deg", 180 / M_PI, "N", 1),
-          in("m", 1, "deg", 180 / M_PI, "kN", 1e-3)}) {
-        ASSERT_EQ(other.size(), si.size());
-        for (std::size_t k = 0; k < si.size(); ++k) {
-            ASSERT_EQ(si[k].first, other[k].first);
-            // Coefficients are differences of forces divided by lengths: round-off of the larger
-            // ones.
-            const double size =
-                si[k].first.find(".c_") == std::string::npos ? std::abs(si[k].second) : 1e8;
-            EXPECT_NEAR(si[k].second, other[k].second, 1e-14 * size) << si[k].first;
-        }
-    }
-}
-
 // ---- CSV files.
 
 struct Beside {
@@ -322,6 +267,7 @@ TEST(CurveFile, IsTheTableBesideTheScene) {
           "# measured\n\n  # twice\nx,f\n0,0\n10,900\n\n20,4000\n# the end "
           "stop\n35,4000\n50,9500\n\n",
           "x,f\r\n0,0\r\n10,900\r\n20,4000\r\n35,4000\r\n50,9500\r\n",
+          "x,f\r0,0\r10,900\r20,4000\r35,4000\r50,9500\r",
           "\xEF\xBB\xBF"
           "0,0\n10,900\n20,4000\n35,4000\n50,9500\n"}) {
         SCOPED_TRACE(csv);

@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "elastocheck/scene.hpp"
+#include "models/kinds.hpp"
 
 namespace elastocheck {
 
@@ -39,19 +39,6 @@ struct SceneNumbers {
     }
 };
 
-inline void add_load(SceneNumbers& n, const Load& load) {
-    std::visit(
-        [&](const auto& l) {
-            if constexpr (requires { l.at; }) n.add(load.name + ".at", l.at);
-            if constexpr (requires { l.body; }) n.add(load.name + ".body", l.body);
-            if constexpr (requires { l.f; }) n.add(load.name + ".f", l.f);
-            if constexpr (requires { l.m; }) n.add(load.name + ".m", l.m);
-            if constexpr (requires { l.f_local; }) n.add(load.name + ".f_local", l.f_local);
-            if constexpr (requires { l.m_local; }) n.add(load.name + ".m_local", l.m_local);
-        },
-        load.kind);
-}
-
 inline void add_law(SceneNumbers& n, const std::string& name, const ScalarLaw& law) {
     if (const auto* linear = std::get_if<LinearRate>(&law)) {
         n.add(name, linear->k);
@@ -66,40 +53,39 @@ inline void add_law(SceneNumbers& n, const std::string& name, const ScalarLaw& l
     n.add(name + ".known_outside", curve.known_outside);
 }
 
-inline void add_elastic(SceneNumbers& n, const ElasticKind& kind) {
-    if (const auto* spring = std::get_if<AxialSpring>(&kind)) {
-        n.add("i", spring->i), n.add("j", spring->j);
-        add_law(n, "k", spring->law), n.add("free_length", spring->free_length);
-    } else {
-        const auto& bushing = std::get<Bushing>(kind);
-        n.add("i", bushing.i), n.add("j", bushing.j);
-        if (const auto* linear = std::get_if<LinearStiffness>(&bushing.law)) n.add("K", linear->K);
-        if (const auto* axes = std::get_if<PerAxis>(&bushing.law))
-            for (std::size_t k = 0; k < 6; ++k) add_law(n, fmt::format("k_{}", k), axes->axis[k]);
-        n.add("preload", bushing.preload), n.add("undeformed", bushing.undeformed);
-        n.add("frame", static_cast<double>(bushing.formulation.frame));
-        n.add("angles", static_cast<double>(bushing.formulation.angles));
-        n.add("conjugate", bushing.formulation.conjugate);
-        n.add("offset_moment", bushing.formulation.offset_moment);
-    }
+// All members of a joint, an element or a load, numbered in their order.
+template <class K>
+void add_members(SceneNumbers& n, const K& kind, const std::string& of = "") {
+    int count = 0;
+    const auto next = [&] { return of + std::to_string(count++); };
+    n.add(of + "kind", static_cast<double>(kind.index()));
+    each_member(kind,
+                overloaded{[&](const BodyId& body) { n.add(next(), body); },
+                           [&](const Point& p) { n.add(next(), p); },
+                           [&](const Direction& u) { n.add(next(), u); },
+                           [&](const Marker& m) { n.add(next(), m); },
+                           [&](Length<const double> x) { n.add(next(), x.value); },
+                           [&](PlaneAngle<const double> x) { n.add(next(), x.value); },
+                           [&](ForceAndMoment<const Vector6> x) { n.add(next(), x.value); },
+                           [&](Deformation<const Vector6> x) { n.add(next(), x.value); },
+                           [&](LoadVector<const Eigen::Vector3d> x) { n.add(next(), x.value); },
+                           [&](const ScalarLaw& law) { add_law(n, next(), law); },
+                           [&](const SpatialLaw& law) {
+                               if (const Matrix6* all = matrix_of(law)) n.add(next(), *all);
+                               if (const PerAxis* axes = axes_of(law))
+                                   for (const ScalarLaw& axis : axes->axis)
+                                       add_law(n, next(), axis);
+                           },
+                           [&](const Formulation& f) {
+                               n.add("frame", static_cast<double>(f.frame));
+                               n.add("angles", static_cast<double>(f.angles));
+                               n.add("conjugate", f.conjugate);
+                               n.add("offset_moment", f.offset_moment);
+                           }});
 }
 
-inline void add_joint(SceneNumbers& n, const JointKind& kind) {
-    n.add("kind", static_cast<double>(kind.index()));
-    std::visit(
-        [&](const auto& s) {
-            n.add("i", s.i), n.add("j", s.j);
-            if constexpr (requires { s.axis_i; }) n.add("axis_i", s.axis_i);
-            if constexpr (requires { s.axis_j; }) n.add("axis_j", s.axis_j);
-            if constexpr (requires { s.normal_i; }) n.add("normal_i", s.normal_i);
-            if constexpr (requires { s.normal_j; }) n.add("normal_j", s.normal_j);
-            if constexpr (requires { s.length; }) n.add("length", s.length);
-            if constexpr (requires { s.offset; }) n.add("offset", s.offset);
-            if constexpr (requires { s.angle; }) n.add("y_j", s.y_j), n.add("angle", s.angle);
-            if constexpr (requires { s.x_i; })
-                n.add("x_i", s.x_i), n.add("y_i", s.y_i), n.add("x_j", s.x_j), n.add("y_j", s.y_j);
-        },
-        kind);
+inline void add_load(SceneNumbers& n, const Load& load) {
+    add_members(n, load.kind, load.name + ".");
 }
 
 inline void add_driver(SceneNumbers& n, const Driver& driver) {
@@ -125,11 +111,11 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.add("p", body.design.p.coeffs());
     }
     for (const auto& joint : scene.joints) {
-        n.where = "joint " + joint.name, add_joint(n, joint.kind);
+        n.where = "joint " + joint.name, add_members(n, joint.kind);
         n.add("only_where_driven", joint.active_only_where_driven);
     }
     for (const auto& elastic : scene.elastics)
-        n.where = "element " + elastic.name, add_elastic(n, elastic.kind);
+        n.where = "element " + elastic.name, add_members(n, elastic.kind);
     n.where = "static loads";
     for (const auto& load : scene.static_loads) add_load(n, load);
     for (const auto& branch : scene.branches) {

@@ -25,11 +25,13 @@ using Eigen::Vector3d;
 using importer::Options;
 using namespace tests;
 
-const fs::path folder = fs::path(ELASTOCHECK_IMPORT);
+const fs::path folder = import_folder;
 
 std::string chrono_scene(const std::string& text) {
     return importer::import_text(text, "model.json", {}).yaml;
 }
+
+Scene chrono(const std::string& text) { return parse_scene(chrono_scene(text), "scene"); }
 
 // The notes in the head of the scene, each on one line.
 std::string head_of(const std::string& text) {
@@ -49,17 +51,11 @@ std::string refusal(const std::string& text, const std::string& file) {
     return "";
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    EXPECT_NE(at, text.npos) << from;
-    return at == text.npos ? text : text.replace(at, from.size(), to);
-}
-
 // ---- Chrono
 
 // The published hardpoints are also in a built-in scene, written by hand.
 TEST(Chrono, TheMacPhersonStrutIsWhereItsHardpointsAre) {
-    const Scene scene = parse_scene(chrono_scene(sample("generic__MacPhersonStrut.json")), "scene");
+    const Scene scene = chrono(sample("generic__MacPhersonStrut.json"));
     ASSERT_EQ(scene.wheels.size(), 2u);
     EXPECT_LE((scene.bodies.at(static_cast<std::size_t>(scene.wheels[0].body)).design.r -
                Vector3d(-0.04000403, 1.09999965, -0.02602507))
@@ -79,7 +75,7 @@ TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
     text = replaced(
         replaced(text, "\"Toe Angle (deg)\":                  0", "\"Toe Angle (deg)\": 0.5"),
         "\"Camber Angle (deg)\":               0", "\"Camber Angle (deg)\": -1");
-    const Scene scene = parse_scene(chrono_scene(text), "scene");
+    const Scene scene = chrono(text);
     const Vector3d e = scene.wheels.at(0).spin_axis_local, f = scene.wheels.at(1).spin_axis_local;
     EXPECT_NEAR(std::atan2(e.x(), e.y()) * 180 / M_PI, 0.5, 1e-9);
     EXPECT_NEAR(-std::asin(e.z()) * 180 / M_PI, -1, 1e-4);
@@ -90,7 +86,7 @@ TEST(Chrono, ToeAndCamberAreThoseOfTheWheel) {
 // the other samples.
 TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
     for (const char* file : {"generic__DoubleWishbone.json", "generic__ThreeLinkIRS.json"}) {
-        const Scene scene = parse_scene(chrono_scene(sample(file)), "scene");
+        const Scene scene = chrono(sample(file));
         const Model model = compile(scene);
         const auto ways = compare::sides_of(model, model.branches.front(), 6);
         const auto a = compare::walk(ways, {.leg = compare::Leg::equilibrium}),
@@ -110,8 +106,8 @@ TEST(Chrono, TheLegsAgreeOverTheTravelOfASample) {
 // isotropic.
 TEST(Chrono, BushingsStandWhereChronoPutsThem) {
     const std::string yaml = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json"));
-    EXPECT_NE(yaml.find("rates: [70000000, 70000000, 70000000]"), yaml.npos) << yaml;
-    EXPECT_NE(yaml.find("rotational_rates: [100000, 100000, 0]"), yaml.npos);
+    EXPECT_TRUE(says(yaml, "rates: [70000000, 70000000, 70000000]"));
+    EXPECT_TRUE(says(yaml, "rotational_rates: [100000, 100000, 0]"));
     const Scene scene = parse_scene(yaml, "scene");
     int bushings = 0;
     for (const auto& elastic : scene.elastics)
@@ -121,20 +117,15 @@ TEST(Chrono, BushingsStandWhereChronoPutsThem) {
         }
     EXPECT_EQ(bushings, 4);
     // The tie rod has mass: a body between a ball joint and a universal joint.
-    EXPECT_NE(yaml.find("tierod_left.inner: {type: universal, bodies: [ground, tierod_left]"),
-              yaml.npos);
+    EXPECT_TRUE(says(yaml, "tierod_left.inner: {type: universal, bodies: [ground, tierod_left]"));
     const std::string light = chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json"));
-    EXPECT_NE(light.find("tierod_left: {type: distance, bodies: [ground, upright_left]"),
-              light.npos)
-        << light;
+    EXPECT_TRUE(says(light, "tierod_left: {type: distance, bodies: [ground, upright_left]"));
 }
 
 // A template and the generic suspension with the same numbers are the same mechanism.
 TEST(Chrono, TheReplicaMovesAsItsTemplate) {
-    const Scene a = parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")),
-                                "scene"),
-                b = parse_scene(
-                    chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json")), "scene");
+    const Scene a = chrono(sample("hmmwv__HMMWV_DoubleWishboneFront.json")),
+                b = chrono(sample("hmmwv__HMMWV_DoubleWishboneFront_replica.json"));
     const auto travelled = [](const Scene& scene) {
         const Model model = compile(scene);
         Branch branch = model.branches.front();
@@ -159,13 +150,11 @@ TEST(Chrono, TheReplicaMovesAsItsTemplate) {
 
 TEST(Chrono, FaultsOfTheDataAreKeptAndTold) {
     const std::string yaml = chrono_scene(sample("generic__DeDionAxle.json"));
-    EXPECT_NE(yaml.find("its minimum length 0.28 is above its maximum length 0.12: both stops are "
-                        "always closed"),
-              yaml.npos)
-        << yaml;
-    EXPECT_NE(chrono_scene(sample("generic__MacPhersonStrut.json"))
-                  .find("in tension at the design position: 1.2"),
-              std::string::npos);
+    EXPECT_TRUE(says(yaml,
+                     "its minimum length 0.28 is above its maximum length 0.12: both stops are "
+                     "always closed"));
+    EXPECT_TRUE(says(chrono_scene(sample("generic__MacPhersonStrut.json")),
+                     "in tension at the design position: 1.2"));
 }
 
 // Each key of every sample, misspelt in its last letter, is an error.
@@ -219,20 +208,6 @@ TEST(Chrono, LinesMayEndInCarriageReturnsAlone) {
     EXPECT_EQ(entries(chrono_scene(text)), expected);
 }
 
-TEST(Chrono, AMisspeltSpringIsAnErrorThatNamesTheRightKey) {
-    const std::string said = refusal(replaced(sample("generic__DoubleWishbone.json"),
-                                              "\"Spring Coefficient\"", "\"Spring Coefficent\""),
-                                     "model.json");
-    EXPECT_NE(said.find("Spring/Spring Coefficent: not a field of this template, did you mean "
-                        "'Spring Coefficient'?"),
-              said.npos)
-        << said;
-    EXPECT_NE(refusal(replaced(sample("generic__DoubleWishbone.json"), "14.705", "\"14.705\""),
-                      "model.json")
-                  .find("expected a number, found the string \"14.705\""),
-              std::string::npos);
-}
-
 // A sample with the text `at` replaced by `instead`, to add or change a field.
 std::string double_wishbone(const std::string& at, const std::string& instead) {
     return replaced(sample("generic__DoubleWishbone.json"), at, instead);
@@ -252,22 +227,21 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
     const auto with = [&](const std::string& fields) {
         return double_wishbone(coefficient, fields + ", " + coefficient);
     };
-    const auto says = [](const std::string& text, const char* what) {
-        const std::string head = head_of(text);
-        EXPECT_NE(head.find(what), head.npos) << head;
+    const auto notes = [](const std::string& text, const char* what) {
+        EXPECT_TRUE(says(head_of(text), what));
     };
     const std::string both = with("\"Spring Curve Data\": [[-0.1, -500], [0.1, 500]]");
     EXPECT_EQ(std::get<Curve>(law(chrono_scene(both)).law).pieces.at(1)[1], 5000);
-    says(both, "Spring Coefficient: not used: Chrono uses the Spring Curve Data instead");
+    notes(both, "Spring Coefficient: not used: Chrono uses the Spring Curve Data instead");
 
     const std::string damper = with("\"Damping Curve Data\": [[-1, -5], [1, 5]]");
-    const auto elastics = parse_scene(chrono_scene(damper), "scene").elastics;
+    const auto elastics = chrono(damper).elastics;
     EXPECT_EQ(elastics.size(), 0u);
-    says(damper, "Chrono uses the Damping Curve Data instead: there is no spring");
+    notes(damper, "Chrono uses the Damping Curve Data instead: there is no spring");
 
     const std::string one_stop = with("\"Minimum Length\": 0.2");
     EXPECT_EQ(chrono_scene(one_stop).find("bump_stop"), std::string::npos);
-    says(one_stop, "Minimum Length: not used: Chrono has stops only if both");
+    notes(one_stop, "Minimum Length: not used: Chrono has stops only if both");
 
     // At speed zero -30 N at 0.25 m and 70 N at 0.35 m.
     const std::string map =
@@ -278,12 +252,12 @@ TEST(Chrono, TakesTheFieldThatChronoTakes) {
     EXPECT_NEAR(curve.pieces.at(1)[0], -30, 1e-9);
     EXPECT_NEAR(curve.pieces.at(1)[1], 1000, 1e-9);
     EXPECT_TRUE(curve.known_outside);
-    says(map, "Free Length: not used: Chrono counts the deformation of a map from length zero");
+    notes(map, "Free Length: not used: Chrono counts the deformation of a map from length zero");
 
-    says(double_wishbone("\"Tierod\":\n  {",
-                         "\"Tierod\":\n  {\"Bushing Data\": {\"Stiffness Linear\": 7e7, "
-                         "\"Stiffness Rotational\": 1},"),
-         "Tierod.Bushing Data: not used: a tie rod without Mass");
+    notes(double_wishbone("\"Tierod\":\n  {",
+                          "\"Tierod\":\n  {\"Bushing Data\": {\"Stiffness Linear\": 7e7, "
+                          "\"Stiffness Rotational\": 1},"),
+          "Tierod.Bushing Data: not used: a tie rod without Mass");
 }
 
 // ChLinkRSDA: the torque on body 2 about the axis is P - k (angle - free).
@@ -300,10 +274,10 @@ TEST(Chrono, ARotationalSpringHasItsPreloadAndItsFreeAngle) {
     const std::string linear = torsion(
         "\"Spring Coefficient\": 100, \"Free Angle\": 0.2, \"Preload\": 5, \"Damping "
         "Coefficient\": 3");
-    EXPECT_NE(linear.find("rate: 100, preload_moment: -25}"), linear.npos) << linear;
+    EXPECT_TRUE(says(linear, "rate: 100, preload_moment: -25}"));
     const std::string curve = torsion(
         "\"Spring Curve Data\": [[-1, -10], [1, 10]], \"Free Angle\": 0.25, \"Preload\": 2");
-    EXPECT_NE(curve.find("curve: {table: [[-0.75, -12], [1.25, 8]]"), curve.npos) << curve;
+    EXPECT_TRUE(says(curve, "curve: {table: [[-0.75, -12], [1.25, 8]]"));
 }
 
 // Each point of the file is a hardpoint with its own source line; the midpoint of an arm's axis is
@@ -323,21 +297,18 @@ TEST(Chrono, HardpointsOfTheFileStayWithTheirLines) {
         const auto at = yaml.find(fmt::format("  {}: [", name));
         ASSERT_NE(at, yaml.npos) << name;
         const std::string line = yaml.substr(at, yaml.find('\n', at) - at);
-        EXPECT_NE(
-            line.find(fmt::format("# line {}, {}/{}",
-                                  line_of(fmt::format("\"{}\"", part).c_str(), key), part, key)),
-            line.npos)
-            << line;
+        EXPECT_TRUE(
+            says(line, fmt::format("# line {}, {}/{}",
+                                   line_of(fmt::format("\"{}\"", part).c_str(), key), part, key)));
     }
-    EXPECT_NE(yaml.find("# midpoint of Upper Control Arm/Location Chassis Front and"), yaml.npos);
+    EXPECT_TRUE(says(yaml, "# midpoint of Upper Control Arm/Location Chassis Front and"));
 }
 
 // A wheel directly over its spring, whose table has a row every 10 mm. At branch points on a row
 // the wheel rate is undefined, since rounding would select the side; the legs agree on these
 // points.
 TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
-    const Scene scene =
-        parse_scene(chrono_scene(sample("ultra_tow__UT_LeafspringAxle.json")), "scene");
+    const Scene scene = chrono(sample("ultra_tow__UT_LeafspringAxle.json"));
     const Model model = compile(scene);
     const auto channels = compare::characteristics(model);
     const auto ways = compare::sides_of(model, model.branches.front(), 12);  // 10 mm each
@@ -357,8 +328,7 @@ TEST(Chrono, RatesHaveNoValueAtTheRowsOfATable) {
 
 // Chrono interpolates linearly between the rows; the scene does the same to the last digit.
 TEST(Chrono, ATableIsStraightBetweenItsRows) {
-    const Scene scene =
-        parse_scene(chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront.json")), "scene");
+    const Scene scene = chrono(sample("hmmwv__HMMWV_DoubleWishboneFront.json"));
     const auto& curve = std::get<Curve>(std::get<AxialSpring>(scene.elastics.at(0).kind).law);
     ASSERT_GT(curve.knots.size(), 10u);
     for (std::size_t k = 0; k + 1 < curve.knots.size(); ++k) {
@@ -371,39 +341,12 @@ TEST(Chrono, ATableIsStraightBetweenItsRows) {
 }
 
 TEST(Chrono, SaysWhatIsWrongAndWhere) {
-    const std::string sound = sample("generic__DoubleWishbone.json");
-    const std::tuple<const char*, std::string, const char*> cases[] = {
-        {"empty", "", "model.json:1: the file ends, expected a value"},
-        {"no object", "[1]", "expected an object"},
-        {"binary", std::string("{\0}", 3), "this is not JSON"},
-        {"deep", std::string(100, '[') + std::string(100, ']'), "nested more than 32 levels deep"},
-        {"twice", "{\"a\": 1, \"a\": 2}", "'a' is given twice"},
-        {"open", "{\"a\": 1", "the file ends, expected a comma or }"},
-        {"a comma too many", "{\"a\": [1, ], }", "expected a value"},
-        {"an open string", "{\"a\": \"b\n\"}", "a string is not closed"},
-        {"an escape", "{\"a\": \"\\q\"}", "an unknown escape"},
-        {"an open comment", "{ /* \"a\": 1}", "a comment /* is not closed"},
-        {"more", sound + "{}", "text after the end"},
-        {"NaN", replaced(sound, "14.705", "NaN"), "expected a value"},
-        {"a vehicle", sample("generic__Vehicle_MacPhersonStruts.json"),
-         "'Vehicle' is not a suspension"},
-        {"a template", replaced(sound, "\"DoubleWishbone\"", "\"DoubleWishbon\""),
-         "did you mean 'DoubleWishbone'"},
-        {"no spring", sample("generic__RigidPinnedAxle.json"), "the template has no spring"},
-        {"a point", replaced(sound, "[-0.040, 1.100, -0.026]", "[-0.040, 1.100]"),
-         "model.json:12: Spindle.COM: expected a list of 3"},
-        {"a key", replaced(sound, "\"Location Arm\"", "\"Location Am\""),
-         "Spring.Location Arm: missing"},
-        {"no such part", replaced(sound, "\"Axle\"", "\"Wing\""),
-         "Wing: not a field of this template"},
-    };
-    for (const auto& [what, text, message] : cases) {
-        const std::string said = refusal(text, "model.json");
-        EXPECT_TRUE(said.starts_with("model.json:")) << what << ": " << said;
-        EXPECT_NE(said.find(message), said.npos) << what << ": " << said;
-    }
-    EXPECT_EQ(
-        refusal(replaced(sound, "\"Axle\"", "/* here */ // and here\n\"Axle\""), "model.json"), "");
+    support::expect_refusals(folder / "mistakes/double_wishbone.mistakes",
+                             sample("generic__DoubleWishbone.json"), "model.json",
+                             [](const std::string& text) {
+                                 const std::string said = refusal(text, "model.json");
+                                 return said.empty() ? "accepted" : said;
+                             });
 }
 
 // ---- Property files
@@ -516,23 +459,20 @@ TEST(PropertyFile, SaysWhatIsWrongAndWhere) {
         EXPECT_NE(error.find("mount.bus"), error.npos) << what << ": " << error;
         EXPECT_NE(error.find(message), error.npos) << what << ": " << error;
     }
-    EXPECT_NE(said(sound, "rates: mount.txt").find("or the name of a property file"),
-              std::string::npos);
-    EXPECT_NE(said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]")
-                  .find("the file has all six curves"),
-              std::string::npos);
-    EXPECT_NE(said(sound, "rates: ../mount.bus").find("is outside the scene's folder"),
-              std::string::npos);
+    EXPECT_TRUE(says(said(sound, "rates: mount.txt"), "or the name of a property file"));
+    EXPECT_TRUE(says(said(sound, "rates: mount.bus, rotational_rates: [1, 1, 1]"),
+                     "the file has all six curves"));
+    EXPECT_TRUE(says(said(sound, "rates: ../mount.bus"), "is outside the scene's folder"));
 }
 
 TEST(PropertyFile, HardpointsOfASubsystemAreHalfATurnAway) {
     const std::string yaml =
         importer::import_text(support::text_of(folder / "fixtures" / "front.sub"), "front.sub", {})
             .yaml;
-    EXPECT_NE(yaml.find("lca_front_left: [200, 400, 150]"), yaml.npos) << yaml;
-    EXPECT_NE(yaml.find("rack_mount: [-180, 0, 210]"), yaml.npos);
-    EXPECT_NE(yaml.find("mirror: left -> right"), yaml.npos);
-    EXPECT_NE(yaml.find("BUSHING_ASSEMBLY lca_front"), yaml.npos);
+    EXPECT_TRUE(says(yaml, "lca_front_left: [200, 400, 150]"));
+    EXPECT_TRUE(says(yaml, "rack_mount: [-180, 0, 210]"));
+    EXPECT_TRUE(says(yaml, "mirror: left -> right"));
+    EXPECT_TRUE(says(yaml, "BUSHING_ASSEMBLY lca_front"));
 }
 
 // Two hardpoints at the same position both remain: the template may have a part on each.
@@ -542,9 +482,8 @@ TEST(PropertyFile, HardpointsOfOnePlaceBothStay) {
         sub, "'wheel_center'     'left/right'",
         "'tierod_outer'  'left/right'  0.0  -760.0  330.0\n'wheel_center'     'left/right'");
     const auto imported = importer::import_text(twice, "front.sub", {});
-    EXPECT_NE(imported.yaml.find("tierod_outer_left: [0, 760, 330]"), imported.yaml.npos)
-        << imported.yaml;
-    EXPECT_NE(imported.yaml.find("wheel_center_left: [0, 760, 330]"), imported.yaml.npos);
+    EXPECT_TRUE(says(imported.yaml, "tierod_outer_left: [0, 760, 330]"));
+    EXPECT_TRUE(says(imported.yaml, "wheel_center_left: [0, 760, 330]"));
     EXPECT_EQ(imported.notes.understood.at("HARDPOINT"), 4);
 }
 
@@ -556,14 +495,11 @@ TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
         return importer::import_text(sub, "front.sub", options).yaml;
     };
     EXPECT_EQ(front("x-rearward,y-right"), front(""));
-    EXPECT_NE(front("x-forward,y-left").find("lca_front_left: [-200, -400, 150]"),
-              std::string::npos);
-    EXPECT_NE(front("x-forward,y-right").find("lca_front_left: [-200, 400, -150]"),
-              std::string::npos);
-    EXPECT_NE(front("x-rearward,y-right")
-                  .find("# Axes rotated from x-rearward,y-right, z up to x forward, y left, z up "
-                        "(ISO 8855)."),
-              std::string::npos);
+    EXPECT_TRUE(says(front("x-forward,y-left"), "lca_front_left: [-200, -400, 150]"));
+    EXPECT_TRUE(says(front("x-forward,y-right"), "lca_front_left: [-200, 400, -150]"));
+    EXPECT_TRUE(says(front("x-rearward,y-right"),
+                     "# Axes rotated from x-rearward,y-right, z up to x forward, y left, z up "
+                     "(ISO 8855)."));
     EXPECT_THROW(front("x-up,y-left"), SceneError);
     Options options;
     options.axes = "x-forward,y-left";
@@ -635,8 +571,7 @@ TEST(Chrono, ExportedAndImportedAgainGoesTheSameWay) {
 // Stops with Chrono's curve are exported as Chrono's own, both or one of the two; stops with other
 // curves are errors.
 TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
-    const Scene first = parse_scene(
-        chrono_scene(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json")), "scene");
+    const Scene first = chrono(sample("hmmwv__HMMWV_DoubleWishboneFront_bushings.json"));
     const auto stops = [](const Scene& scene) {
         std::vector<const AxialSpring*> list;
         for (const Elastic& elastic : scene.elastics)
@@ -650,8 +585,7 @@ TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
         if (!both)
             std::erase_if(some.elastics,
                           [](const Elastic& e) { return e.name.ends_with(".rebound_stop"); });
-        const Scene second =
-            parse_scene(chrono_scene(importer::export_chrono(some, false).text), "scene");
+        const Scene second = chrono(importer::export_chrono(some, false).text);
         const auto force_of_stops = [&](const Scene& scene, double length) {
             double sum = 0;
             for (const AxialSpring* stop : stops(scene))
@@ -691,8 +625,7 @@ TEST(Chrono, StopsOfItsOwnCurveAreExportedAndOthersAreNot) {
 TEST(Chrono, WhatASuspensionHasNoPlaceForIsRefusedOnExport) {
     const Scene strut = read_scene(fs::path(ELASTOCHECK_SCENES) / "mcpherson_strut.yaml");
     EXPECT_THROW(importer::export_chrono(strut, false), SceneError);
-    EXPECT_NE(importer::export_chrono(strut, true).text.find("// MISSING: element"),
-              std::string::npos);
+    EXPECT_TRUE(says(importer::export_chrono(strut, true).text, "// MISSING: element"));
     const Scene arch = read_scene(fs::path(ELASTOCHECK_SCENES) / "two_spring_arch.yaml");
     EXPECT_THROW(importer::export_chrono(arch, true), SceneError);  // no wheel
 }

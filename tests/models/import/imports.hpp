@@ -10,11 +10,23 @@
 #include "compare/comparison/legs.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/folder.hpp"
+#include "tests/support/mistakes.hpp"
 
 namespace elastocheck::tests {
 
+using support::replaced;
+
+inline const std::filesystem::path import_folder = ELASTOCHECK_IMPORT;
 inline std::string sample(const std::string& name) {
-    return support::text_of(std::filesystem::path(ELASTOCHECK_IMPORT) / "samples" / name);
+    return support::text_of(import_folder / "samples" / name);
+}
+inline std::string mistakes(const std::string& name) {
+    return support::text_of(import_folder / "mistakes" / name);
+}
+
+inline testing::AssertionResult says(const std::string& text, const std::string& what) {
+    if (text.find(what) != text.npos) return testing::AssertionSuccess();
+    return testing::AssertionFailure() << what << " is not in\n" << text;
 }
 
 // Body-fixed Euler angles 3-1-3 [deg].
