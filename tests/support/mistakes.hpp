@@ -7,7 +7,7 @@
 //   = message     after "FILE:", or "accepted"; this line ends the case
 //   ~ part        or: a part of the message
 //
-// \n, \t, \\ and \xNN stand for bytes, as in C++.
+// The texts are `unescaped`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,6 +18,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tests/support/escapes.hpp"
 
 namespace elastocheck::support {
 
@@ -35,20 +37,6 @@ struct Mistake {
     std::string text, message;
     bool is_part = false;  // of the message
 };
-
-inline std::string unescaped(std::string_view line) {
-    std::string text;
-    for (std::size_t k = 0; k < line.size(); ++k) {
-        const char next = line[k] == '\\' ? line[++k] : '\0';
-        if (next == 'x') {
-            text += static_cast<char>(std::stoi(std::string(line.substr(k + 1, 2)), nullptr, 16));
-            k += 2;
-        } else {
-            text += next == 'n' ? '\n' : next == 't' ? '\t' : line[k];
-        }
-    }
-    return text;
-}
 
 inline std::vector<Mistake> mistakes_in(const std::filesystem::path& file,
                                         const std::string& valid) {
