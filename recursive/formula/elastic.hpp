@@ -315,21 +315,6 @@ Matrix3<Real> own_axes(const Bushing& e, const State<Real>& q) {
     return axes<Real>(e, q);
 }
 
-// Whether an element has reversed between two states. A spring that points the other way has passed
-// through zero length, a bushing with reversed rotation through half a turn. The force jumps there,
-// and Newton's method converges beyond the jump.
-template <class Real>
-bool turned_over(const AxialSpring& e, const State<Real>& from, const State<Real>& to) {
-    return !(deformation<Real>(e, from).D.dot(deformation<Real>(e, to).D) > 0);
-}
-template <class Real>
-bool turned_over(const Bushing& e, const State<Real>& from, const State<Real>& to) {
-    constexpr Real quarter = 1.5;  // about a quarter of a turn [rad]
-    const Vector3<Real> before = deformation<Real>(e, from).theta(),
-                        after = deformation<Real>(e, to).theta();
-    return before.norm() > quarter && after.norm() > quarter && !(before.dot(after) > 0);
-}
-
 // The two bodies of an element.
 inline std::pair<BodyId, BodyId> bodies_of(const ElasticKind& kind) {
     return std::visit([](const auto& e) { return std::pair{e.i.body, e.j.body}; }, kind);

@@ -9,10 +9,10 @@
 // stiffness. Increments are (Δr, Δπ) in ground axes, in which ∂G/∂q is not symmetric away from
 // equilibrium.
 //
-// Everything below is a variation of a force F at a lever, written as 3×12 matrices over (Δr_i,
-// Δπ_i, Δr_j, Δπ_j):
+// Everything below is the variation of a force F at a lever s on one body, with its opposite on
+// another: the force changes, δF, and its lever turns or moves,
 //
-//   δp = δr - s̃ δπ,   δu = -ũ δπ,   δ(x × F) = -F̃ δx + x̃ δF .
+//   δp = δr - s̃ δπ,   δu = -ũ δπ,   δ(s × F) = s̃ δF - F̃ δs .
 #pragma once
 
 #include "recursive/formula/constraints.hpp"
@@ -23,54 +23,62 @@ namespace elastocheck::recursive {
 
 namespace detail {
 
-template <class Real>
-using Variation = Eigen::Matrix<Real, 3, 12>;
+// The rows or columns of a body's Δr or Δπ.
+struct Half {
+    BodyId body;
+    int offset;
+};
+inline Half r_of(BodyId b) { return {b, 0}; }
+inline Half pi_of(BodyId b) { return {b, 3}; }
 
-// δp of a point with lever s on the first (slot 0) or second (slot 1) body; below, δu of a fixed
-// direction.
-template <class Real>
-Variation<Real> of_point(int slot, const Vector3<Real>& s) {
-    Variation<Real> v = Variation<Real>::Zero();
-    v.template middleCols<3>(6 * slot).setIdentity();
-    v.template middleCols<3>(6 * slot + 3) = -tilde(s);
-    return v;
-}
-template <class Real>
-Variation<Real> of_direction(int slot, const Vector3<Real>& u) {
-    Variation<Real> v = Variation<Real>::Zero();
-    v.template middleCols<3>(6 * slot + 3) = -tilde(u);
-    return v;
-}
-template <class Real>
-Variation<Real> of_origin(int slot) {
-    return of_point<Real>(slot, Vector3<Real>::Zero());
-}
-template <class Real>
-Variation<Real> of_rotation(int slot) {
-    Variation<Real> v = Variation<Real>::Zero();
-    v.template middleCols<3>(6 * slot + 3).setIdentity();
-    return v;
-}
-template <class Real>
-Variation<Real> of_cross(const Vector3<Real>& x, const Variation<Real>& dx, const Vector3<Real>& F,
-                         const Variation<Real>& dF) {
-    return tilde(x) * dF - tilde(F) * dx;
-}
-
-// Adds the variation of the generalised force (F, M about the origin) on one body of the pair (i,
-// j).
+// Adds a part [3 × 3] of ∂G/∂q; the ground has none.
 template <class Real, class Target>
-void add(BodyId on, BodyId i, BodyId j, const Variation<Real>& dF, const Variation<Real>& dM,
-         Target& target) {
-    if (on == ground) return;
-    const BodyId column[] = {i, j};
-    for (int slot = 0; slot < 2; ++slot) {
-        if (column[slot] == ground) continue;
-        target.template block<3, 6>(6 * on, 6 * column[slot]) +=
-            dF.template middleCols<6>(6 * slot);
-        target.template block<3, 6>(6 * on + 3, 6 * column[slot]) +=
-            dM.template middleCols<6>(6 * slot);
-    }
+void add(Half of, Half by, const Matrix3<Real>& part, Target& target) {
+    if (of.body != ground && by.body != ground)
+        target.template block<3, 3>(6 * of.body + of.offset, 6 * by.body + by.offset) += part;
+}
+
+// ũ ṽ = v uᵀ - (u·v) I, of the matrices of two cross products
+template <class Real>
+Matrix3<Real> tilde_tilde(const Vector3<Real>& u, const Vector3<Real>& v) {
+    Matrix3<Real> product = v * u.transpose();
+    product.diagonal().array() -= u.dot(v);
+    return product;
+}
+
+// A force F on body b at a lever that turns with it: -F̃ δs = F̃ s̃ δπ.
+template <class Real, class Target>
+void add_turning_lever(BodyId b, const Vector3<Real>& s, const Vector3<Real>& F, Target& target) {
+    if (b != ground) add<Real>(pi_of(b), pi_of(b), tilde_tilde(F, s), target);
+}
+// A force -F on body b at a point with lever s on body a: F̃ (δr_a - s̃ δπ_a - δr_b).
+template <class Real, class Target>
+void add_moving_lever(BodyId b, BodyId a, const Vector3<Real>& s, const Vector3<Real>& F,
+                      Target& target) {
+    const Matrix3<Real> turn = tilde(F);
+    add<Real>(pi_of(b), r_of(a), turn, target);
+    add<Real>(pi_of(b), pi_of(a), -tilde_tilde(F, s), target);
+    add<Real>(pi_of(b), r_of(b), -turn, target);
+}
+// The levers of an element's force, which is constant. `at_p_j`: on both bodies it acts at p_j.
+template <class Real, class Target>
+void add_levers(BodyId i, BodyId j, const ElementForce<Real>& force, bool at_p_j, Target& target) {
+    add_turning_lever<Real>(j, force.lever_j, force.F, target);
+    if (at_p_j)
+        add_moving_lever<Real>(i, j, force.lever_j, force.F, target);
+    else
+        add_turning_lever<Real>(i, force.lever_i, -force.F, target);
+}
+
+// A force on j at p_j, its opposite on i at p_i, which changes by δF = K (δp_j - δp_i), K symmetric.
+template <class Real, class Target>
+void add_between_points(BodyId i, BodyId j, const ElementForce<Real>& force, const Matrix3<Real>& K,
+                        Target& target) {
+    ElementStiffness<Real> e{i,     j,    force.lever_i, force.lever_j, Matrix6<Real>::Zero(),
+                             false, false};
+    e.K.template topLeftCorner<3, 3>() = K;
+    add_stiffness(e, target);
+    add_levers<Real>(i, j, force, false, target);
 }
 
 // Spring: F = t n on j, -F on i, t = u'(ℓ - ℓ₀); δF = (u'' n nᵀ + t/ℓ (I - n nᵀ)) (δp_j - δp_i).
@@ -82,14 +90,11 @@ void add_tangent(const AxialSpring& e, const Rest<Real>& rest, const State<Real>
                t = gradient<Real>(e.law, stretch, rest.piece[0]),
                rate = hessian<Real>(
                    e.law, [x = stretch] { return x; }, rest.piece[0]);
-    const Vector3<Real> n = D / length, F = t * n;
+    const Vector3<Real> n = D / length;
     const Matrix3<Real> along = n * n.transpose();
-    const Variation<Real> dF = (rate * along + t / length * (Matrix3<Real>::Identity() - along)) *
-                               (of_point<Real>(1, s_j) - of_point<Real>(0, s_i));
-    add<Real>(e.j.body, e.i.body, e.j.body, dF,
-              of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF), target);
-    add<Real>(e.i.body, e.i.body, e.j.body, -dF,
-              -of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF), target);
+    add_between_points<Real>(e.i.body, e.j.body, {t * n, Vector3<Real>::Zero(), s_i, s_j},
+                             rate * along + t / length * (Matrix3<Real>::Identity() - along),
+                             target);
 }
 
 // ∂e/∂(x, φ) [6 × 6], E of elastic.hpp.
@@ -137,40 +142,60 @@ Matrix6<Real> turning_stress(const Bushing& e, const Spatial<Real>& g, const Mat
 // Bushing: F = A_i F_x, M = A_i M_φ, the two functions of x and B;
 //   on j: (F, s_j × F + M)    on i: -(F, ρ × F + M),   ρ = p_j - r_i, or s_i without offset moment
 //   δx = A_iᵀ (δp_j - δr_i - δπ_i × (s_i + D)),   δφ = A_iᵀ (δπ_j - δπ_i)
+// With T = ∂(F_x, M_φ)/∂(x, φ) in ground axes and ρ = s_i + D,
+//
+//   δ(F, M) = T ⎡ I  -s̃_j ⎤ δq_j - ( T ⎡ I  -ρ̃ ⎤ + ⎡ 0  F̃ ⎤ ) δq_i
+//               ⎣ 0    I  ⎦         (   ⎣ 0   I ⎦   ⎣ 0  M̃ ⎦ )
 template <class Real, class Target>
 void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
     const Spatial<Real> g = deformation<Real>(e, q);
-    const auto& [s_i, s_j, D, A_i, B, measured] = g;
-    const Vector3<Real> rho = s_i + D, theta = g.theta();
+    const Vector3<Real> rho = g.s_i + g.D;
     const Vector6<Real> answered = strain<Real>(e, g);
     const Matrix6<Real> K = hessian<Real>(
         e.law, [&] { return answered; }, rest.piece);
     const Vector6<Real> stress = gradient<Real>(e.law, answered, rest.piece) + rest.preload;
-    const Matrix3<Real> H = jacobian<Real>(e.formulation.angles, B, theta);
+    const Matrix3<Real> H = jacobian<Real>(e.formulation.angles, g.B, g.theta());
     const Matrix6<Real> E = strain_rate<Real>(e, g, H);
-    const ElementForce<Real> force = force_of_stress<Real>(e, g, stress);
 
-    // ∂(F_x, M_φ)/∂(x, φ): conjugate forces act through E; F_x alone where the offset's moment is
-    // left out.
+    // (F_x, M_φ) = Eᵀ σ: conjugate forces act through E; F_x alone where the offset's moment is left
+    // out.
     Matrix6<Real> through = E;
     if (!e.formulation.conjugate) through.setIdentity();
     if (!e.formulation.offset_moment) through.template topRightCorner<3, 3>().setZero();
-    const Matrix6<Real> T = through.transpose() * K * E + turning_stress<Real>(e, g, H, E, stress);
+    const Vector6<Real> local = through.transpose() * stress;
+    const ElementForce<Real> force{g.A_i * local.template head<3>(),
+                                   g.A_i * local.template tail<3>(), g.s_i, g.s_j};
+    Matrix6<Real> T = through.transpose() * K * E + turning_stress<Real>(e, g, H, E, stress);
+    for (int a = 0; a < 6; a += 3)
+        for (int b = 0; b < 6; b += 3) {
+            const Matrix3<Real> turned = g.A_i * T.template block<3, 3>(a, b);
+            T.template block<3, 3>(a, b).noalias() = turned.lazyProduct(g.A_i.transpose());
+        }
 
-    const Variation<Real> dp_j = of_point<Real>(1, s_j), dpi_i = of_rotation<Real>(0);
-    const Variation<Real> drho = dp_j - of_origin<Real>(0);
-    Eigen::Matrix<Real, 6, 12> motion;  // (δx, δφ)
-    motion << A_i.transpose() * (drho + tilde(rho) * dpi_i),
-        A_i.transpose() * (of_rotation<Real>(1) - dpi_i);
-    const Eigen::Matrix<Real, 6, 12> change = T * motion;
-    const Variation<Real> dF = A_i * change.template topRows<3>() - tilde(force.F) * dpi_i;
-    const Variation<Real> dM = A_i * change.template bottomRows<3>() - tilde(force.M) * dpi_i;
-    add<Real>(e.j.body, e.i.body, e.j.body, dF,
-              of_cross<Real>(s_j, of_direction<Real>(1, s_j), force.F, dF) + dM, target);
-    const Variation<Real> dlever_i =
-        e.formulation.offset_moment ? drho : of_direction<Real>(0, s_i);
-    add<Real>(e.i.body, e.i.body, e.j.body, -dF,
-              -(of_cross<Real>(force.lever_i, dlever_i, force.F, dF) + dM), target);
+    const auto by_motion = [&](const Vector3<Real>& lever) {
+        Matrix6<Real> change = T;
+        for (int k = 0; k < 6; ++k)
+            change.row(k).template tail<3>() +=
+                lever.cross(T.row(k).template head<3>().transpose()).transpose();
+        return change;
+    };
+    const Matrix6<Real> by_j = by_motion(g.s_j);
+    Matrix6<Real> by_i = -by_motion(rho);
+    by_i.template topRightCorner<3, 3>() -= tilde(force.F);
+    by_i.template bottomRightCorner<3, 3>() -= tilde(force.M);
+    const auto add_on = [&](BodyId on, const Vector3<Real>& lever, Real sign) {
+        const auto column = [&](BodyId by, Matrix6<Real> change) {
+            if (on == ground || by == ground) return;
+            for (int k = 0; k < 6; ++k)
+                change.col(k).template tail<3>() += lever.cross(change.col(k).template head<3>());
+            target.template block<6, 6>(6 * on, 6 * by) += sign * change;
+        };
+        column(e.i.body, by_i);
+        column(e.j.body, by_j);
+    };
+    add_on(e.j.body, g.s_j, 1);
+    add_on(e.i.body, e.formulation.offset_moment ? rho : g.s_i, -1);
+    add_levers<Real>(e.i.body, e.j.body, force, e.formulation.offset_moment, target);
 }
 
 // Curvature of λ [n  s_i × n; -n  -s_j × n] and its variants (constraints.hpp): the force λ n = F
@@ -178,37 +203,38 @@ void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q,
 template <class Real, class Target>
 void add_curvature(const CoincidentPoints& c, Real, const State<Real>& q, const Real* lambda,
                    Target& target) {
-    const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Vector3<Real> F(lambda[0], lambda[1], lambda[2]);
-    const Variation<Real> zero = Variation<Real>::Zero();
-    add<Real>(c.i.body, c.i.body, c.j.body, zero,
-              of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, zero), target);
-    add<Real>(c.j.body, c.i.body, c.j.body, zero,
-              -of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, zero), target);
+    add_turning_lever<Real>(c.i.body, q[c.i.body].lever(c.i.s_local), F, target);
+    add_turning_lever<Real>(c.j.body, q[c.j.body].lever(c.j.s_local), -F, target);
 }
 
+// F turns with j, δF = -F̃ δπ_j, and acts on both bodies at p_i.
 template <class Real, class Target>
 void add_curvature(const PointInPlane& c, Real, const State<Real>& q, const Real* lambda,
                    Target& target) {
-    const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local);
-    const Vector3<Real> F = *lambda * q[c.j.body].lever(c.normal_j.u_local);
-    const Vector3<Real> rho = q[c.i.body].r + s_i - q[c.j.body].r;  // p_i from the origin of j
-    const Variation<Real> dF = of_direction<Real>(1, F);
-    const Variation<Real> drho = of_point<Real>(0, s_i) - of_origin<Real>(1);
-    add<Real>(c.i.body, c.i.body, c.j.body, dF,
-              of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF), target);
-    add<Real>(c.j.body, c.i.body, c.j.body, -dF, -of_cross<Real>(rho, drho, F, dF), target);
+    const BodyId i = c.i.body, j = c.j.body;
+    const Vector3<Real> s_i = q[i].lever(c.i.s_local);
+    const Vector3<Real> F = *lambda * q[j].lever(c.normal_j.u_local);
+    const Vector3<Real> rho = q[i].r + s_i - q[j].r;  // p_i from the origin of j
+    const Matrix3<Real> turn = tilde(F);
+    add<Real>(r_of(i), pi_of(j), -turn, target);
+    add<Real>(pi_of(i), pi_of(j), -tilde_tilde(s_i, F), target);
+    add<Real>(r_of(j), pi_of(j), turn, target);
+    add<Real>(pi_of(j), pi_of(j), tilde_tilde(rho, F), target);
+    add_turning_lever<Real>(i, s_i, F, target);
+    add_moving_lever<Real>(j, i, s_i, F, target);
 }
 
-// Two directions u_i, u_j fixed in their bodies: the couple λ u_i × u_j on i, its opposite on j.
+// Two directions u_i, u_j fixed in their bodies: the couple M = λ u_i × u_j on i, its opposite on j,
+// with δM = λ (ũ_j ũ_i δπ_i - ũ_i ũ_j δπ_j).
 template <class Real, class Target>
 void add_couple_curvature(BodyId i, BodyId j, const Vector3<Real>& u_i, const Vector3<Real>& u_j,
                           Real lambda, Target& target) {
-    const Variation<Real> zero = Variation<Real>::Zero();
-    const Variation<Real> dM =
-        lambda * of_cross<Real>(u_i, of_direction<Real>(0, u_i), u_j, of_direction<Real>(1, u_j));
-    add<Real>(i, i, j, zero, dM, target);
-    add<Real>(j, i, j, zero, -dM, target);
+    const Matrix3<Real> by_i = lambda * tilde_tilde(u_j, u_i), by_j = -by_i.transpose();
+    add<Real>(pi_of(i), pi_of(i), by_i, target);
+    add<Real>(pi_of(i), pi_of(j), by_j, target);
+    add<Real>(pi_of(j), pi_of(i), -by_i, target);
+    add<Real>(pi_of(j), pi_of(j), -by_j, target);
 }
 template <class Real, class Target>
 void add_curvature(const PerpendicularDirections& c, Real, const State<Real>& q, const Real* lambda,
@@ -223,17 +249,15 @@ void add_curvature(const DirectionAtAngle& c, Real angle, const State<Real>& q, 
                                across(c, angle, q), *lambda, target);
 }
 
+// F = λ/c (p_i - p_j) on i.
 template <class Real, class Target>
 void add_curvature(const DistanceBetween& c, Real length, const State<Real>& q, const Real* lambda,
                    Target& target) {
     const Vector3<Real> s_i = q[c.i.body].lever(c.i.s_local), s_j = q[c.j.body].lever(c.j.s_local);
     const Real factor = *lambda / length;
     const Vector3<Real> F = factor * (q[c.i.body].r + s_i - q[c.j.body].r - s_j);
-    const Variation<Real> dF = factor * (of_point<Real>(0, s_i) - of_point<Real>(1, s_j));
-    add<Real>(c.i.body, c.i.body, c.j.body, dF,
-              of_cross<Real>(s_i, of_direction<Real>(0, s_i), F, dF), target);
-    add<Real>(c.j.body, c.i.body, c.j.body, -dF,
-              -of_cross<Real>(s_j, of_direction<Real>(1, s_j), F, dF), target);
+    add_between_points<Real>(c.j.body, c.i.body, {F, Vector3<Real>::Zero(), s_j, s_i},
+                             factor * Matrix3<Real>::Identity(), target);
 }
 
 // A dead force at a lever: -δ(s × f) = f̃ δs = -f̃ s̃ δπ. A dead moment has no load stiffness.

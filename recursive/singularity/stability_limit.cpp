@@ -7,35 +7,20 @@
 namespace elastocheck::recursive {
 namespace {
 
-// Tangent of an element's moments about the origins of its bodies: constant force, rotating levers.
-void add_lever_tangent(const ElasticKind& kind, const Rest<double>& rest, const State<double>& q,
-                       SaddleMatrix<double>& target) {
-    const auto [i, j] = bodies_of(kind);
-    const ElementForce<double> force = element_force<double>(kind, rest, q);
-    using detail::Variation;
-    const Variation<double> none = Variation<double>::Zero();
-    const auto* formulation = member<Formulation>(kind);
-    const bool at_p_j = formulation != nullptr && formulation->offset_moment;
-    const Variation<double> of_j = detail::of_direction<double>(1, force.lever_j);
-    const Variation<double> of_i =
-        at_p_j ? Variation<double>(detail::of_point<double>(1, force.lever_j) -
-                                   detail::of_origin<double>(0))
-               : detail::of_direction<double>(0, force.lever_i);
-    detail::add<double>(j, i, j, none, detail::of_cross<double>(force.lever_j, of_j, force.F, none),
-                        target);
-    detail::add<double>(
-        i, i, j, none,
-        Variation<double>(-detail::of_cross<double>(force.lever_i, of_i, force.F, none)), target);
-}
-
 // K_G in the place of K, all other entries zero.
 void assemble_delayed(const SteppingState<double>& s, const Follow& follow,
                       SaddleMatrix<double>& G) {
     std::fill(G.values.begin(), G.values.end(), 0.);
     if (follow.lever || follow.axis) {
         SaddleMatrix<double> levers = G;
-        for (std::size_t k = 0; k < s.model.elastics.size(); ++k)
-            add_lever_tangent(s.model.elastics[k].kind, s.inputs.rest[k], s.q, levers);
+        for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
+            const ElasticKind& kind = s.model.elastics[k].kind;
+            const auto [i, j] = bodies_of(kind);
+            const auto* formulation = member<Formulation>(kind);
+            detail::add_levers<double>(i, j, element_force<double>(kind, s.inputs.rest[k], s.q),
+                                       formulation != nullptr && formulation->offset_moment,
+                                       levers);
+        }
         if (follow.axis) {
             SaddleMatrix<double> K = G;
             add_stiffness<double>(s.model, s.inputs, s.q, K);
