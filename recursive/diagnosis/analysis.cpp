@@ -6,6 +6,7 @@
 #include "recursive/formula/recentre.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/pattern.hpp"
+#include "recursive/stepping/stability.hpp"
 
 namespace elastocheck::recursive {
 
@@ -44,6 +45,12 @@ Analysis analyse(const Model& model) {
     result.at_rest =
         largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest(system.M) &&
         largest(Phi) <= rounding;
+    if (result.at_rest && curves_of(model).empty() && result.pivot_ratio > 0) {
+        SteppingState<double> s(model, nothing, result);
+        s.consistent = true;
+        go_to(s, {1, 0});
+        result.start = start_stability(s);
+    }
     return result;
 }
 

@@ -3,10 +3,28 @@
 // consistent tangent at the design position.
 #pragma once
 
+#include <limits>
+#include <string>
+
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/linear_algebra/saddle_point.hpp"
 
 namespace elastocheck::recursive {
+
+// Least reduced stiffness of an equilibrium (stiffness.hpp).
+struct LeastStiffness {
+    double value = std::numeric_limits<
+        double>::infinity();  // μ; its modulus where forces have no energy. ∞: no motion is free
+    bool of_energy = true;    // whether K is symmetric, so that the sign of μ decides stability
+};
+
+// Stability of an equilibrium where a branch starts (stability.hpp).
+struct StartStability {
+    LeastStiffness least;
+    Matrix<double> softest;  // the basis that least_stiffness() keeps
+    bool unstable = false;
+    std::string motion;  // where it is unstable: the bodies that move in the softest motion
+};
 
 // Constant after analyse(): branches and threads may share one. It depends on the constraints,
 // elastic elements and bodies of its model; loads and drivers belong to the branches.
@@ -18,6 +36,7 @@ struct Analysis {
     double pivot_ratio = 0;     // of those factors, smallest over largest
     // R_d and Φ_d are below rounding: the design position is an equilibrium
     bool at_rest = false;
+    StartStability start;  // of the design position, if it is an equilibrium and has no curves
 };
 
 // Analyses the model. A model far from the origin is first moved to its centre (recentre.hpp).

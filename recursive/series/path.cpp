@@ -72,7 +72,7 @@ struct Continuation {
     double heading = 0;
     // sign of the determinant at the start; by arc length of the matrix bordered by x'
     int side = 0;
-    SubspaceBasis<double> softest = {};
+    Matrix<double> softest = {};
     bool stable = false;   // whether the start is stable; then every later point must be
     double log_begin = 0;  // log₂ |determinant| at the start of the expansion
     // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
@@ -516,8 +516,8 @@ std::size_t most_expansions(const Continuation& w, std::size_t gone_over) {
     return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(gone_over, knots));
 }
 
-// From an equilibrium, with its factors in s.system, to the end.
-Outcome follow_to_end(Continuation& w) {
+// From an equilibrium, with its factors in s.system, to the end. `known`: its stability.
+Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr) {
     SteppingState<double>& s = w.s;
     std::size_t gone_over = 0;
     while (w.path.expansions.size() < most_expansions(w, gone_over)) {
@@ -530,9 +530,11 @@ Outcome follow_to_end(Continuation& w) {
         if (const int here = side(w, w.to); w.path.expansions.empty()) {
             w.side = here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
-                const LeastStiffness least = least_stiffness(s, w.softest);
-                w.stable = least.of_energy && least.value > 0;
-                if (const Outcome o = check_start_stability(s); o != Outcome::converged) return o;
+                const StartStability start = known != nullptr ? *known : start_stability(s);
+                w.softest = start.softest;
+                w.stable = start.least.of_energy && start.least.value > 0;
+                if (const Outcome o = check_start_stability(s, start); o != Outcome::converged)
+                    return o;
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
@@ -640,7 +642,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     Continuation w(s, curves, options, Drive::rate);
     if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
         return finish(w, o);
-    return finish(w, follow_to_end(w));
+    return finish(w, follow_to_end(w, curves.empty() ? &analysis.start : nullptr));
 }
 
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options) {

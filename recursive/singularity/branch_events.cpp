@@ -26,19 +26,17 @@ bool ends(Outcome outcome) {
 
 // Settles to the equilibrium at a = 0 and leaves its factors in the system.
 Outcome settles(SteppingState<double>& s, const Branch& branch, const Analysis& analysis) {
-    const auto settled = [&] {
-        if (!analysis.at_rest || !starts_as_drawn(branch) || !s.curves.empty()) return settle(s);
-        go_to(s, {1, 0});
-        return check_factors(s, s.q, analysis.pivot_ratio);
-    };
-    const Outcome outcome = settled();
-    return outcome == Outcome::converged ? check_start_stability(s) : outcome;
+    const bool as_drawn = analysis.at_rest && starts_as_drawn(branch) && s.curves.empty();
+    if (as_drawn) go_to(s, {1, 0});
+    const Outcome outcome = as_drawn ? check_factors(s, s.q, analysis.pivot_ratio) : settle(s);
+    if (outcome != Outcome::converged) return outcome;
+    return check_start_stability(s, as_drawn ? analysis.start : start_stability(s));
 }
 
 // Stability at the nodes of one traversal. A change of the determinant's sign shows an odd number
 // of negative stiffnesses; the softest modes show two at once.
 struct Stability {
-    SubspaceBasis<double> softest = {};
+    Matrix<double> softest = {};
 
     // With the factors of `next` in the system.
     bool is_lost(SteppingState<double>& s, const Trial<double>& trial) {

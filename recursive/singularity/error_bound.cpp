@@ -37,7 +37,7 @@ struct ErrorEstimator {
     Vector<Real> lambda;
     int orientation = 0;  // of the first point
     double first_stiffness = 0;
-    SubspaceBasis<Real> softest = {};
+    Matrix<Real> softest = {};
     bool begun = false;
     std::optional<Node<Real>> last_found = {};  // on the branch
     Real noise = 0;                             // rounding of the evaluated forces, as |W⁻¹ f|

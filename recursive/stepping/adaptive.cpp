@@ -83,13 +83,14 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
     }
     double log_here = log_determinant(s.system.lu);
-    SubspaceBasis<double> softest;
+    Matrix<double> softest;
     const auto unstable = [&] {
         const LeastStiffness least = least_stiffness(s, softest);
         return (least.of_energy && least.value < 0) ||
                negative_idle_stiffness(s, next.q, next.lambda) < 0;
     };
-    if (const Outcome outcome = check_start_stability(s); outcome != Outcome::converged)
+    if (const Outcome outcome = check_start_stability(s, start_stability(s));
+        outcome != Outcome::converged)
         return outcome;
     keep(node.q, node.lambda, 0);
 

@@ -133,14 +133,21 @@ std::string softest_motion(const SteppingState<double>& s) {
 
 }  // namespace
 
-Outcome check_start_stability(SteppingState<double>& s) {
+StartStability start_stability(SteppingState<double>& s) {
+    StartStability start;
+    start.least = least_stiffness(s, start.softest);
     // modes soft relative to the stiffest are below the rounding of is_unstable()
-    SubspaceBasis<double> softest;
-    const LeastStiffness least = least_stiffness(s, softest);
-    const bool unstable = is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
-                          (has_energy(s.model, s.branch) && least.of_energy && least.value < 0);
-    if (unstable) s.unstable_start = softest_motion(s);
-    return unstable ? Outcome::singular : Outcome::converged;
+    start.unstable =
+        is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
+        (has_energy(s.model, s.branch) && start.least.of_energy && start.least.value < 0);
+    if (start.unstable) start.motion = softest_motion(s);
+    return start;
+}
+
+Outcome check_start_stability(SteppingState<double>& s, const StartStability& start) {
+    if (!start.unstable || !has_energy(s.model, s.branch)) return Outcome::converged;
+    s.unstable_start = start.motion;
+    return Outcome::singular;
 }
 
 double least_eigenvalue(const Eigen::MatrixXd& Q) {

@@ -31,10 +31,12 @@ bool has_energy(const Model& model, const Branch& branch);
 // symmetric.
 bool is_unstable(const SteppingState<double>& s);
 
-// Stability of the settled start, whose matrix is in the system: `singular` if it is unstable.
-// Settling from a drawing far from rest may lead to an unstable equilibrium, and a drawing at rest
-// may be one.
-Outcome check_start_stability(SteppingState<double>& s);
+// Stability of the start, whose matrix is in the system. Settling from a drawing far from rest may
+// lead to an unstable equilibrium, and a drawing at rest may be one. The result for the latter is in
+// the analysis: it is the same for all branches, apart from the energy of their loads.
+StartStability start_stability(SteppingState<double>& s);
+// `singular` if the start of the branch is unstable.
+Outcome check_start_stability(SteppingState<double>& s, const StartStability& start);
 
 // The smallest eigenvalue of the symmetric part of Q.
 double least_eigenvalue(const Eigen::MatrixXd& Q);

@@ -24,17 +24,6 @@ Real scattered(Eigen::Index k) {
     return std::fmod(Real(0.6180339887498948482L) * static_cast<Real>(k + 1), Real(1)) - Real(0.5);
 }
 
-template <class Real>
-struct SubspaceBasis {
-    Matrix<Real> U = {};  // [6nb × 3 at most], orthonormal in W
-};
-
-struct LeastStiffness {
-    double value = std::numeric_limits<
-        double>::infinity();  // μ; its modulus where forces have no energy. ∞: no motion is free
-    bool of_energy = true;    // whether K is symmetric, so that the sign of μ decides stability
-};
-
 namespace detail {
 
 // Orthonormalises the columns of U in W and drops dependent ones.
@@ -62,14 +51,14 @@ LeastStiffness least_of(const Eigen::MatrixXd& H);
 
 }  // namespace detail
 
-// Least stiffness with the factors in the system, which must be those of the consistent tangent.
+// Least stiffness with the factors in the system, which must be those of the consistent tangent. U
+// [6nb × 3 at most], orthonormal in W, is kept for the next point; empty at the first.
 template <class Real>
-LeastStiffness least_stiffness(SteppingState<Real>& s, SubspaceBasis<Real>& kept) {
+LeastStiffness least_stiffness(SteppingState<Real>& s, Matrix<Real>& U) {
     constexpr int vectors = 3, first_turns = 5, turns = 2;
     if (s.free <= 0) return {};
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
-    Matrix<Real>& U = kept.U;
     const bool first = U.cols() == 0;
     if (first) {
         U.resize(n, std::min(vectors, s.free));
@@ -95,7 +84,6 @@ LeastStiffness least_stiffness(SteppingState<Real>& s, SubspaceBasis<Real>& kept
 }
 
 // Instantiated in stepping/sweep_double.cpp.
-extern template LeastStiffness least_stiffness<double>(SteppingState<double>&,
-                                                       SubspaceBasis<double>&);
+extern template LeastStiffness least_stiffness<double>(SteppingState<double>&, Matrix<double>&);
 
 }  // namespace elastocheck::recursive

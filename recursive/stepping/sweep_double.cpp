@@ -67,7 +67,7 @@ template bool is_inconsistent_at<double>(SteppingState<double>&, const Node<doub
                                          State<double>&, Vector<double>&);
 template Outcome settle<double>(SteppingState<double>&);
 template Outcome settled<double>(const SteppingState<double>&, Outcome, double);
-template LeastStiffness least_stiffness<double>(SteppingState<double>&, SubspaceBasis<double>&);
+template LeastStiffness least_stiffness<double>(SteppingState<double>&, Matrix<double>&);
 template double negative_idle_stiffness<double>(SteppingState<double>&, const State<double>&,
                                                 const Vector<double>&);
 

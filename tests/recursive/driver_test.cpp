@@ -311,10 +311,36 @@ std::string upright_bars(double weight) {
            "probes: {head0: {on: bar0, at: head0}, head1: {on: bar1, at: head1}}\n";
 }
 
+// A block between two compressed springs: an equilibrium as drawn without any reaction. Across the
+// springs, in both directions at once, their geometric stiffness is twice the preload over 1 m.
+std::string squeezed_block(double preload) {
+    return fmt::format(R"(
+elastocheck: 1
+name: squeezed block
+units: {{length: m, angle: rad, force: N}}
+points: {{block: [0, 0, 0], left: [-1, 0, 0], right: [1, 0, 0]}}
+bodies: {{block: {{origin: block}}}}
+springs:
+  left: {{bodies: [block, ground], from: block, to: left, rate: 1000, preload: {0}}}
+  right: {{bodies: [block, ground], from: block, to: right, rate: 1000, preload: {0}}}
+bushings: {{hold: {{bodies: [block, ground], at: block, rates: [100, 100, 100], rotational_rates: [9, 9, 9]}}}}
+loads: {{push: {{on: block, at: block, force: [1, 0, 0]}}}}
+branches: {{push: {{load: push, to: 1e-3, steps: 4}}}}
+probes: {{block: {{on: block, at: block}}}}
+)",
+                       preload);
+}
+
 TEST(Start, ThatIsUnstableIsNamedByEveryMethod) {
-    for (const auto& [weight, unstable] : {std::pair{1900., false}, {2100., true}}) {
-        const Model model = compile(parse_scene(upright_bars(weight), "bars.yaml"));
+    for (const auto& [scene, at_rest, unstable] : {std::tuple{upright_bars(1900), false, false},
+                                                   {upright_bars(2100), false, true},
+                                                   {squeezed_block(45), true, false},
+                                                   {squeezed_block(55), true, true}}) {
+        const Model model = compile(parse_scene(scene, "scene.yaml"));
         const Branch& branch = model.branches[0];
+        // at rest the start is judged with the model, once for all branches
+        EXPECT_EQ(analyse(model).at_rest, at_rest) << scene;
+        EXPECT_EQ(analyse(model).start.unstable, at_rest && unstable) << scene;
         for (const Method& method : methods) {
             const auto path = solve(model, branch, {.method = method});
             EXPECT_EQ(path.outcome, unstable ? Outcome::singular : Outcome::converged)
