@@ -45,7 +45,9 @@ ElasticSeries term(Arena& room, const Bushing& e) {
     T t = between<T>(room, e, &T::rho, &T::D, &T::strain, &T::cross_g, &T::V, &T::u, &T::theta,
                      &T::relative, &T::e, &T::gradient, &T::stress, &T::moment_local, &T::u_M,
                      &T::u_u_M, &T::spread_1, &T::spread_2, &T::force_i, &T::moment_i, &T::F, &T::M,
-                     &T::dot_g, &T::W, &T::inverse, &T::s, &T::phi, &T::psi);
+                     &T::dot_g, &T::W, &T::inverse, &T::s);
+    reserve(room, t.phi);
+    reserve(room, t.psi, &t.phi);
     t.preload.start = e.preload;
     t.rotational = rotational(e.law) || !e.preload.tail<3>().isZero(0);
     if (const auto* law = std::get_if<PerAxis>(&e.law)) {

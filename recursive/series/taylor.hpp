@@ -237,12 +237,14 @@ inline void taylor_of_F(int m, double s_0, std::span<double> b) {
 struct Composition {
     std::span<double> b;  // [p + 1]
     double* power;        // coefficient k of σⁿ at n (p + 1) + k, n = 2 ... p
+    bool fills = true;    // whether it computes the powers; else another function of s has done so
     Scalar f;
 };
-inline void reserve(Arena& room, Composition& c) {
+inline void reserve(Arena& room, Composition& c, const Composition* before = nullptr) {
     const int n = room.order + 1;
     c.b = {room.take<double>(n, 0), static_cast<std::size_t>(n)};
-    c.power = room.take<double>(n * n, 0);
+    c.fills = before == nullptr;
+    c.power = c.fills ? room.take<double>(n * n, 0) : before->power;
     reserve(room, c.f);
 }
 inline void compose(Order o, const Scalar& s, Composition& c) {
@@ -258,11 +260,13 @@ inline void compose(Order o, const Scalar& s, Composition& c) {
     const int k = o.k, columns = static_cast<int>(c.b.size());
     double sum = c.b[1] * at(s, k);
     for (int n = 2; n <= k; ++n) {
-        const double* const lower =
-            n == 2 ? s.c : c.power + (n - 1) * columns;  // σⁿ⁻¹ begins at order n - 1
-        double power = 0;
-        for (int i = 1; i + (n - 1) <= k; ++i) power += at(s, i) * lower[k - i];
-        c.power[n * columns + k] = power;
+        double& power = c.power[n * columns + k];
+        if (c.fills) {
+            const double* const lower =
+                n == 2 ? s.c : c.power + (n - 1) * columns;  // σⁿ⁻¹ begins at order n - 1
+            power = 0;
+            for (int i = 1; i + (n - 1) <= k; ++i) power += at(s, i) * lower[k - i];
+        }
         sum += c.b[static_cast<std::size_t>(n)] * power;
     }
     at(c.f, k) = sum;
