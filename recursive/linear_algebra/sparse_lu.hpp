@@ -300,58 +300,66 @@ void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
 template <class Real>
 void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x) {
     const Elimination& order = lu.order;
-    const auto at = [](int k) { return static_cast<std::size_t>(k); };
     const Real rounding = 4 * std::numeric_limits<Real>::epsilon();
     const auto n = static_cast<int>(lu.size());
-    const auto next = [&](int k) {  // next queued index from k on
-        const void* const found = std::memchr(lu.queued.data() + k, 1, at(n - k));
-        return found == nullptr
-                   ? n
-                   : static_cast<int>(static_cast<const char*>(found) - lu.queued.data());
+    // local pointers: a store to `queued`, of characters, might change any other
+    Real *const known = lu.known.data(), *const unknown = lu.unknown.data();
+    char* const queued = lu.queued.data();
+    const Real *const L = lu.L.data(), *const U = lu.U.data();
+    const int *const below = order.below.data(), *const place = order.place.data(),
+                     *const right = order.right.data(),
+                     *const first_below = order.first_below.data(),
+                     *const first_right = order.first_right.data(),
+                     *const col_of = order.col_of.data();
+    const auto next = [&](int k) {  // next queued index from k on, which mostly is near
+        for (const int near = std::min(k + 8, n); k < near; ++k)
+            if (queued[k]) return k;
+        const void* const found = std::memchr(queued + k, 1, static_cast<std::size_t>(n - k));
+        return found == nullptr ? n : static_cast<int>(static_cast<const char*>(found) - queued);
     };
     const auto reach = [&](int k) {
-        lu.queued[at(k)] = 0;
+        queued[k] = 0;
         lu.reached.push_back(k);
     };
+    const int start = order.row_of[static_cast<std::size_t>(j)];
     int last = -1;
     lu.reached.clear();
-    lu.known[at(order.row_of[at(j)])] = 1;
-    lu.queued[at(order.row_of[at(j)])] = 1;
-    for (int k = order.row_of[at(j)]; k < n; k = next(k + 1)) {
+    known[start] = 1;
+    queued[start] = 1;
+    for (int k = start; k < n; k = next(k + 1)) {
         reach(k);
-        const Real y = lu.known[at(k)];
+        const Real y = known[k];
         if (!(std::abs(y) > rounding) && !std::isnan(y)) {
-            lu.known[at(k)] = 0;
+            known[k] = 0;
             continue;
         }
         last = k;
-        for (int e = order.first_below[at(k)]; e < order.first_below[at(k) + 1]; ++e) {
-            const int i = order.below[at(e)];
-            lu.known[at(i)] -= lu.L[at(order.place[at(e)])] * y;
-            lu.queued[at(i)] = 1;
+        for (int e = first_below[k]; e < first_below[k + 1]; ++e) {
+            known[below[e]] -= L[place[e]] * y;
+            queued[below[e]] = 1;
         }
     }
     const std::size_t forward = lu.reached.size();
     int k = n;
     for (int c = 0; c < count; ++c)
-        if (const int own = order.col_of[at(wanted[c])]; own <= last) {
-            lu.queued[at(own)] = 1;
+        if (const int own = col_of[wanted[c]]; own <= last) {
+            queued[own] = 1;
             k = std::min(k, own);
         }
     for (; k < n; k = next(k + 1)) {
         reach(k);
-        for (int e = order.first_right[at(k)]; e < order.first_right[at(k) + 1]; ++e)
-            if (order.right[at(e)] <= last) lu.queued[at(order.right[at(e)])] = 1;
+        for (int e = first_right[k]; e < first_right[k + 1]; ++e)
+            if (right[e] <= last) queued[right[e]] = 1;
     }
     for (std::size_t r = lu.reached.size(); r-- > forward;) {
-        const auto own = at(lu.reached[r]);
-        Real sum = lu.known[own];
-        for (int e = order.first_right[own]; e < order.first_right[own + 1]; ++e)
-            sum -= lu.U[at(e)] * lu.unknown[at(order.right[at(e)])];
-        lu.unknown[own] = sum * lu.inverse[own];
+        const int own = lu.reached[r];
+        Real sum = known[own];
+        for (int e = first_right[own]; e < first_right[own + 1]; ++e)
+            sum -= U[e] * unknown[right[e]];
+        unknown[own] = sum * lu.inverse[static_cast<std::size_t>(own)];
     }
-    for (int c = 0; c < count; ++c) x[c] = lu.unknown[at(order.col_of[at(wanted[c])])];
-    for (const int own : lu.reached) lu.known[at(own)] = lu.unknown[at(own)] = 0;
+    for (int c = 0; c < count; ++c) x[c] = unknown[col_of[wanted[c]]];
+    for (const int own : lu.reached) known[own] = unknown[own] = 0;
 }
 
 // Instantiated in stepping/sweep_double.cpp.
