@@ -446,9 +446,10 @@ Comparison compare(const Model& model, const Options& options) {
     };
     std::vector<std::vector<LegRun>> runs(model.branches.size(), std::vector<LegRun>(legs.size()));
     std::vector<std::optional<LegRun>> series(model.branches.size());
+    // The longest jobs first, so that none of them is left to one thread at the end.
     std::vector<Job> jobs;
-    for (std::size_t k = 0; k < model.branches.size(); ++k)
-        for (const Leg leg : legs)
+    for (const Leg leg : {Leg::energy, Leg::equilibrium, Leg::recursive})
+        for (std::size_t k = 0; k < model.branches.size(); ++k)
             jobs.push_back(
                 {fmt::format("{}: {} leg", model.branches[k].name, name(leg)), [&, k, leg] {
                      const SolverSettings solver{

@@ -66,16 +66,13 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
         disturbance);
 }
 
-// Reactions of least imbalance: E is linear in them. The second pass recovers digits lost in the
-// factors of the first.
+// Reactions of least imbalance: E is linear in them.
 void balance(const System& system, const Loading& loading, VectorXd& x, Counts& counts) {
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
     if (n == 0 || m == 0) return;
-    for (int time = 0; time < 2; ++time) {
-        const Derivatives by = derivatives(system, loading, x, counts);
-        if (!is_finite(by.J) || !by.E.allFinite()) return;
-        x.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
-    }
+    const Derivatives by = derivatives(system, loading, x, counts);
+    if (!is_finite(by.J) || !by.E.allFinite()) return;
+    x.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
 }
 
 // dx with minimum-norm motion in the idle modes. The border would minimise motion and reactions of
@@ -90,16 +87,6 @@ VectorXd with_shortest_motion(const System& system, const Linearisation& at, con
     one.setIdentity();
     const Eigen::SimplicialLDLT<Sparse> gram(Sparse(V_T * V + nothing * one));
     return dx - at.modes.right * gram.solve(VectorXd(V_T * dx.head(n)));
-}
-
-// Solution with one step of iterative refinement, which recovers digits lost in the factors.
-Rate answered(const Linearisation& at, const VectorXd& E_rate) {
-    Rate rate = answer(at.bordered, E_rate);
-    if (!rate.dx.allFinite()) return rate;
-    const Rate correction = answer(at.bordered, E_rate + at.J * rate.dx + at.modes.left * rate.mu);
-    rate.dx += correction.dx;
-    rate.mu += correction.mu;
-    return rate;
 }
 
 // Whether the disturbance has a part outside the range of ∂E/∂x.
@@ -132,13 +119,13 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     const Linearisation at = linearise(std::move(J), nullptr, unused);
     const VectorXd ahead = rate_of(moving, loading, x);
     if (system.equations() > 0 &&
-        (at.bordered.sign() == 0 || is_pushed(answered(at, ahead), ahead)))
+        (at.bordered.sign() == 0 || is_pushed(refined_answer(at, ahead), ahead)))
         return fail(Outcome::singular, "the system is singular, the branch turns back here");
 
     Response response;
     for (const Disturbance& disturbance : disturbances) {
         const VectorXd E_rate = rate_of(disturbed(system, disturbance, a), loading, x);
-        const Rate rate = answered(at, E_rate);
+        const Rate rate = refined_answer(at, E_rate);
         if (!rate.dx.allFinite())
             return fail(Outcome::not_finite,
                         name_of(model, disturbance) + " has a response that is not finite");

@@ -81,12 +81,32 @@ std::optional<VectorXd> bend(const Continuation& continuation, double h) {
            (continuation.here.t - continuation.before->t);
 }
 
-// Predictor: tangent and second-order term.
+// Predictor: tangent and second-order term; or, where it hardly differs, the cubic h x' + c h² + d h³
+// with the state before and its tangent as well, with error O(h⁴). With D from there to here, x the
+// step back and x₀' its tangent as a rate of that step,
+//
+//   A = x + D x',   B = D (x₀' - x'),   D² c = 3 A + B,   D³ d = 2 A + B
+//
+// For a rotation θ the rate is J⁻¹(θ) ω = ω - ½ θ × ω + O(θ²) ω.
 VectorXd predicted_step(const Continuation& continuation, double h) {
-    VectorXd dx = h * continuation.here.tangent;
-    if (const auto more = bend(continuation, h); more && more->norm() < 0.5 * dx.norm())
-        dx += *more;
-    return dx;
+    const Station& here = continuation.here;
+    VectorXd dx = h * here.tangent;
+    const auto more = bend(continuation, h);
+    if (!more || !(more->norm() < 0.5 * dx.norm())) return dx;
+    dx += *more;
+    const Station& before = *continuation.before;
+    const double D = here.t - before.t, share = h / D;
+    const VectorXd back = step_between(continuation.system, here.x, before.x);
+    VectorXd rate = before.tangent;
+    for (int body = 0; body < continuation.system.bodies; ++body) {
+        const Eigen::Vector3d theta = back.segment<3>(6 * body + 3);
+        auto turn = rate.segment<3>(6 * body + 3);
+        const Eigen::Vector3d once = cross(theta, Eigen::Vector3d(turn));
+        turn += -once / 2 + cross(theta, once) / 12;
+    }
+    const VectorXd A = back + D * here.tangent, B = D * (rate - here.tangent);
+    VectorXd cubic = h * here.tangent + share * share * (3 * A + B + share * (2 * A + B));
+    return (cubic - dx).norm() < 0.5 * more->norm() ? cubic : dx;
 }
 
 bool is_within_reach(const Continuation& continuation, double h, const VectorXd& dx) {
@@ -118,8 +138,13 @@ Stability stability_between(Continuation& continuation, const Station& from, con
         step_between(continuation.system, from.x, to.x) / 2 + h / 8 * (from.tangent - to.tangent);
     auto by = derivatives(continuation.system, loading_at(continuation, from.t + h / 2),
                           moved(continuation.system, from.x, dx), continuation.counts);
-    const Linearisation middle = linearise(std::move(by.J), &from.linearised, continuation.counts);
-    return over_step(from.stiffness, stiffness(continuation.system, middle), to.stiffness);
+    const Eigen::Index redundant = from.stiffness.redundant;
+    auto middle = stiffness_of_few(continuation.system, by.J,
+                                   from.linearised.modes.count() - redundant, redundant);
+    if (!middle)
+        middle = stiffness(continuation.system,
+                           linearise(std::move(by.J), &from.linearised, continuation.counts));
+    return over_step(from.stiffness, *middle, to.stiffness);
 }
 
 // Whether a continuation step stays on this side of every singular point. During the homotopy from
@@ -181,22 +206,47 @@ double moved_by_rounding(const Continuation& continuation, const Station& at) {
            pose_size(continuation.system, answer(at.linearised.bordered, E).dx);
 }
 
+// Whether the correction of a predicted state, with the matrix of the last one, is much smaller than
+// a last correction has to be.
+bool is_foreseen(Continuation& continuation, const Loading& loading, const VectorXd& x) {
+    constexpr double much_smaller = 0.1;
+    ++continuation.counts.evaluations;
+    const VectorXd E = residual(continuation.system, loading, x);
+    return E.allFinite() && answer(continuation.here.linearised.bordered, E).dx.norm() <=
+                                much_smaller * last_correction;
+}
+
 Trial try_step(Continuation& continuation, double t) {
     const System& system = continuation.system;
     const Loading loading = loading_at(continuation, t);
     const VectorXd dx = predicted_step(continuation, t - continuation.here.t);
     if (!is_within_reach(continuation, t - continuation.here.t, dx)) return {Verdict::out_of_reach};
 
-    Trial trial{Verdict::unsolved,
-                newton(system, loading, moved(system, continuation.here.x, dx),
-                       continuation.here.linearised, continuation.options, continuation.counts)};
-    const Attempt& attempt = trial.attempt;
-    if (!(std::isfinite(attempt.residual) && attempt.residual <= continuation.options.tolerance))
-        return trial;
-
-    trial.station = station_at(continuation, t, attempt.x, &continuation.here.linearised);
+    Trial trial{Verdict::unsolved};
     Station& next = trial.station;
-    const VectorXd further = answer(next.linearised.bordered, next.E).dx;
+    VectorXd further;
+    const auto correct_at = [&](VectorXd x) {
+        next = station_at(continuation, t, std::move(x), &continuation.here.linearised);
+        further = answer(next.linearised.bordered, next.E).dx;
+    };
+    const auto is_solved = [&](const VectorXd& x) {
+        return largest(residual(system, loading, x)) <= continuation.options.tolerance;
+    };
+    // A predicted state that is as good as the last but one of Newton's method needs no more than
+    // the correction from the matrix there, which the station has anyway.
+    const VectorXd predicted = moved(system, continuation.here.x, dx);
+    bool solved = is_foreseen(continuation, loading, predicted);
+    if (solved) {
+        correct_at(predicted);
+        solved = is_solved(moved(system, next.x, further));
+        continuation.counts.iterations += solved;
+    }
+    if (!solved) {
+        trial.attempt = newton(system, loading, predicted, continuation.here.linearised,
+                               continuation.options, continuation.counts);
+        if (!(trial.attempt.residual <= continuation.options.tolerance)) return trial;
+        correct_at(trial.attempt.x);
+    }
     const double correction = further.norm();
     const double h = t - continuation.here.t;
     if (!is_continuation(system, continuation.here, next))
@@ -216,9 +266,7 @@ Trial try_step(Continuation& continuation, double t) {
         trial.verdict = side_of(continuation, next);
         // The corrected state is kept: the error that a correction leaves is its square times the
         // ratio of axial to lateral member stiffness, 1e6 and more in a chain of beams.
-        if (VectorXd x = moved(system, next.x, further);
-            largest(residual(system, loading, x)) <= continuation.options.tolerance)
-            next.x = std::move(x);
+        if (VectorXd x = moved(system, next.x, further); is_solved(x)) next.x = std::move(x);
     }
     return trial;
 }

@@ -48,6 +48,46 @@ struct Spectrum {
     }
 };
 
+// ---- Models of few bodies: M itself
+
+// With Z from a QR factorisation of Φ_qᵀ, all eigenvalues of M are cheaper than a sparse
+// factorisation. Those of the `idle` modes are zero, the others have enough digits beside the
+// rounding of M; otherwise, and for more coordinates than `few`, the result is empty.
+std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle, Index redundant) {
+    constexpr Index few = 72;
+    constexpr double zero = 1e-11, enough = 1e-6, may_matter = 1e-3;
+    const Index n = 6 * system.bodies, m = system.constraint_rows, d = n - m + redundant;
+    if (n > few || d <= idle) return std::nullopt;
+    const MatrixXd dense = J;
+    MatrixXd Z = MatrixXd::Identity(n, n).rightCols(d);
+    if (m > 0)
+        Z.applyOnTheLeft(
+            Eigen::ColPivHouseholderQR<MatrixXd>(dense.bottomLeftCorner(m, n).transpose())
+                .householderQ());
+    const MatrixXd M = -Z.transpose() * (dense.topLeftCorner(n, n) * Z),
+                   S = (M + M.transpose()) / 2;
+    const double size = dense.topLeftCorner(n, n).cwiseAbs().maxCoeff();
+    if (!M.allFinite()) return std::nullopt;
+    Eigen::VectorXcd mu;
+    const auto take = [&](const auto& solver) {
+        if (solver.info() != Eigen::Success) return false;
+        mu = solver.eigenvalues();
+        std::sort(mu.data(), mu.data() + d,
+                  [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
+        return true;
+    };
+    const bool symmetric =
+        system.conservative &&
+        take(Eigen::SelfAdjointEigenSolver<MatrixXd>(S, Eigen::EigenvaluesOnly)) &&
+        (M - S).norm() <= may_matter * std::abs(mu[idle]);
+    if (!symmetric && !take(Eigen::EigenSolver<MatrixXd>(M, false))) return std::nullopt;
+    if (idle > 0 && !(std::abs(mu[idle - 1]) <= zero * size)) return std::nullopt;
+    if (!(std::abs(mu[idle]) > enough * size)) return std::nullopt;
+    Spectrum spectrum;
+    for (Index k = idle; k < d; ++k) spectrum.see(mu[k]);
+    return spectrum;
+}
+
 // ---- Definiteness without forming M
 
 // Idle modes are fixed by adding a stiffness to one unknown per mode in which the mode is large. By
@@ -202,6 +242,17 @@ MatrixXd self_stresses(const System& system, const NullSpaces& modes) {
 
 }  // namespace
 
+std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J, Index idle,
+                                          Index redundant) {
+    if (!is_finite(J)) return std::nullopt;
+    const auto spectrum = formed(system, J, idle, redundant);
+    if (!spectrum) return std::nullopt;
+    Stiffness found =
+        spectrum->of(system, eigenvalue_round_off * largest_entry(balance_rows(system, J)));
+    found.redundant = redundant;
+    return found;
+}
+
 Stiffness stiffness(const System& system, const Linearisation& at) {
     if (!is_finite(at.J)) return {nan, nan};
     if (system.bodies == 0) return {};
@@ -214,11 +265,14 @@ Stiffness stiffness(const System& system, const Linearisation& at) {
     if (free < 0) return {nan, nan};
     const Sparse K = -balance_rows(system, at.J);
     const double size = largest_entry(K), round_off = eigenvalue_round_off * size;
+    if (auto few = stiffness_of_few(system, at.J, k - redundant, redundant)) return *few;
     const bool surely =
         system.conservative &&
         surely_stable(K, constraint_rows(system, at.J), at.modes, std::max(size, 1.0), round_off);
     const auto spectrum = next_to_zero(Inverse(at, n), n, free, system.conservative, !surely);
-    return spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
+    Stiffness found = spectrum ? spectrum->of(system, round_off) : Stiffness{nan, nan};
+    found.redundant = redundant;
+    return found;
 }
 
 bool constraints_keep_their_side(const System& system, const Linearisation& from,

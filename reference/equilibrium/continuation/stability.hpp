@@ -11,6 +11,8 @@
 // least eigenvalue is interpolated over each step by a parabola through its ends and its middle.
 #pragma once
 
+#include <optional>
+
 #include "reference/equilibrium/linear_algebra/linearisation.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -29,10 +31,16 @@ struct Stiffness {
     double least = 1;
     double round_off = 0;
     int negative = 0;
+    Eigen::Index redundant = 0;  // constraints, of which the null space has as many self-stresses
 };
 Stiffness stiffness(const System& system, const Linearisation& at);
 
-// M is never formed. By Finsler's theorem (Debreu 1952), M is positive definite iff K + ρ Φ_qᵀ Φ_q
+// The same from J alone with the number of its null vectors; empty for more than a dozen bodies, and
+// where a stiffness is neither rounding nor well above it.
+std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J, Eigen::Index idle,
+                                          Eigen::Index redundant);
+
+// For more bodies M is not formed. By Finsler's theorem (Debreu 1952), M is positive definite iff K + ρ Φ_qᵀ Φ_q
 // is for some ρ, with K the symmetric part of -∂(balance)/∂q. The eigenvalues of M next to zero are
 // the largest of its inverse, which is contained in the solution of the linearised system:
 //

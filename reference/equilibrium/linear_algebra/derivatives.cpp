@@ -15,6 +15,32 @@ using Eigen::VectorXd;
 constexpr int first_reaction = 12, the_parameter = 15;
 using Jet = ceres::Jet<double, 16>;
 
+}  // namespace
+
+// Points and directions of a body in closed form, from the step (δr / L, δπ) that `Seeds` gives it:
+// δ(A u) = δπ × A u, and δr for a point.
+template <>
+Vec3<Jet> direction(const Frame<Jet>& body, const Eigen::Vector3d& u_local) {
+    const auto& p = body.p;
+    const Eigen::Vector3d u =
+        turned(Eigen::Quaterniond(p.w().a, p.x().a, p.y().a, p.z().a), u_local);
+    Vec3<Jet> turning = u.cast<Jet>();
+    const auto& moved = body.r[0].v;  // zero but for L where the body has its step
+    const int r = moved[0] != 0 ? 0 : moved[6] != 0 ? 6 : -1;
+    if (r < 0) return turning;
+    for (int k = 0; k < 3; ++k) {
+        turning[k].v[r + 3 + (k + 1) % 3] = u[(k + 2) % 3];
+        turning[k].v[r + 3 + (k + 2) % 3] = -u[(k + 1) % 3];
+    }
+    return turning;
+}
+template <>
+Vec3<Jet> position(const Frame<Jet>& body, const Eigen::Vector3d& s_local) {
+    return body.r + direction(body, s_local);
+}
+
+namespace {
+
 // Frame of a body after a step (δr / L, δπ). A rotation by δπ changes the quaternion by ½ (δπ, 0)
 // p: δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
 struct Seeds {

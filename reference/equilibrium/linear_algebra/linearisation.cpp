@@ -198,6 +198,15 @@ Rate answer(const Factors& bordered, const VectorXd& E_rate) {
     return {solution.head(n), solution.tail(k)};
 }
 
+Rate refined_answer(const Linearisation& at, const VectorXd& E_rate) {
+    Rate rate = answer(at.bordered, E_rate);
+    if (!rate.dx.allFinite()) return rate;
+    const Rate correction = answer(at.bordered, E_rate + at.J * rate.dx + at.modes.left * rate.mu);
+    rate.dx += correction.dx;
+    rate.mu += correction.mu;
+    return rate;
+}
+
 // Augmented system with the longer side of A first, so that its null space, which becomes the
 // border, contains only the dependencies of A:
 //
@@ -223,7 +232,7 @@ VectorXd least_squares(const Sparse& A, const VectorXd& b) {
     VectorXd right = VectorXd::Zero(size);
     right.segment(tall ? 0 : first, b.size()) = -b;
     Counts counts;
-    const VectorXd solution = answer(linearise(std::move(G), nullptr, counts).bordered, right).dx;
+    const VectorXd solution = refined_answer(linearise(std::move(G), nullptr, counts), right).dx;
     return solution.segment(tall ? first : 0, A.cols());
 }
 
