@@ -22,14 +22,8 @@ using Eigen::VectorXd;
 
 constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
 constexpr double idle_push = 1e-8;       // of the disturbance: smallest load on an idle mode
-constexpr double unanswered = 1e-6;  // of the disturbance: largest remainder after the corrections
+constexpr double unanswered = 1e-3;      // of the disturbance: remainder before the last correction
 constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
-constexpr int corrections = 2;
-
-// Eighth-order central differences: for a function that varies over a tenth of L as much as over L,
-// the truncation error of this step is 1e-13, and so is the rounding error.
-constexpr double difference = 0.005;  // of L or 1 rad
-constexpr std::array weights{4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
 
 void check(const Model& model, const Equilibrium& state,
            std::span<const Disturbance> disturbances) {
@@ -78,61 +72,66 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
         disturbance);
 }
 
-// Linearised state, in ξ and units of F·L.
+// Linearised state, in ξ and units of F·L; A is that of dead moments.
 struct Tangent {
-    const Path& path;
+    const Model& model;
     const State& state;
     Prescribed prescribed;
-    VectorXd S, D, lambda;            // lambda of Φ, SI
-    MatrixXd stiffness, A;            // Σ Eᵀ K E, and A of dead moments
-    MatrixXd Z, idle;                 // resisting motions, and idle ones
-    Eigen::PartialPivLU<MatrixXd> W;  // Zᵀ (H + A) Z with the approximate Hessian
+    double energy;                                    // F·L
+    VectorXd S, D, lambda;                            // lambda of Φ, SI
+    Eigen::Matrix<double, 6, Eigen::Dynamic> stress;  // of the elements
+    MatrixXd stiffness, A, K;                         // Σ Eᵀ K E, A, H + A
+    MatrixXd Z, idle;                                 // resisting motions, and idle ones
+    Eigen::PartialPivLU<MatrixXd> W;                  // ZᵀKZ
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
 };
 
 Tangent tangent_of(const Path& path, const State& state) {
     const int n = coordinates(path.model);
-    Tangent t{path,
-              state,
-              at(path.course, state.a),
-              path.scales.coordinates(n),
-              path.scales.rows(path.model),
-              {},
-              {},
-              {},
-              {},
-              {},
-              {},
-              {}};
-    t.lambda = path.scales.energy() * t.D.cwiseProduct(state.at.lambda);
-    const MatrixXd K = energy::stiffness(path.model, t.prescribed, chart_about(state.poses));
-    t.stiffness = t.S.asDiagonal() * K * t.S.asDiagonal() / path.scales.energy();
+    Tangent t{.model = path.model,
+              .state = state,
+              .prescribed = at(path.course, state.a),
+              .energy = path.scales.energy(),
+              .S = path.scales.coordinates(n),
+              .D = path.scales.rows(path.model),
+              .lambda = {},
+              .stress = {},
+              .stiffness = {},
+              .A = {},
+              .K = {},
+              .Z = state.modes.Z(Eigen::all, state.modes.resisting()),
+              .idle = state.modes.idle_motions(),
+              .W = {},
+              .J = {}};
+    t.lambda = t.energy * t.D.cwiseProduct(state.at.lambda);
+    const Chart chart = chart_about(state.poses);
+    t.stress = stresses(path.model, t.prescribed, chart);
+    t.stiffness = t.S.asDiagonal() * energy::stiffness(path.model, t.prescribed, chart) *
+                  t.S.asDiagonal() / t.energy;
     t.A = moment_stiffness(t.prescribed, path.scales, n);
-    t.Z = state.modes.Z(Eigen::all, state.modes.resisting());
-    t.idle = state.modes.idle_motions();
-    if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * (state.H + t.A) * t.Z);
+    t.K = state.H + t.A;
+    if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * t.K * t.Z);
     t.J.setThreshold(rank_threshold);
     if (t.D.size() > 0) t.J.compute(state.at.J_t.transpose());
     return t;
 }
 
-// (H + A) t to rounding. Only the geometric part of the Hessian and the curvature of the
-// constraints are differenced, along t itself.
+// (H + A) t, the geometric part of H and the curvature of the constraints differenced along t
+// itself: where stiff elements are stressed, K loses the digits of soft motions.
 VectorXd times(const Tangent& at, const VectorXd& t) {
     VectorXd product = at.stiffness * t + at.A * t;
     const double size = largest(t);
     if (!(size > 0)) return product;
-    const double h = difference / size;
+    const double h = fine_differences.step / size;
     Chart chart = chart_about(at.state.poses);
     const auto gradient = [&](double step) -> VectorXd {
         move_to(chart, step * at.S.cwiseProduct(t));
         return at.S.cwiseProduct(
-            gradient_at_centre_stress(at.path.model, at.prescribed, chart) +
-            transposed_times(constraints(at.path.model, at.prescribed, chart).Phi_q, at.lambda));
+            geometric_gradient(at.model, at.prescribed, at.stress, at.lambda, chart));
     };
-    for (std::size_t k = 0; k < weights.size(); ++k) {
+    for (std::size_t k = 0; k < fine_differences.weights.size(); ++k) {
         const double step = h * static_cast<double>(k + 1);
-        product += weights[k] / h * (gradient(step) - gradient(-step)) / at.path.scales.energy();
+        product += fine_differences.weights[k] / h * (gradient(step) - gradient(-step)) / at.energy;
     }
     return product;
 }
@@ -144,7 +143,7 @@ struct Answer {
 };
 
 Answer answer(const Tangent& at, const Prescribed& rate) {
-    const Model& model = at.path.model;
+    const Model& model = at.model;
     const Chart chart = chart_about(at.state.poses);
     VectorXd b = gradient_rate(model, at.prescribed, rate, chart);
     VectorXd t = VectorXd::Zero(b.size());
@@ -156,19 +155,23 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
         if (!((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
             return {Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}};
     }
-    b = at.S.cwiseProduct(b) / at.path.scales.energy();
+    b = at.S.cwiseProduct(b) / at.energy;
 
-    VectorXd left = b + times(at, t);
+    VectorXd left = b + at.K * t;
     const double size = largest(b) + largest(left - b);
-    if (at.Z.cols() > 0)
-        for (int k = 0; k <= corrections; ++k) {
-            t -= at.Z * at.W.solve(at.Z.transpose() * left);
-            left = b + times(at, t);
-        }
+    const auto correct = [&] {
+        if (at.Z.cols() == 0) return;
+        const VectorXd dt = -at.Z * at.W.solve(at.Z.transpose() * left);
+        t += dt;
+        left += at.K * dt;
+    };
+    correct();
+    left = b + times(at, t);
+    const double remains = at.Z.cols() > 0 ? largest(at.Z.transpose() * left) : 0;
+    correct();
     if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}};
-    // Where the stiffness in the approximate Hessian is only its error, the iteration does not
-    // converge to a solution.
-    if (!(largest(at.Z.transpose() * left) <= unanswered * size))
+    // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
+    if (!(remains <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}};
     if (!(largest(at.idle.transpose() * left) <= idle_push * size))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}};
@@ -206,7 +209,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
                     turning_bushings(model, course),
                     std::abs(state.load),
                     unused};
-    const State here = state_at(path, state.load, state.poses);
+    const State here = state_at(path, state.load, state.poses, fine_differences);
     if (!here.at.left.allFinite() || !here.at.Phi.allFinite() || !here.H.allFinite())
         return fail(Outcome::not_finite, "the state has no finite potential");
     if (!within_laws(model, path.turning, state.poses))

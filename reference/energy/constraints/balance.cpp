@@ -19,49 +19,39 @@ using Eigen::VectorXd;
 
 // of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
 constexpr double rank_threshold = 1e-9;
-constexpr double difference = 1e-5;      // of ξ, central
 constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
 
-// Adjacency: bodies that an element or a constraint connects to each body, and the body itself,
-// without ground.
-std::vector<std::vector<BodyId>> neighbours(const Model& model) {
-    std::vector<std::vector<BodyId>> of(model.bodies.size());
-    for (std::size_t b = 0; b < of.size(); ++b) of[b].push_back(static_cast<BodyId>(b));
-    const auto connect = [&](BodyId a, BodyId b) {
-        if (a == ground || b == ground || a == b) return;
-        auto& list = of[static_cast<std::size_t>(a)];
-        if (std::ranges::find(list, b) == list.end()) list.push_back(b);
-    };
-    const auto connect_all = [&](const auto& kind) {
-        each_body(kind, [&](BodyId a) { each_body(kind, [&](BodyId b) { connect(a, b); }); });
-    };
-    for (const auto& elastic : model.elastics) connect_all(elastic.kind);
-    for (const auto& constraint : model.constraints) connect_all(constraint.kind);
-    return of;
-}
-
-// Groups of bodies without a common neighbour (graph colouring, Curtis, Powell & Reid 1974): when
-// they move together, each gradient entry depends on only one of them. A chain of any length takes
-// three groups.
-std::vector<std::vector<BodyId>> groups_apart(
-    const std::vector<std::vector<BodyId>>& neighbours_of) {
-    std::vector<std::vector<BodyId>> groups;
-    std::vector<std::vector<bool>> touched;  // neighbours of the bodies of each group
-    for (std::size_t b = 0; b < neighbours_of.size(); ++b) {
-        std::size_t g = 0;
-        const auto apart = [&](BodyId other) {
-            return !touched[g][static_cast<std::size_t>(other)];
-        };
-        while (g < groups.size() && !std::ranges::all_of(neighbours_of[b], apart)) ++g;
-        if (g == groups.size()) {
-            groups.emplace_back();
-            touched.emplace_back(neighbours_of.size(), false);
+// Adds to H the derivatives of the gradient of one part of V + λᵀΦ by the coordinates of its
+// bodies: `add` adds that gradient to its argument. The chart is at its centre.
+template <class Part, class Add>
+void add_differences(const Part& part, const Add& add, const Differences& by, const VectorXd& S,
+                     Chart& chart, MatrixXd& H) {
+    std::vector<BodyId> bodies;
+    each_body(part, [&](BodyId b) {
+        if (b != ground && std::ranges::find(bodies, b) == bodies.end()) bodies.push_back(b);
+    });
+    VectorXd g = VectorXd::Zero(H.rows()), change = g;
+    for (const BodyId b : bodies) {
+        Placement& body = chart.placements[static_cast<std::size_t>(b)];
+        const Placement centre = body;
+        for (int axis = 0; axis < 6; ++axis) {
+            for (const BodyId other : bodies) change.segment<6>(6 * other).setZero();
+            for (std::size_t k = 0; k < by.weights.size(); ++k)
+                for (const double side : {+1.0, -1.0}) {
+                    const double xi = side * static_cast<double>(k + 1) * by.step;
+                    move_to(body, Vector6(S[6 * b + axis] * xi * Vector6::Unit(axis)));
+                    for (const BodyId other : bodies) g.segment<6>(6 * other).setZero();
+                    add(g);
+                    for (const BodyId other : bodies)
+                        change.segment<6>(6 * other) +=
+                            side * by.weights[k] / by.step * g.segment<6>(6 * other);
+                }
+            for (const BodyId other : bodies)
+                H.block<6, 1>(6 * other, 6 * b + axis) +=
+                    change.segment<6>(6 * other) / S[6 * b + axis];
         }
-        groups[g].push_back(static_cast<BodyId>(b));
-        for (const BodyId other : neighbours_of[b])
-            touched[g][static_cast<std::size_t>(other)] = true;
+        body = centre;
     }
-    return groups;
 }
 
 }  // namespace
@@ -104,41 +94,56 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
                    constraints(model, prescribed, chart));
 }
 
-int hessian_evaluations(const Model& model) {
-    return 12 * static_cast<int>(groups_apart(neighbours(model)).size());
-}
-
 MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                 const std::vector<Pose>& centre, const VectorXd& lambda) {
+                 const std::vector<Pose>& centre, const VectorXd& lambda, const Differences& by) {
     const int n = coordinates(model);
     const VectorXd S = scales.coordinates(n);
     const VectorXd lambda_D = scales.rows(model).cwiseProduct(lambda) * scales.energy();  // SI
     Chart chart = chart_about(centre);
-    const auto gradient_at = [&](const std::vector<BodyId>& bodies, int axis,
-                                 double xi) -> VectorXd {
-        VectorXd x = VectorXd::Zero(n);
-        for (const BodyId b : bodies) x[6 * b + axis] = S[6 * b + axis] * xi;
-        move_to(chart, x);
-        return gradient_at_centre_stress(model, prescribed, chart) +
-               transposed_times(constraints(model, prescribed, chart).Phi_q, lambda_D);
-    };
-    const auto neighbours_of = neighbours(model);
+    const auto stress = stresses(model, prescribed, chart);
     MatrixXd geometric = MatrixXd::Zero(n, n);
-    for (const auto& bodies : groups_apart(neighbours_of)) {
-        for (int axis = 0; axis < 6; ++axis) {
-            const VectorXd change =
-                (gradient_at(bodies, axis, difference) - gradient_at(bodies, axis, -difference)) /
-                (2 * difference);
-            for (const BodyId b : bodies)
-                for (const BodyId other : neighbours_of[static_cast<std::size_t>(b)])
-                    geometric.block<6, 1>(6 * other, 6 * b + axis) =
-                        change.segment<6>(6 * other) / S[6 * b + axis];
-        }
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const ElasticKind& kind = model.elastics[k].kind;
+        const Vector6 sigma = stress.col(static_cast<Eigen::Index>(k));
+        if (sigma.isZero(0)) continue;
+        add_differences(
+            kind, [&](VectorXd& g) { add_gradient(kind, sigma, chart, g); }, by, S, chart,
+            geometric);
     }
-    move_to(chart, VectorXd::Zero(n));
+    for (const auto& force : prescribed.forces)
+        add_differences(
+            LoadKind(force), [&](VectorXd& g) { add_gradient(force, chart, g); }, by, S, chart,
+            geometric);
+    int row = 0;
+    for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+        const ConstraintKind& kind = model.constraints[k].kind;
+        const double offset = prescribed.offset[static_cast<Eigen::Index>(k)];
+        const double* of_rows = lambda_D.data() + row;
+        add_differences(
+            kind, [&](VectorXd& g) { add_gradient(kind, offset, chart, of_rows, g); }, by, S, chart,
+            geometric);
+        row += rows(kind);
+    }
     const MatrixXd H =
         stiffness(model, prescribed, chart) + 0.5 * (geometric + geometric.transpose());
     return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
+}
+
+VectorXd geometric_gradient(const Model& model, const Prescribed& prescribed,
+                            const Eigen::Matrix<double, 6, Eigen::Dynamic>& stress,
+                            const VectorXd& lambda, const Chart& chart) {
+    VectorXd g = VectorXd::Zero(coordinates(model));
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        add_gradient(model.elastics[k].kind, stress.col(static_cast<Eigen::Index>(k)), chart, g);
+    for (const auto& force : prescribed.forces) add_gradient(force, chart, g);
+    int row = 0;
+    for (std::size_t k = 0; k < model.constraints.size(); ++k) {
+        const ConstraintKind& kind = model.constraints[k].kind;
+        add_gradient(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart,
+                     lambda.data() + row, g);
+        row += rows(kind);
+    }
+    return g;
 }
 
 // With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with

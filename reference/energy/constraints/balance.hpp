@@ -4,6 +4,8 @@
 // All in scaled coordinates ξ (x = S ξ), scaled constraints D Φ, and energies in units of F·L.
 #pragma once
 
+#include <span>
+
 #include "reference/energy/constraints/constraints.hpp"
 #include "reference/energy/constraints/scales.hpp"
 #include "reference/energy/potential/potential.hpp"
@@ -28,12 +30,35 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
 
+// Central differences of a gradient g: g' = Σ_k w_k (g(k h) - g(-k h)) / h, k from 1.
+struct Differences {
+    double step;  // h, of ξ
+    std::span<const double> weights;
+};
+
+// Second order, error 1e-10.
+inline constexpr double second_order[] = {0.5};
+inline constexpr Differences quick_differences{1e-5, second_order};
+
+// Eighth order: for a function that varies over a tenth of L as much as over L, the truncation
+// error of this step is 1e-13, and so is the rounding error.
+inline constexpr double eighth_order[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+inline constexpr Differences fine_differences{0.005, eighth_order};
+
 // Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly, the rest by differences of
-// hand-derived gradients at constant stress and λ. It is used for the metric, the predictor and
-// stability; no result depends on its last digits.
+// hand-derived gradients at constant stress and λ, one element or constraint after the other. By
+// quick differences it serves as the metric, the predictor and for stability; no result depends on
+// its last digits.
 Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                        const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
-int hessian_evaluations(const Model& model);  // number of gradient evaluations for one Hessian
+                        const std::vector<Pose>& centre, const Eigen::VectorXd& lambda,
+                        const Differences& by = quick_differences);
+// The gradient that is differenced [6nb]: of elements at a constant `stress`, of the dead forces,
+// and of λᵀΦ, `lambda` of Φ in SI.
+Eigen::VectorXd geometric_gradient(const Model& model, const Prescribed& prescribed,
+                                   const Eigen::Matrix<double, 6, Eigen::Dynamic>& stress,
+                                   const Eigen::VectorXd& lambda, const Chart& chart);
+// An element is evaluated at most this often for one Hessian.
+inline constexpr int hessian_evaluations = 24;
 
 // Unsymmetric stiffness A of a dead moment: with a small rotation φ of its body, the balance of
 // moments changes by ½ φ × m more than the gradient of the chart's potential does. In ξ

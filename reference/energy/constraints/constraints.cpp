@@ -163,6 +163,18 @@ ConstraintValues constraints(const Model& model, const Prescribed& prescribed, c
     return values;
 }
 
+void add_gradient(const ConstraintKind& kind, double offset, const Chart& chart,
+                  const double* lambda, VectorXd& g) {
+    ConstraintValues values{VectorXd::Zero(rows(kind)), VectorXd::Zero(rows(kind)), {}};
+    values.Phi_q.slopes.reserve(6);
+    std::visit([&](const auto& c) { fill(c, chart, Rows{values, 0, offset}); }, kind);
+    for (const auto& slope : values.Phi_q.slopes) {
+        g.segment<3>(6 * slope.body) += lambda[slope.row] * slope.dr;
+        g.segment<3>(6 * slope.body + 3) +=
+            lambda[slope.row] * (chart[slope.body].J.transpose() * slope.dpi);
+    }
+}
+
 ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed,
                                  const Prescribed& rate, const Chart& chart) {
     ConstraintValues rates = zero_values(model);

@@ -75,10 +75,12 @@ double drive_size(const Model& model, const Prescribed& prescribed, const Chart&
     if (J_t.cols() == 0 || K.rows() == 0 || !J_t.allFinite() || !K.allFinite() ||
         !values.Phi.allFinite())
         return 0;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr, of_J;
     qr.setThreshold(rank_threshold);
     qr.compute(J_t);
-    const VectorXd p = qr.pseudoInverse().transpose() * -D.cwiseProduct(values.Phi);
+    of_J.setThreshold(rank_threshold);
+    of_J.compute(J_t.transpose());
+    const VectorXd p = of_J.solve(-D.cwiseProduct(values.Phi));
     const MatrixXd Q = qr.householderQ(), Z = Q.rightCols(Q.cols() - qr.rank());
     VectorXd dxi = p;
     if (Z.cols() > 0) {

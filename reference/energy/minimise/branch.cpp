@@ -29,6 +29,7 @@
 
 #include "models/kinds.hpp"
 #include "reference/energy/minimise/minimise.hpp"
+#include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
 namespace {
@@ -52,6 +53,7 @@ constexpr int internal_points = 2000;    // between two requested values
 constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
 constexpr double largest_step = 0.1;     // of L or 1 rad, by the tangent
 constexpr double negligible = 1e-6;      // of L or 1 rad
+constexpr double short_step = 0.01;      // of L or 1 rad: the Hessian hardly changes
 constexpr double idle_push = 1e-8;       // of F or F·L: smallest load on an idle mode
 constexpr double spent = 0.01;           // of its first stiffness: the mode will soon be unstable
 
@@ -175,12 +177,51 @@ Attempt lost(Attempt attempt, const char* why) {
     return attempt;
 }
 
+// Start of the minimisation: poses, and the Hessian there for a short step.
+struct Predicted {
+    VectorXd xi;
+    std::optional<MatrixXd> H;
+};
+
+// Without an equilibrium before the last, t h. With it, ξ is the cubic t h + c h² + d h³ through both
+// equilibria and their tangents t_0 and t, without idle motions, and H is linear. With D from the one before to the last
+// and ξ_0 the increment back,
+//
+//   A = ξ_0 + D t,   B = D (t_0 - t),   D² c = 3 A + B,   D³ d = 2 A + B
+//
+// t_0 in the chart of the last, where a rotation φ changes by J⁻¹(φ) δπ. At a kink both are wrong:
+// they are used where they change little.
+Predicted predicted(const Path& path, const Continuation& continuation, const VectorXd& t,
+                    double h) {
+    constexpr double little = 0.5, hardly = 0.1;  // of t h, of H
+    const State &last = continuation.state, &before = continuation.before;
+    Predicted start{t * h, {}};
+    const bool is_short = largest(start.xi) <= short_step;
+    if (is_short) start.H = last.H;
+    if (continuation.tangent_before.size() == 0 || last.a == before.a) return start;
+    const double D = last.a - before.a, share = h / D;
+    const VectorXd back = scaled_increment(path, last.poses, before.poses);
+    VectorXd t_0 = continuation.tangent_before;
+    for (Eigen::Index b = 3; b < t_0.size(); b += 6)
+        t_0.segment<3>(b) = (inverse_turn_jacobian(back.segment<3>(b)) * t_0.segment<3>(b)).eval();
+    const VectorXd A = back + D * t, B = D * (t_0 - t);
+    VectorXd bent = share * share * (3 * A + B + share * (2 * A + B));
+    const MatrixXd idle = last.modes.idle_motions();
+    bent -= idle * (idle.transpose() * bent).eval();
+    if (largest(bent) < little * largest(start.xi)) start.xi += bent;
+    if (is_short) {
+        const MatrixXd change = share * (last.H - before.H);
+        if (change.norm() <= hardly * last.H.norm()) *start.H += change;
+    }
+    return start;
+}
+
 // One continuation step; `expected` is the predictor along the tangent.
-Attempt step(const Path& path, const Continuation& continuation, double a,
-             const VectorXd& expected) {
+Attempt step(const Path& path, const Continuation& continuation, double a, const VectorXd& expected,
+             const Predicted& start) {
     const State& from = continuation.state;
-    Attempt attempt =
-        minimum_from(path, a, moved(path, from.poses, expected), from.modes.idle_motions());
+    Attempt attempt = minimum_from(path, a, moved(path, from.poses, start.xi),
+                                   from.modes.idle_motions(), start.H ? &*start.H : nullptr);
     const State& to = attempt.state;
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = resisted_increment(path, from, to);
@@ -223,15 +264,27 @@ Continuation start_continuation(const Path& path, const State& state) {
     return continuation;
 }
 
-State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
-    const Prescribed prescribed = at(path.course, a);
-    State state{.a = a, .poses = poses, .at = {}, .H = {}, .modes = {}};
-    state.at = balance(path.model, prescribed, path.scales, chart_about(poses));
-    state.H = hessian(path.model, prescribed, path.scales, poses, state.at.lambda);
-    state.modes = modes_of(state.at, state.H);
-    path.counts.evaluations += 1 + hessian_evaluations(path.model);
+namespace {
+
+Balance balance_at(const Path& path, double a, const std::vector<Pose>& poses) {
+    path.counts.evaluations += 1;
     path.counts.factorisations += 1;
-    return state;
+    return balance(path.model, at(path.course, a), path.scales, chart_about(poses));
+}
+
+State state_with(const Path& path, double a, const std::vector<Pose>& poses, const MatrixXd& H) {
+    const Balance at = balance_at(path, a, poses);
+    return {a, poses, at, H, modes_of(at, H)};
+}
+
+}  // namespace
+
+State state_at(const Path& path, double a, const std::vector<Pose>& poses, const Differences& by) {
+    Balance at = balance_at(path, a, poses);
+    MatrixXd H = hessian(path.model, energy::at(path.course, a), path.scales, poses, at.lambda, by);
+    path.counts.evaluations += hessian_evaluations;
+    Modes modes = modes_of(at, H);
+    return {a, poses, std::move(at), std::move(H), std::move(modes)};
 }
 
 // p = -J⁺ Φ,   y = -W⁻¹ Zᵀ (left + H p)
@@ -276,8 +329,12 @@ Attempt corrected(const Path& path, State state) {
         const VectorXd ahead =
             newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);
         const double far = largest(ahead);
-        if (far <= last_correction || (k == corrections && far <= known))
+        if (far <= last_correction) {
+            // The balance stays that of the poses before: its change is of second order.
+            state.poses = moved(path, state.poses, ahead);
             return {std::move(state), {}};
+        }
+        if (k == corrections && far <= known) return {std::move(state), {}};
         if (k == corrections || !(far <= largest_step))
             return {std::move(state),
                     Failure{Outcome::iteration_limit,
@@ -291,13 +348,13 @@ Attempt corrected(const Path& path, State state) {
 }  // namespace
 
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const MatrixXd& idle) {
+                     const MatrixXd& idle, const MatrixXd* nearby) {
     const Options& options = path.options;
     const Prescribed prescribed = at(path.course, a);
     const int per_chart =
         std::max(10, options.evaluation_limit / std::max(1, options.recentre_limit));
     long evaluations = 0;
-    State state = state_at(path, a, start);
+    State state = nearby ? state_with(path, a, start, *nearby) : state_at(path, a, start);
     for (int i = 0; i < options.recentre_limit && evaluations < options.evaluation_limit; ++i) {
         const Minimisation m = minimise(path.model, prescribed, path.scales, state.poses, state.at,
                                         state.H, state.modes, idle, options.tolerance, per_chart);
@@ -336,12 +393,14 @@ std::optional<Failure> advance(const Path& path, Continuation& continuation, dou
         if (!std::isfinite(largest(t))) return Failure{Outcome::not_finite, not_finite};
         if (continuation.record.samples.size() == 1) continuation.first_tangent = largest(t);
         const double a = next_value(path, continuation, t, to), h = a - state.a;
-        const Attempt attempt = step(path, continuation, a, t * h);
+        Attempt attempt = step(path, continuation, a, t * h, predicted(path, continuation, t, h));
         if (!attempt.failure) {
             continuation.next_step =
                 std::max(a == to ? continuation.next_step : 0.0, 2 * std::abs(h));
             halved = 0;
-            state = attempt.state;
+            continuation.before = std::move(state);
+            continuation.tangent_before = t;
+            state = std::move(attempt.state);
             continuation.record.add(a, state.modes);
             continue;
         }

@@ -48,12 +48,15 @@ struct Continuation {
     double next_step;          // |step| to try next
     StiffnessRecord record;    // stiffnesses of the equilibria so far
     double first_tangent = 0;  // largest entry of the tangent at the start
+    State before = {};  // the equilibrium before the last, and its tangent; empty at the start
+    Eigen::VectorXd tangent_before = {};
 };
 
 Continuation start_continuation(const Path& path, const State& state);
 
 // Poses, balance, Hessian and modes at parameter a; the poses need not be an equilibrium.
-State state_at(const Path& path, double a, const std::vector<Pose>& poses);
+State state_at(const Path& path, double a, const std::vector<Pose>& poses,
+               const Differences& by = quick_differences);
 
 // Whether the state satisfies the first-order conditions of the constrained minimum, to
 // options.tolerance.
@@ -65,8 +68,10 @@ struct Attempt {
     State state;
     std::optional<Failure> failure;
 };
+//
+// `nearby`: the Hessian at a state close to `start`, which serves as the metric of the first chart.
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const Eigen::MatrixXd& idle);
+                     const Eigen::MatrixXd& idle, const Eigen::MatrixXd* nearby = nullptr);
 
 // Poses after the increment ξ from `from`.
 std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);

@@ -30,15 +30,17 @@ Chart chart_about(const std::vector<Pose>& centre) {
     return chart;
 }
 
+void move_to(Placement& body, const Vector6& x) {
+    body.dr = x.head<3>();
+    body.phi = x.tail<3>();
+    body.turn = turn_minus_one(body.phi);
+    body.dp = quaternion_minus_one(body.phi);
+    body.J = turn_jacobian(body.phi);
+}
+
 void move_to(Chart& chart, const VectorXd& x) {
-    for (std::size_t b = 0; b < chart.placements.size(); ++b) {
-        Placement& body = chart.placements[b];
-        body.dr = x.segment<3>(6 * static_cast<int>(b));
-        body.phi = x.segment<3>(6 * static_cast<int>(b) + 3);
-        body.turn = turn_minus_one(body.phi);
-        body.dp = quaternion_minus_one(body.phi);
-        body.J = turn_jacobian(body.phi);
-    }
+    for (std::size_t b = 0; b < chart.placements.size(); ++b)
+        move_to(chart.placements[b], x.segment<6>(6 * static_cast<int>(b)));
 }
 
 std::vector<Pose> poses(const Chart& chart) {

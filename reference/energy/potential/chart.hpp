@@ -33,7 +33,8 @@ struct Chart {
 std::vector<Pose> design_poses(const Model& model);
 Chart chart_about(const std::vector<Pose>& centre);
 void move_to(Chart& chart, const Eigen::VectorXd& x);  // x [6nb]
-std::vector<Pose> poses(const Chart& chart);           // current poses of the bodies
+void move_to(Placement& body, const Vector6& x);
+std::vector<Pose> poses(const Chart& chart);  // current poses of the bodies
 Eigen::VectorXd increment(const std::vector<Pose>& from,
                           const std::vector<Pose>& to);  // x of `to` in the chart about `from`
 

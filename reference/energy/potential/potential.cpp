@@ -216,15 +216,26 @@ VectorXd gradient_rate(const Model& model, const Prescribed& prescribed, const P
     return g;
 }
 
-VectorXd gradient_at_centre_stress(const Model& model, const Prescribed& prescribed,
-                                   const Chart& chart) {
-    VectorXd g = VectorXd::Zero(coordinates(model));
-    for_each_element(model, prescribed, chart,
-                     [&]<int N>(int, const Element<N>& e) { add_gradient<N>(e, e.stress_c, g); });
-    add_forces(prescribed, chart, g);
-    to_chart(chart, g);
-    add_moments(prescribed, chart, g);
-    return g;
+void add_gradient(const ElasticKind& element, const Vector6& stress, const Chart& chart,
+                  VectorXd& g) {
+    const auto add = [&]<int N>(const Deformation<N>& e) {
+        const auto add_to = [&](BodyId body, const Matrix<double, N, 6>& E) {
+            if (body == ground) return;
+            const Vector6 of_body = E.transpose() * stress.head<N>();
+            g.segment<3>(6 * body) += of_body.head<3>();
+            g.segment<3>(6 * body + 3) += chart[body].J.transpose() * of_body.tail<3>();
+        };
+        add_to(e.i, e.E_i);
+        add_to(e.j, e.E_j);
+    };
+    std::visit([&](const auto& kind) { add(deformation(kind, chart)); }, element);
+}
+
+void add_gradient(const DeadForce& force, const Chart& chart, VectorXd& g) {
+    const Placement& body = chart[force.at.body];
+    const Vector3d lever = motion(body, force.at.s_local).lever;
+    g.segment<3>(6 * force.at.body) -= force.f;
+    g.segment<3>(6 * force.at.body + 3) -= body.J.transpose() * lever.cross(force.f);
 }
 
 MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart) {

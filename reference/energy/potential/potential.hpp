@@ -27,11 +27,12 @@ Potential potential(const Model& model, const Prescribed& prescribed, const Char
 Eigen::VectorXd gradient_rate(const Model& model, const Prescribed& prescribed,
                               const Prescribed& rate, const Chart& chart);
 
-// Gradient with every ∂U/∂e kept at its value at the centre: Σ E(x)ᵀ (∂U/∂e)_c - ... Its derivative
-// at the centre is the geometric part of the Hessian, due to the stress of the elements; the rest
-// is `stiffness`.
-Eigen::VectorXd gradient_at_centre_stress(const Model& model, const Prescribed& prescribed,
-                                          const Chart& chart);
+// Adds to g the gradient E(x)ᵀ σ of an element at a constant stress σ (row 0 of springs), and that
+// of a force. With σ = (∂U/∂e) at the centre, the derivatives of both there are the geometric part
+// of the Hessian; the rest is `stiffness`.
+void add_gradient(const ElasticKind& element, const Vector6& stress, const Chart& chart,
+                  Eigen::VectorXd& g);
+void add_gradient(const DeadForce& force, const Chart& chart, Eigen::VectorXd& g);
 
 // Σ Eᵀ K E at the centre [6nb × 6nb], K = s ∂²u/∂e².
 Eigen::MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart);
