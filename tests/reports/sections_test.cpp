@@ -91,8 +91,9 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
 
 TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
     json result = sample_result();
-    for (const char* part : {"convergence", "trade", "precision", "drawing", "orders", "judgement",
-                             "findings", "forces", "characteristics", "rate_errors"})
+    for (const char* part :
+         {"convergence", "trade", "precision", "drawing", "orders", "judgement", "findings",
+          "forces", "largest_forces", "characteristics", "rate_errors"})
         result["scenes"][0].erase(part);
     for (auto& branch : result["scenes"][0]["branches"])
         for (const char* part : {"deviation", "profiles", "reference_uncertainty", "cross_check"})
