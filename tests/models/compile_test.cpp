@@ -11,6 +11,7 @@
 #include <random>
 
 #include "elastocheck/read_scene.hpp"
+#include "models/kinds.hpp"
 #include "models/lowering.hpp"
 
 namespace elastocheck {
@@ -513,18 +514,13 @@ std::string body_name(const Owner& owner, BodyId body) {
 
 template <class Owner, class Part>
 std::string ends(const Owner& owner, const Part& part) {
-    return std::visit(
-        [&](const auto& s) {
-            return body_name(owner, s.i.body) + "-" + body_name(owner, s.j.body);
-        },
-        part);
+    const auto [i, j] = elastocheck::ends(part);
+    return body_name(owner, i) + "-" + body_name(owner, j);
 }
 
 template <class Owner>
 std::string target(const Owner& owner, const Load& load) {
-    if (const auto* force = std::get_if<DeadForce>(&load.kind))
-        return body_name(owner, force->at.body);
-    return body_name(owner, std::get<DeadMoment>(load.kind).body);
+    return body_name(owner, body_of(load.kind));
 }
 
 template <class List>
@@ -633,7 +629,8 @@ std::string kept_by_the_rule(const Scene& scene) {
     };
     std::vector<Edge> edges;
     const auto connect = [&](const auto& kind, bool loaded) {
-        std::visit([&](const auto& s) { edges.push_back({s.i.body, s.j.body, loaded}); }, kind);
+        const auto [i, j] = elastocheck::ends(kind);
+        edges.push_back({i, j, loaded});
     };
     const auto at = [&](const Point& p) -> Vector3d { return origin(scene, p.body) + p.s_local; };
     for (const auto& joint : scene.joints) {
@@ -659,11 +656,8 @@ std::string kept_by_the_rule(const Scene& scene) {
     for (const auto& probe : scene.probes)
         is_output[static_cast<std::size_t>(probe.at.body)] = true;
     const auto mark = [&](const Load& load) {
-        if (const auto* force = std::get_if<DeadForce>(&load.kind)) {
-            if (force->f.norm() > 0) is_loaded[static_cast<std::size_t>(force->at.body)] = true;
-        } else if (const auto& moment = std::get<DeadMoment>(load.kind); moment.m.norm() > 0) {
-            is_loaded[static_cast<std::size_t>(moment.body)] = true;
-        }
+        if (load_vector(load.kind).norm() > 0)
+            is_loaded[static_cast<std::size_t>(body_of(load.kind))] = true;
     };
     for (const auto& load : scene.static_loads) mark(load);
     for (const auto& branch : scene.branches)
