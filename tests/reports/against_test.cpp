@@ -11,7 +11,7 @@
 #include "reports/document/document.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/sections.hpp"
-#include "tests/support/command.hpp"
+#include "tests/reports/command.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -157,29 +157,26 @@ TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
     EXPECT_GT(section->tables[1].rows.size(), 5u);
     EXPECT_FALSE(against_section({&base(), "", &file}));
     EXPECT_EQ(sections_of({&with, "", &file}).front().id, "against") << "the page begins with it";
-    EXPECT_TRUE(support::contains(against_sentence(with), "1 number of the scene and "))
+    EXPECT_TRUE(contains(against_sentence(with), "1 number of the scene and "))
         << against_sentence(with);
-    EXPECT_TRUE(support::contains(
+    EXPECT_TRUE(contains(
         against_sentence(with),
         "differ, most " + with["against"]["figures"][0]["output"].get<std::string>() + " ["))
         << against_sentence(with);
 }
 
 TEST(Against, TheCommandComparesTwoScenesAndHasNoFail) {
-    const support::Folder folder;
+    const Folder folder;
     json result = document("x", provenance());
     result["scenes"] = {base(), variant()};
     const std::string in = "env -u CI " ELASTOCHECK_COMMAND " report --from " +
                            folder.write("two.json", result.dump()) + " --against -o " +
                            (folder.path / "out").string();
-    const auto said = support::says(in);
-    EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_TRUE(support::contains(said.out, "differ, most ")) << said.out;
-    EXPECT_FALSE(support::contains(said.out + said.err, "ail")) << said.out;
-    EXPECT_TRUE(support::contains(support::text_of(folder.path / "out/report.html"),
-                                  "Differences of Higher rack"));
-    EXPECT_TRUE(support::contains(support::text_of(folder.path / "out/report.html"),
-                                  "<h1>Higher rack against "));
+    const auto said = expect_said(support::says(in), 0);
+    EXPECT_TRUE(contains(said.out, "differ, most ")) << said.out;
+    EXPECT_FALSE(contains(said.out + said.err, "ail")) << said.out;
+    EXPECT_TRUE(contains(text_of(folder.path / "out/report.html"), "Differences of Higher rack"));
+    EXPECT_TRUE(contains(text_of(folder.path / "out/report.html"), "<h1>Higher rack against "));
     result["scenes"] = {base()};
     folder.write("two.json", result.dump());
     EXPECT_EQ(support::says(in).code, 2) << "one scene has nothing to be compared with";

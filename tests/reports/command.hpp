@@ -9,11 +9,24 @@
 
 namespace elastocheck {
 
+using support::contains;
+using support::expect_said;
+using support::Folder;
+using support::Parts;
+using support::Said;
+using support::text_of;
+
 inline const std::string scenes = ELASTOCHECK_SCENES;
 
 // Runs `elastocheck ARGUMENTS` as in an interactive session: CI is unset.
 inline support::Said elastocheck_says(const std::string& arguments) {
     return support::says("env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " " + arguments);
+}
+
+// The claim about such a run: its exit code and parts of what it says.
+inline Said expect_says(const std::string& arguments, int code, const Parts& parts = {},
+                        std::source_location at = std::source_location::current()) {
+    return expect_said(elastocheck_says(arguments), code, parts, at);
 }
 
 inline std::vector<std::string> parts_of(const std::string& text, char between) {

@@ -7,17 +7,10 @@
 
 #include "tests/reports/command.hpp"
 
+namespace elastocheck {
 namespace {
 
-namespace support = elastocheck::support;
-using elastocheck::elastocheck_says;
-using elastocheck::parts_of;
-using elastocheck::scenes;
 using nlohmann::json;
-using support::contains;
-using support::Folder;
-using support::Said;
-using support::text_of;
 
 const std::string scene = scenes + "/single_bushing.yaml";
 
@@ -25,8 +18,7 @@ const std::string scene = scenes + "/single_bushing.yaml";
 
 // The single document on standard output.
 json document(const std::string& arguments, int code = 0) {
-    const Said said = elastocheck_says(arguments + " --json");
-    EXPECT_EQ(said.code, code) << arguments << ": " << said.err;
+    const Said said = expect_says(arguments + " --json", code);
     json parsed = json::parse(said.out, nullptr, false);
     EXPECT_FALSE(parsed.is_discarded()) << arguments << ": " << said.out.substr(0, 300);
     return parsed;
@@ -55,8 +47,7 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
 TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
-    const Said said = elastocheck_says("compare " + scene + " --steps 4 --json -o " + out);
-    EXPECT_EQ(said.code, 0);
+    const Said said = expect_says("compare " + scene + " --steps 4 --json -o " + out, 0);
     EXPECT_EQ(said.out, text_of(out + "/result.json"));
     EXPECT_TRUE(contains(said.err, "Written: ")) << said.err;
     const std::string csv = (folder.path / "c.csv").string();
@@ -68,7 +59,7 @@ TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
 TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
     const json part = document(
         "solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
-    const auto cells = elastocheck::cells_of(
+    const auto cells = cells_of(
         elastocheck_says("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")
             .out);
     std::size_t row = 1;
@@ -106,8 +97,7 @@ TEST(Json, OfInspectSaysWhatTheTextSays) {
 TEST(Json, KeepsTheExitCodeAndSaysErrorsAsEver) {
     const Folder folder;
     const Said bad =
-        elastocheck_says("inspect " + folder.write("bad.yaml", "elastocheck: 1\n") + " --json");
-    EXPECT_EQ(bad.code, 2);
+        expect_says("inspect " + folder.write("bad.yaml", "elastocheck: 1\n") + " --json", 2);
     EXPECT_EQ(bad.out, "");
     EXPECT_TRUE(contains(bad.err, "bad.yaml")) << bad.err;
 
@@ -142,7 +132,7 @@ TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
     EXPECT_EQ(first["at"]["unit"], "N");
     EXPECT_GT(std::abs(first["measured"].get<double>() - first["accepted"].get<double>()),
               first["noticeable"]);
-    EXPECT_EQ(elastocheck_says("gate " + own + " --accept --reason x --json").code, 2);
+    expect_says("gate " + own + " --accept --reason x --json", 2);
     // Its annotations are not part of the document.
     const Said hub = support::says("env -u CI GITHUB_ACTIONS=true " ELASTOCHECK_COMMAND " gate " +
                                    own + " --set bushings.mount.rates.x=3e5 --json");
@@ -159,9 +149,10 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
           "converge S --output=-", "trade S -o -", "report S -o -", "report --from - -o out",
           "gate S --junit -", "gate S --summary=-", "gate S --baseline -", "inspect -"}) {
         const std::string given = std::regex_replace(arguments, std::regex("\\bS\\b"), scene);
-        const Said said = support::says("cd " + folder.path.string() +
-                                        " && env -u CI " ELASTOCHECK_COMMAND " " + given);
-        EXPECT_EQ(said.code, 2) << given;
+        const Said said =
+            expect_said(support::says("cd " + folder.path.string() +
+                                      " && env -u CI " ELASTOCHECK_COMMAND " " + given),
+                        2);
         EXPECT_EQ(said.out, "") << given;
         EXPECT_TRUE(contains(said.err, "'-' is no file name")) << given << ": " << said.err;
     }
@@ -179,13 +170,10 @@ TEST(Numbers, AreReadWholeWithAPointAndInTheirRange) {
           {"-inf", "'-inf' is not a number\n"},
           {"1e999", "'1e999' is not a number\n"},
           {"++1", "'++1' is not a number\n"},
-          {"-120 --turned 181", "--turned: '181' is not a number from 0 to 180\n"}}) {
-        const auto said = elastocheck_says(asks + words);
-        EXPECT_EQ(said.code, 2) << words;
-        EXPECT_TRUE(contains(said.err, says)) << words << ": " << said.err;
-    }
+          {"-120 --turned 181", "--turned: '181' is not a number from 0 to 180\n"}})
+        expect_says(asks + words, 2, {.err = {says}});
     EXPECT_EQ(elastocheck_says(asks + "+120.5").out, elastocheck_says(asks + "120.5").out);
-    EXPECT_EQ(elastocheck_says(asks + "+120.5").code, 0);
+    expect_says(asks + "+120.5", 0);
 }
 
 TEST(Version, NamesTheCommitAndEveryLibrary) {
@@ -201,9 +189,9 @@ TEST(Version, NamesTheCommitAndEveryLibrary) {
 
 // Commit recorded by the build for the sources in a folder.
 std::string commit_of(const std::string& folder) {
-    const Said said = support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder +
-                                    "/out -P " + folder + "/reports/files/build_info.cmake");
-    EXPECT_EQ(said.code, 0) << said.err;
+    expect_said(support::says("cmake -D SOURCE=" + folder + " -D OUTPUT=" + folder + "/out -P " +
+                              folder + "/reports/files/build_info.cmake"),
+                0);
     std::smatch found;
     const std::string text = text_of(folder + "/out");
     return std::regex_search(text, found, std::regex("commit = \"([^\"]*)\"")) ? found[1].str()
@@ -334,10 +322,9 @@ TEST(Completion, OfEveryShellHasEveryCommandAndOption) {
         }
         EXPECT_FALSE(std::regex_search(text, std::regex("completion['(): ]*Print"))) << shell;
         if (support::says(shell + " --version").code != 0) continue;
-        const Said said = support::says(shell + " -n " + folder.write(shell, text));
-        EXPECT_EQ(said.code, 0) << shell << ": " << said.err;
+        expect_said(support::says(shell + " -n " + folder.write(shell, text)), 0);
     }
-    EXPECT_EQ(elastocheck_says("completion csh").code, 2);
+    expect_says("completion csh", 2);
     EXPECT_FALSE(contains(help, "completion"));
 }
 
@@ -372,10 +359,7 @@ struct Report {
     Folder folder;
     std::string document = (folder.path / "in/result.json").string();
     Report() {
-        EXPECT_EQ(
-            elastocheck_says("compare " + scene + " --steps 4 -o " + (folder.path / "in").string())
-                .code,
-            0);
+        expect_says("compare " + scene + " --steps 4 -o " + (folder.path / "in").string(), 0);
     }
     Said draws(const std::string& options, const std::string& environment = "") const {
         return support::says("env -u CI -u BROWSER " + environment +
@@ -386,8 +370,7 @@ struct Report {
 
 TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     const Report report;
-    const Said said = report.draws("");
-    EXPECT_EQ(said.code, 0) << said.err;
+    const Said said = expect_said(report.draws(""), 0);
     const auto lines = parts_of(said.out, '\n');
     ASSERT_GE(lines.size(), 2u);
     EXPECT_TRUE(
@@ -412,9 +395,7 @@ TEST(ReportCommand, LaysMeasuredPointsOverAResultWithoutSolving) {
                         "  X: {output: centre_x, sign: -1, offset: 0.5}\n");
     const std::string measured = "--measured " + (report.folder.path / "rig.csv").string(),
                       map = " --map " + (report.folder.path / "map.yaml").string();
-    Said said = report.draws(measured + map);
-    EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_TRUE(contains(said.err, "rig.csv: column left out: time")) << said.err;
+    expect_said(report.draws(measured + map), 0, {.err = {"rig.csv: column left out: time"}});
     const json result = json::parse(text_of(report.folder.path / "out/result.json"));
     const json& points = result["scenes"][0]["measured"];
     EXPECT_EQ(points["columns"]["centre_x"], (json{100.0, 101.5}));
@@ -424,9 +405,7 @@ TEST(ReportCommand, LaysMeasuredPointsOverAResultWithoutSolving) {
                          "Comparison with the measurement"));
     // nothing within range: could not be judged, as where the scene is solved
     report.folder.write("rig.csv", "Fz [kN],X\n1e6,0\n");
-    said = report.draws(measured + map);
-    EXPECT_EQ(said.code, 3) << said.err;
-    EXPECT_TRUE(contains(said.err, "is within the range of the legs")) << said.err;
+    expect_said(report.draws(measured + map), 3, {.err = {"is within the range of the legs"}});
     EXPECT_EQ(report.draws(map).code, 2) << "a map of nothing";
     EXPECT_EQ(report.draws(measured + map + " --candidate x.csv").code, 2) << "a map of two";
 }
@@ -439,9 +418,7 @@ TEST(ReportCommand, JudgesOnlyWhatItWasAskedToJudge) {
         document["scenes"][0]["judgement"] = {
             {"verdict", verdict}, {"method", "published"}, {"tolerance", {{"mm", 0.01}}}};
         report.folder.write("in/result.json", document.dump());
-        const Said said = report.draws("");
-        EXPECT_EQ(said.code, 0) << said.err;
-        EXPECT_TRUE(contains(said.out, "single_bushing.yaml: judged\nThe page: ")) << said.out;
+        expect_said(report.draws(""), 0, {.out = {"single_bushing.yaml: judged\nThe page: "}});
         const std::string page = text_of(report.folder.path / "out/report.html");
         EXPECT_FALSE(contains(page, "class=\"mark")) << verdict;
     }
@@ -453,28 +430,26 @@ TEST(ReportCommand, OpensThePageByWhatBrowserSays) {
     const std::string program =
         report.folder.write("look", "#!/bin/sh\nprintf '%s|' \"$@\" > " + seen + "\necho noise\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-    Said said = report.draws("--open --json", "BROWSER='/nowhere/firefox:" + program + " -x'");
-    EXPECT_EQ(said.code, 0) << said.err;
+    Said said = expect_said(
+        report.draws("--open --json", "BROWSER='/nowhere/firefox:" + program + " -x'"), 0);
     EXPECT_EQ(text_of(seen), "-x|" + (report.folder.path / "out/report.html").string() + "|");
     EXPECT_FALSE(json::parse(said.out, nullptr, false).is_discarded())
         << "what a browser says is no part of it";
     said = report.draws("--open", "BROWSER='" + program + " %s y'");
     EXPECT_EQ(text_of(seen), (report.folder.path / "out/report.html").string() + "|y|");
-    EXPECT_EQ(report.draws("--open", "BROWSER=false").code, 2);
+    expect_said(report.draws("--open", "BROWSER=false"), 2);
 }
 
 TEST(ReportCommand, OpenSaysBeforeTheWorkThatNobodyCanLook) {
     const Report report;
     const std::string nothing = (report.folder.path / "empty").string();
     std::filesystem::create_directory(nothing);
-    Said said = report.draws("--open", "PATH=" + nothing + " BROWSER=firefox");
-    EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "there is nothing to open a page with")) << said.err;
-    said = report.draws("--open", "CI=true BROWSER=true");
-    EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "--open: not in CI")) << said.err;
-    EXPECT_EQ(report.draws("--open --archive", "BROWSER=true").code, 2);
+    expect_said(report.draws("--open", "PATH=" + nothing + " BROWSER=firefox"), 2,
+                {.err = {"there is nothing to open a page with"}});
+    expect_said(report.draws("--open", "CI=true BROWSER=true"), 2, {.err = {"--open: not in CI"}});
+    expect_said(report.draws("--open --archive", "BROWSER=true"), 2);
     EXPECT_FALSE(std::filesystem::exists(report.folder.path / "out"));
 }
 
 }  // namespace
+}  // namespace elastocheck

@@ -15,19 +15,15 @@
 
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
-#include "tests/support/command.hpp"
+#include "tests/reports/command.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
-using support::contains;
-using support::Folder;
-using support::Said;
 using support::says;
-using support::text_of;
 
-const std::string scene = (std::filesystem::path(ELASTOCHECK_SCENES) / "pinned_bar.yaml").string();
+const std::string scene = scenes + "/pinned_bar.yaml";
 const std::string command = "env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " ";
 
 std::set<std::string> names_in(const fs::path& folder) {
@@ -102,17 +98,15 @@ TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
         says(command + "compare " + scene + " --steps 10 -o " + (made.path / "c").string()).code,
         0);
     for (const std::string& what : std::vector<std::string>{
-             "solve " + (fs::path(ELASTOCHECK_SCENES) / "front_axle.yaml").string() +
-                 " --steps 200000 -o out.csv",
+             "solve " + scenes + "/front_axle.yaml" + " --steps 200000 -o out.csv",
              "report --from " + (made.path / "c/result.json").string() + " -o out"}) {
         const Folder folder;
         // The temporary name is there while it works.
-        const Said said =
+        expect_said(
             says("cd " + folder.path.string() + " && { env --default-signal " + command + what +
                  " >/dev/null 2>&1 & } && for k in $(seq 3000); do ls -A | grep -q elastocheck- "
-                 "&& break; sleep 0.01; done; ls -A; kill -TERM $!; wait $!");
-        EXPECT_TRUE(contains(said.out, ".elastocheck-")) << what << said.out;
-        EXPECT_EQ(said.code, 128 + SIGTERM) << what << said.out << said.err;
+                 "&& break; sleep 0.01; done; ls -A; kill -TERM $!; wait $!"),
+            128 + SIGTERM, {.out = {".elastocheck-"}});
         EXPECT_TRUE(fs::is_empty(folder.path)) << what;
     }
 }
@@ -215,10 +209,8 @@ TEST(FullDisk, LeavesWhatWasThereAndSaysSo) {
         const std::string before = text_of(place.path / target);
         ASSERT_FALSE(before.empty()) << target;
         // A limit of one block acts like a full disk: every writer fails.
-        const Said said = place.in(what, "ulimit -f 1");
-        EXPECT_EQ(said.code, 2) << what << said.err;
-        EXPECT_TRUE(contains(said.err, "cannot be written: File too large"))
-            << what << ": " << said.err;
+        expect_said(place.in(what, "ulimit -f 1"), 2,
+                    {.err = {"cannot be written: File too large"}});
         EXPECT_EQ(text_of(place.path / target), before) << what;
         EXPECT_EQ(names_in(place.path), entries) << what << " leaves something behind";
         EXPECT_EQ(names_in(place.path / "baselines"), baselines)
@@ -245,11 +237,8 @@ TEST(ClosedFolder, IsSaidAndNothingIsLeftInIt) {
     for (const std::string& what :
          std::vector<std::string>{"compare " + scene + " -o /proc/elastocheck",
                                   "solve " + scene + " -o /proc/elastocheck.csv",
-                                  "gate " + scene + " --junit /proc/elastocheck.xml"}) {
-        const Said said = says(command + what);
-        EXPECT_EQ(said.code, 2) << what << said.out;
-        EXPECT_TRUE(contains(said.err, "/proc/elastocheck")) << said.err;
-    }
+                                  "gate " + scene + " --junit /proc/elastocheck.xml"})
+        expect_said(says(command + what), 2, {.err = {"/proc/elastocheck"}});
     const Place place;
     // Root gives up the capability to bypass file permissions.
     const std::string as_others =

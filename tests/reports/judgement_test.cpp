@@ -10,7 +10,6 @@
 #include "elastocheck/compile.hpp"
 #include "reports/tables/judgement.hpp"
 #include "tests/reports/command.hpp"
-#include "tests/support/folder.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -31,9 +30,6 @@ const compare::Comparison& compared() {
         return compare::compare(mcpherson(), options);
     }();
     return comparison;
-}
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != text.npos;
 }
 
 TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
@@ -214,18 +210,17 @@ TEST(Assessment, TheSentenceSaysWhatIsOffByHowMuchWhereAndAgainstWhat) {
 }
 
 TEST(Assessment, CompareGivesNoVerdictOnAMethodThatNobodyNamed) {
-    const support::Folder folder;
+    const Folder folder;
     const std::string out = (folder.path / "r").string(),
                       command = "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 ";
-    const auto said = elastocheck_says(command + "-o " + out);
-    EXPECT_EQ(said.code, 0);
+    const auto said = expect_says(command + "-o " + out, 0);
     EXPECT_TRUE(contains(said.out.substr(0, said.out.find('\n')),
                          ": the method 'published' of the linear recursion beside two full "
                          "solutions"))
         << said.out;
     EXPECT_FALSE(contains(said.out, "Pass") || contains(said.out, "Fail")) << said.out;
     const json judgement =
-        json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
+        json::parse(text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
     EXPECT_EQ(judgement["verdict"], "not asked");
     const std::string sentence = judgement["sentence"];
     EXPECT_TRUE(
@@ -240,17 +235,15 @@ TEST(Assessment, CompareGivesNoVerdictOnAMethodThatNobodyNamed) {
 }
 
 TEST(Assessment, CompareEndsWithTheSentenceThatItWritesAndTakesATolerance) {
-    const support::Folder folder;
+    const Folder folder;
     const std::string out = (folder.path / "r").string();
     const auto said = elastocheck_says(
         "compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --method published -o " + out);
     const json judgement =
-        json::parse(support::text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
+        json::parse(text_of(folder.path / "r" / "result.json"))["scenes"][0]["judgement"];
     EXPECT_EQ(judgement["verdict"], "fail");
     EXPECT_TRUE(said.out.ends_with(judgement["sentence"].get<std::string>() + "\n")) << said.out;
-    const auto wide =
-        elastocheck_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m");
-    EXPECT_EQ(wide.code, 2);
+    expect_says("compare " + scenes + "/chrono_mcpherson.yaml --steps 10 --within 1m", 2);
     EXPECT_TRUE(
         contains(elastocheck_says("compare " + scenes +
                                   "/chrono_mcpherson.yaml --steps 10 --within 100mm,10deg,100000%")

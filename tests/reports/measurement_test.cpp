@@ -14,8 +14,8 @@
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/sections/inputs/measured.hpp"
+#include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
-#include "tests/support/command.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -169,9 +169,9 @@ TEST(Measurement, ColumnsThatNobodyKnowsAreLeftOutAndListed) {
         << m["left_out"][1];
     EXPECT_EQ(m["readings"], plain["readings"]);
     EXPECT_EQ(plain["left_out"], json::array());
-    EXPECT_TRUE(support::contains(refusal("travel_mm,tow_deg\n1,2\n"), "left out: tow_deg"));
-    EXPECT_TRUE(support::contains(refusal("travel_mm,wheel_rate\n1,2\n"),
-                                  "wheel_rate: no position or angle"));
+    EXPECT_TRUE(contains(refusal("travel_mm,tow_deg\n1,2\n"), "left out: tow_deg"));
+    EXPECT_TRUE(
+        contains(refusal("travel_mm,wheel_rate\n1,2\n"), "wheel_rate: no position or angle"));
 }
 
 // The map of `judge`: name, unit, sign, offset.
@@ -215,7 +215,7 @@ TEST(Measurement, OfAResultThatIsReadAgainIsTheSame) {
         add_measurement(read, csv, "kc.csv");
         ADD_FAILURE() << "a change from an unknown position";
     } catch (const MeasurementError& error) {
-        EXPECT_TRUE(support::contains(error.what(), "solve again")) << error.what();
+        EXPECT_TRUE(contains(error.what(), "solve again")) << error.what();
     }
     json none = {{"name", "x"}};
     EXPECT_THROW(add_measurement(none, csv, "kc.csv"), ResultError);

@@ -10,18 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "tests/support/command.hpp"
+#include "tests/reports/command.hpp"
 
+namespace elastocheck {
 namespace {
 
 namespace fs = std::filesystem;
-namespace support = elastocheck::support;
-using support::contains;
-using support::Folder;
-using support::Said;
-using support::text_of;
 
-const std::string scenes = ELASTOCHECK_SCENES;
 const std::string scene = scenes + "/pinned_bar.yaml";
 
 Said in(const Folder& folder, const std::string& arguments) {
@@ -44,14 +39,12 @@ TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
              {"solve a.yaml --steps 2 -o " + target,
               "solve a.yaml --steps 2 --method series --rates " + target,
               "gate a.yaml --junit " + target, "gate a.yaml --summary " + target}) {
-            const Said said = in(folder, arguments);
-            EXPECT_EQ(said.code, 2) << arguments << said.out;
-            EXPECT_TRUE(contains(said.err, target + ": ")) << arguments << "\n" << said.err;
+            const Said said = expect_said(in(folder, arguments), 2, {.err = {target + ": "}});
             EXPECT_TRUE(said.out.empty()) << "refused before the work: " << arguments;
         }
         for (const char* command : {"compare", "report", "trade", "converge"}) {
-            const Said said = in(folder, std::string(command) + " a.yaml -o " + target);
-            EXPECT_EQ(said.code, 2) << command << " " << target;
+            const Said said =
+                expect_said(in(folder, std::string(command) + " a.yaml -o " + target), 2);
             EXPECT_TRUE(said.out.empty())
                 << "refused before the work: " << command << " " << target;
         }
@@ -62,8 +55,8 @@ TEST(Harm, OutputNeverGoesOverTheSceneADeviceALinkOrABaseline) {
     EXPECT_FALSE(fs::exists(folder.path / "nowhere"));
     // Files of this program are replaced.
     for (int again = 0; again < 2; ++again) {
-        EXPECT_EQ(in(folder, "solve a.yaml --steps 2 -o curves.csv").code, 0);
-        EXPECT_EQ(in(folder, "gate a.yaml --junit j.xml --summary s.md").code, 3);
+        expect_said(in(folder, "solve a.yaml --steps 2 -o curves.csv"), 0);
+        expect_said(in(folder, "gate a.yaml --junit j.xml --summary s.md"), 3);
     }
 }
 
@@ -71,10 +64,9 @@ TEST(Harm, TheSummaryOfAWorkflowStepIsAddedTo) {
     const Folder folder;
     const std::string summary = folder.write("summary", "# another step\n"),
                       baselines = scenes + "/baselines";
-    const Said said =
-        support::says("env CI= GITHUB_STEP_SUMMARY=" + summary + " " + ELASTOCHECK_COMMAND +
-                      " gate " + scene + " --summary " + summary);
-    EXPECT_EQ(said.code, 0) << said.err << said.out;
+    expect_said(support::says("env CI= GITHUB_STEP_SUMMARY=" + summary + " " + ELASTOCHECK_COMMAND +
+                              " gate " + scene + " --summary " + summary),
+                0);
     EXPECT_TRUE(text_of(summary).starts_with("# another step\n# elastocheck gate: passed"))
         << text_of(summary);
 }
@@ -92,14 +84,13 @@ TEST(Harm, ANameIsOneLineOfTextOrRefusedBeforeTheWork) {
         folder.write("s.yaml", named(escape));
         for (const char* command :
              {"compare s.yaml -o out", "solve s.yaml", "gate s.yaml", "report s.yaml -o out"}) {
-            const Said said = in(folder, command);
-            EXPECT_EQ(said.code, 2) << escape << " " << command << said.err;
+            const Said said = expect_said(in(folder, command), 2);
             EXPECT_TRUE(contains(said.err + said.out, "s.yaml:")) << said.err;
         }
         EXPECT_FALSE(fs::exists(folder.path / "out"));
     }
     folder.write("s.yaml", named("Gr\\xf6\\u00dfe, 轮"));
-    EXPECT_EQ(in(folder, "compare s.yaml --steps 2 -o out").code, 0);
+    expect_said(in(folder, "compare s.yaml --steps 2 -o out"), 0);
     EXPECT_EQ(nlohmann::json::parse(text_of(folder.path / "out/result.json"))["scenes"][0]["name"],
               "Größe, 轮");
 }
@@ -110,10 +101,10 @@ TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
          {"a\n::error::x.yaml", "a\x1b[2J.yaml", "a\u009b2J.yaml", "a\u202e.yaml", "a\xff.yaml"}) {
         folder.write(name, text_of(scene));
         for (const std::string command : {"solve", "compare", "inspect", "gate", "report -o out"}) {
-            const Said said = support::says("cd " + folder.path.string() +
-                                            " && GITHUB_ACTIONS=true CI= " + ELASTOCHECK_COMMAND +
-                                            " " + command + " '" + name + "'");
-            EXPECT_EQ(said.code, 2) << command << said.err;
+            const Said said = expect_said(
+                support::says("cd " + folder.path.string() + " && GITHUB_ACTIONS=true CI= " +
+                              ELASTOCHECK_COMMAND + " " + command + " '" + name + "'"),
+                2);
             for (const char* raw : {"\n::error", "\x1b", "\u009b", "\u202e", "\xff"})
                 EXPECT_FALSE(contains("\n" + said.out + said.err, raw)) << command;
             EXPECT_TRUE(contains(said.err, "names are one line of UTF-8 text")) << said.err;
@@ -124,8 +115,7 @@ TEST(Harm, FileNamesReachNoTerminalRawAndNoAnnotation) {
     // A baseline in a folder is a name too, and so is the scene that it names.
     fs::create_directory(folder.path / "baselines");
     std::ofstream(folder.path / "baselines" / "x\n::error::y.json") << "{}";
-    const Said said = in(folder, "gate");
-    EXPECT_EQ(said.code, 2);
+    const Said said = expect_said(in(folder, "gate"), 2);
     EXPECT_FALSE(contains("\n" + said.out + said.err, "\n::error")) << said.err;
 }
 
@@ -134,10 +124,11 @@ TEST(Harm, AWayThroughAFolderWhoseNameIsNoTextStandsInNoBaseline) {
     for (const std::string name : {"a\xff", "a\nb", "a\u202e"}) {
         fs::create_directory(folder.path / name);
         std::ofstream(folder.path / name / "s.yaml") << text_of(scene);
-        const Said said = support::says("cd '" + (folder.path / name).string() + "' && env -u CI " +
-                                        ELASTOCHECK_COMMAND +
-                                        " gate s.yaml --baseline ../baselines --accept --reason x");
-        EXPECT_EQ(said.code, 2) << said.out << said.err;
+        const Said said =
+            expect_said(support::says("cd '" + (folder.path / name).string() + "' && env -u CI " +
+                                      ELASTOCHECK_COMMAND +
+                                      " gate s.yaml --baseline ../baselines --accept --reason x"),
+                        2);
         EXPECT_TRUE(contains(said.err, "/s.yaml: ") &&
                     contains(said.err, "names are one line of UTF-8 text"))
             << said.err;
@@ -164,10 +155,10 @@ TEST(Harm, ANewlineInABaselineInjectsNoAnnotation) {
         ASSERT_TRUE(found) << field;
         folder.write("pinned_bar.json", texts[0]);
         folder.write("curves/pinned_bar.json", texts[1]);
-        const Said said =
+        const Said said = expect_said(
             support::says(std::string("env CI= GITHUB_ACTIONS=true ") + ELASTOCHECK_COMMAND +
-                          " gate " + scene + " --baseline " + folder.path.string());
-        EXPECT_EQ(said.code, 3) << said.out;
+                          " gate " + scene + " --baseline " + folder.path.string()),
+            3);
         EXPECT_FALSE(contains("\n" + said.out + said.err, "\n::error file=a")) << said.out;
     }
 }
@@ -177,25 +168,18 @@ TEST(Harm, StepCountsThatNoMemoryHoldsAreRefusedBeforeTheWork) {
     for (const char* arguments :
          {"solve --steps 10000000 ", "solve --steps 200000000 ", "compare --steps 1000001 ",
           "converge --steps 10,20,40,80,200000000 ",
-          "converge --steps 10,20,40,80,99999999999999 "}) {
-        const Said said = in(folder, arguments + scene);
-        EXPECT_EQ(said.code, 2) << arguments << said.err;
-        EXPECT_TRUE(contains(said.err, "--steps")) << said.err;
-    }
-    const Said said = in(folder, "compare --steps 1000000 " + scenes + "/double_wishbone.yaml");
-    EXPECT_EQ(said.code, 2) << said.err;
-    EXPECT_TRUE(contains(said.err, "points on 7 branches, by 3 of the legs, would take about"))
-        << said.err;
-    EXPECT_TRUE(contains(said.err, "steps a branch")) << said.err;
+          "converge --steps 10,20,40,80,99999999999999 "})
+        expect_said(in(folder, arguments + scene), 2, {.err = {"--steps"}});
+    expect_said(
+        in(folder, "compare --steps 1000000 " + scenes + "/double_wishbone.yaml"), 2,
+        {.err = {"points on 7 branches, by 3 of the legs, would take about", "steps a branch"}});
     // The scene itself requests too many steps.
     const std::string text = std::regex_replace(text_of(scenes + "/double_wishbone.yaml"),
                                                 std::regex("steps: [0-9]+"), "steps: 1000000");
     for (const char* command : {"compare s.yaml", "report s.yaml -o out", "gate s.yaml"}) {
         folder.write("s.yaml", text);
         folder.write("baselines_s.json", "");
-        const Said asked = in(folder, command);
-        EXPECT_EQ(asked.code, std::string(command).starts_with("gate") ? 3 : 2)
-            << command << asked.out << asked.err;
+        expect_said(in(folder, command), std::string(command).starts_with("gate") ? 3 : 2);
     }
 }
 
@@ -212,33 +196,24 @@ TEST(Harm, WhatCannotBeNamedOrOpenedIsBadInput) {
              std::string("gate --baseline loop"), "gate " + scene + " --junit loop/j.xml",
              "report " + scene + " --measured loop -o out",
              "report " + scene + " --alarms loop -o out",
-             std::string("report --from /dev/zero -o out")}) {
-        const Said said = in(folder, arguments);
-        EXPECT_EQ(said.code, 2) << arguments << "\n" << said.out << said.err;
-        EXPECT_FALSE(contains(said.err, "internal error")) << said.err;
-    }
+             std::string("report --from /dev/zero -o out")})
+        expect_said(in(folder, arguments), 2, {.not_err = {"internal error"}});
 }
 
 TEST(Harm, AFullDiskBehindStandardOutputIsNoSuccess) {
     const Folder folder;
     for (const std::string& arguments : std::vector<std::string>{
              "inspect " + scene, "solve --steps 2 " + scene, "compare --steps 2 " + scene,
-             "gate " + scene, "--help", "--version"}) {
-        const Said said = in(folder, arguments + " > /dev/full");
-        EXPECT_EQ(said.code, 2) << arguments << said.err;
-        EXPECT_TRUE(
-            contains(said.err, "standard output: cannot be written: No space left on device"))
-            << said.err;
-    }
+             "gate " + scene, "--help", "--version"})
+        expect_said(in(folder, arguments + " > /dev/full"), 2,
+                    {.err = {"standard output: cannot be written: No space left on device"}});
 }
 
 TEST(Harm, AMeasurementWithNothingToCompareIsNoPass) {
     const Folder folder;
     folder.write("far.csv", "load_N,tip_x_mm\n1e9,0\n");
-    const Said said = in(folder, "report " + scene + " --measured far.csv -o out");
-    EXPECT_EQ(said.code, 3) << said.err;
-    EXPECT_TRUE(contains(said.err, "no point of far.csv is within the range of the legs"))
-        << said.err;
+    expect_said(in(folder, "report " + scene + " --measured far.csv -o out"), 3,
+                {.err = {"no point of far.csv is within the range of the legs"}});
 }
 
 TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
@@ -252,10 +227,8 @@ TEST(Harm, OneUnreadableBaselineDoesNotEndTheGate) {
     folder.write("loop.yaml", text_of(scene));
     for (const char* arguments : {"gate --junit j.xml", "gate loop.yaml good.yaml --junit j.xml"}) {
         fs::remove(folder.path / "j.xml");
-        const Said said = in(folder, arguments);
-        EXPECT_EQ(said.code, 3) << arguments << said.err;
-        EXPECT_TRUE(contains(said.out, "good.yaml: passed")) << said.out;
-        EXPECT_TRUE(contains(said.out, "loop.json: cannot be read")) << said.out;
+        expect_said(in(folder, arguments), 3,
+                    {.out = {"good.yaml: passed", "loop.json: cannot be read"}});
         EXPECT_TRUE(contains(text_of(folder.path / "j.xml"), "good.yaml"));
     }
 }
@@ -301,3 +274,4 @@ TEST(Harm, ComparesFilesAreOfOneRun) {
 }
 
 }  // namespace
+}  // namespace elastocheck

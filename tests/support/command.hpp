@@ -1,10 +1,13 @@
 // A command as a user runs it: exit code, output, errors.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdio>
+#include <source_location>
 #include <string>
+#include <vector>
 
 #include "tests/support/folder.hpp"
 
@@ -32,6 +35,33 @@ inline Said says(const std::string& line) {
 
 inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
+}
+
+// Parts of what a command says, and what it must not say.
+struct Parts {
+    std::vector<std::string> out = {}, err = {}, not_out = {}, not_err = {};
+};
+
+// The claim about a command: its exit code and these parts. A failure shows all that it said.
+inline Said expect_said(Said said, int code, const Parts& parts = {},
+                        std::source_location at = std::source_location::current()) {
+    std::string wrong;
+    if (said.code != code)
+        wrong = "exit code " + std::to_string(said.code) + ", not " + std::to_string(code) + "\n";
+    const auto look = [&](const std::string& text, const std::vector<std::string>& list, bool in) {
+        for (const auto& part : list)
+            if (contains(text, part) != in)
+                wrong += (in ? "missing: " : "unwanted: ") + part + "\n";
+    };
+    look(said.out, parts.out, true);
+    look(said.err, parts.err, true);
+    look(said.out, parts.not_out, false);
+    look(said.err, parts.not_err, false);
+    if (!wrong.empty())
+        ADD_FAILURE_AT(at.file_name(), static_cast<int>(at.line())) << wrong << "---- output\n"
+                                                                    << said.out << "---- errors\n"
+                                                                    << said.err;
+    return said;
 }
 
 }  // namespace elastocheck::support
