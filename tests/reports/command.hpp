@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/benchmark/families.hpp"
 #include "tests/support/command.hpp"
 
 namespace elastocheck {
@@ -28,6 +29,10 @@ inline Said expect_says(const std::string& arguments, int code, const Parts& par
                         std::source_location at = std::source_location::current()) {
     return expect_said(elastocheck_says(arguments), code, parts, at);
 }
+
+// A chain of this many bodies on bushings. With 15, `trade` takes few of its up to a million steps:
+// their number is limited by the size of the scene.
+inline std::string chain_of(int bodies) { return families::scene({families::Kind::chain, bodies}); }
 
 inline std::vector<std::string> parts_of(const std::string& text, char between) {
     std::vector<std::string> parts;

@@ -25,13 +25,17 @@ json document(const std::string& arguments, int code = 0) {
 }
 
 TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
-    for (const char* command : {"inspect", "solve --steps=4", "compare --steps=4",
-                                "converge --steps=4,8,16,32,64", "trade"}) {
-        const json said =
-            document(std::regex_replace(command, std::regex("^[a-z]+"), "$& " + scene));
+    const Folder folder;
+    const std::string chain = folder.write("chain.yaml", chain_of(15));
+    for (const std::string& command :
+         {"inspect " + scene, "solve --steps=4 " + scene, "compare --steps=4 " + scene,
+          "converge --steps=4,8,16,32,64 " + scene, "trade " + chain}) {
+        const json said = document(command);
         EXPECT_EQ(said["schema"], "elastocheck/result/3") << command;
         EXPECT_EQ(said["scenes"].size(), 1u) << command;
-        EXPECT_EQ(said["scenes"][0]["name"], "Body on one bushing") << command;
+        EXPECT_EQ(said["scenes"][0]["name"], command.ends_with(chain)
+                                                 ? "chain of 15 bodies on bushings"
+                                                 : "Body on one bushing");
         EXPECT_TRUE(said["reproduce"].get<std::string>().starts_with("elastocheck ")) << command;
     }
     EXPECT_EQ(document("gate " + scene)["verdict"], "passed");
