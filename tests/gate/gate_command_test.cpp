@@ -9,18 +9,13 @@
 #include <regex>
 
 #include "reports/gate/baseline.hpp"
-#include "tests/support/command.hpp"
+#include "tests/reports/command.hpp"
 
+namespace elastocheck {
 namespace {
 
-using namespace elastocheck;
 using nlohmann::ordered_json;
-using support::contains;
-using support::Folder;
-using support::Said;
-using support::text_of;
 
-const std::string scenes = ELASTOCHECK_SCENES;
 const std::string scene = scenes + "/single_bushing.yaml";
 using compare::Quantity;
 using reports::BaselineFile;
@@ -205,34 +200,26 @@ TEST(GateCommand, AFigureIsLimitedAtTheDesignPositionAndOverABranchAndMisspeltNa
 TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
     const Folder folder;
     const std::string there = " --baseline " + folder.path.string();
-    Said said = gate(scene + there);
-    EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(said.out, "there is no baseline")) << said.out;
-    EXPECT_EQ(gate(there).code, 3);  // a folder without baselines
-    EXPECT_EQ(gate("--baseline /nowhere/at/all").code, 3);
-    EXPECT_EQ(gate("nowhere.yaml" + there).code, 2);
-    EXPECT_EQ(gate(scene + there + " --from /nowhere").code,
-              3);  // no baseline, so not even looked for
+    expect_said(gate(scene + there), 3, {.out = {"there is no baseline"}});
+    expect_said(gate(there), 3);  // a folder without baselines
+    expect_said(gate("--baseline /nowhere/at/all"), 3);
+    expect_said(gate("nowhere.yaml" + there), 2);
+    expect_said(gate(scene + there + " --from /nowhere"),
+                3);  // no baseline, so not even looked for
     reports::write_baseline(folder.path / "single_bushing.json", committed);
-    EXPECT_EQ(gate(scene + there + " --from /nowhere").code, 2);
-    EXPECT_EQ(gate(scene + " --from x " + scene).code, 2);
-    EXPECT_EQ(gate(scene + " --class none").code, 2);
-    EXPECT_EQ(gate(scene + " --reason why").code, 2);
+    expect_said(gate(scene + there + " --from /nowhere"), 2);
+    expect_said(gate(scene + " --from x " + scene), 2);
+    expect_said(gate(scene + " --class none"), 2);
+    expect_said(gate(scene + " --reason why"), 2);
 }
 
 TEST(GateCommand, AcceptNeedsAReasonAndAPerson) {
     const Folder folder;
     const std::string accept = scene + " --baseline " + folder.path.string() + " --accept";
-    for (const char* reason : {"", " --reason ''", " --reason ' '"}) {
-        const Said said = gate(accept + reason);
-        EXPECT_EQ(said.code, 2);
-        EXPECT_TRUE(contains(said.err, "--reason")) << said.err;
-    }
-    for (const char* ci : {"CI=true", "CI=1"}) {
-        const Said said = gate(accept + " --reason why", ci);
-        EXPECT_EQ(said.code, 2);
-        EXPECT_TRUE(contains(said.err, "not in CI")) << said.err;
-    }
+    for (const char* reason : {"", " --reason ''", " --reason ' '"})
+        expect_said(gate(accept + reason), 2, {.err = {"--reason"}});
+    for (const char* ci : {"CI=true", "CI=1"})
+        expect_said(gate(accept + " --reason why", ci), 2, {.err = {"not in CI"}});
     EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
@@ -240,17 +227,13 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     const Folder folder;
     const std::string own = folder.write("own.yaml", text_of(scene)),
                       baseline = folder.path / "baselines/own.json";
-    Said said = gate(own + " --accept --reason 'first of all'");
-    EXPECT_EQ(said.code, 0) << said.err;
+    Said said = expect_said(gate(own + " --accept --reason 'first of all'"), 0);
     EXPECT_EQ(reports::read_baseline(baseline).baseline.reason, "first of all");
-    said = gate(own);
-    EXPECT_EQ(said.code, 0) << said.out;
-    EXPECT_TRUE(contains(said.out, "same-build")) << said.out;
-    EXPECT_EQ(gate("--baseline " + (folder.path / "baselines").string()).code,
-              0);  // finds its scene
+    expect_said(gate(own), 0, {.out = {"same-build"}});
+    expect_said(gate("--baseline " + (folder.path / "baselines").string()), 0);  // finds its scene
 
     // The same again is no reason to touch the file.
-    EXPECT_EQ(gate(own + " --accept --reason 'again'").code, 0);
+    expect_said(gate(own + " --accept --reason 'again'"), 0);
     EXPECT_EQ(reports::read_baseline(baseline).baseline.reason, "first of all");
 
     std::string changed = text_of(scene);
@@ -258,11 +241,9 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     ASSERT_NE(rates, changed.npos);
     changed = changed.substr(0, rates) + "rates: [1" + changed.substr(rates + 8);
     folder.write("own.yaml", changed);
-    said = gate(own + " --junit " + (folder.path / "j.xml").string() + " --summary " +
-                (folder.path / "s.md").string());
-    EXPECT_EQ(said.code, 1) << said.out;
-    EXPECT_TRUE(contains(said.out, "FAILED")) << said.out;
-    EXPECT_TRUE(contains(said.out, "the scene file differs from the accepted one")) << said.out;
+    said = expect_said(gate(own + " --junit " + (folder.path / "j.xml").string() + " --summary " +
+                            (folder.path / "s.md").string()),
+                       1, {.out = {"FAILED", "the scene file differs from the accepted one"}});
     EXPECT_TRUE(std::regex_search(
         said.out, std::regex("\n  changed: bushings\\.[a-z_]+\\.rates\\.x: 1[0-9]+ .*, was ")))
         << said.out;
@@ -277,9 +258,7 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     said = gate(own + " --set " + path + "=7");
     EXPECT_TRUE(contains(said.out, "  changed: " + path + ": 7")) << said.out;
     folder.write("own.yaml", text_of(scene) + "# a comment\n");
-    said = gate(own);
-    EXPECT_EQ(said.code, 0) << said.out;
-    EXPECT_TRUE(contains(said.out, "; none of its numbers changed")) << said.out;
+    expect_said(gate(own), 0, {.out = {"; none of its numbers changed"}});
 
     folder.write("own.yaml", changed);
 
@@ -290,15 +269,13 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
         {{"of", "deviation at equal parameter"}, {"channel", "centre_z"}, {"max", 1e6}},
         {{"figure", "centre_z"}, {"unit", "mm"}, {"max", 1e6}, {"over", "pull"}}};
     folder.write("baselines/own.json", file.dump());
-    said = gate(own + " --accept --reason 'stiffer'");
-    EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_TRUE(
-        contains(said.out, "numbers out of tolerance, same-build (every change beyond rounding)"));
+    expect_said(gate(own + " --accept --reason 'stiffer'"), 0,
+                {.out = {"numbers out of tolerance, same-build (every change beyond rounding)"}});
     const auto accepted = reports::read_baseline(baseline).baseline;
     EXPECT_EQ(accepted.reason, "stiffer");
     EXPECT_EQ(accepted.limits.size(), 2u);
     EXPECT_EQ(accepted.tolerances.at(compare::ToleranceClass::physical).at("mm").atol, 0.5);
-    EXPECT_EQ(gate(own).code, 0);
+    expect_said(gate(own), 0);
 }
 
 TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
@@ -316,21 +293,19 @@ TEST(GateCommand, AcceptsNeitherWhatBreaksALimitNorWhatProvesNothing) {
     file.baseline.limits = {{Quantity::deviation_at_equal_parameter, channel, -0.0}};
     const std::string limited = reports::baseline_text(file).review;
     folder.write("baselines/own.json", limited);
-    EXPECT_EQ(gate(own).code, 1);
-    const Said said = gate(own + " --accept --reason second");
-    EXPECT_EQ(said.code, 1);
-    EXPECT_TRUE(contains(said.out, "an absolute limit is broken")) << said.out;
+    expect_said(gate(own), 1);
+    expect_said(gate(own + " --accept --reason second"), 1,
+                {.out = {"an absolute limit is broken"}});
     EXPECT_EQ(text_of(baseline), limited);
 
     folder.write("baselines/own.json", "{");
-    EXPECT_EQ(gate(own + " --accept --reason third").code, 3);
+    expect_said(gate(own + " --accept --reason third"), 3);
     EXPECT_EQ(text_of(baseline), "{");
 
     std::string arch = text_of(scenes + "/two_spring_arch.yaml");
     arch.replace(arch.find("to: -200"), 8, "to: -300");
-    const Said lost = gate(folder.write("arch.yaml", arch) + " --accept --reason fourth");
-    EXPECT_EQ(lost.code, 3);
-    EXPECT_TRUE(contains(lost.err, "not accepted: branch 'down': ")) << lost.err;
+    expect_said(gate(folder.write("arch.yaml", arch) + " --accept --reason fourth"), 3,
+                {.err = {"not accepted: branch 'down': "}});
     EXPECT_FALSE(std::filesystem::exists(folder.path / "baselines/arch.json"));
 }
 
@@ -343,15 +318,13 @@ TEST(GateCommand, InCiABaselineOfTheSameRunJudgesNothing) {
     };
     ASSERT_EQ(git("init -q").code, 0);
     ASSERT_EQ(gate(own + " --accept --reason copy").code, 0);  // CI unset on purpose
-    EXPECT_EQ(gate(own).code, 0);
-    Said said = gate(own, "CI=true");
-    EXPECT_EQ(said.code, 3) << said.out;
-    EXPECT_TRUE(contains(said.out, "is unreviewed")) << said.out;
+    expect_said(gate(own), 0);
+    expect_said(gate(own, "CI=true"), 3, {.out = {"is unreviewed"}});
     git("add .");
     ASSERT_EQ(git("commit -q -m reviewed").code, 0);
-    EXPECT_EQ(gate(own, "CI=true").code, 0);
+    expect_said(gate(own, "CI=true"), 0);
     std::ofstream(folder.path / "baselines/own.json", std::ios::app) << "\n";
-    EXPECT_EQ(gate(own, "CI=true").code, 3);
+    expect_said(gate(own, "CI=true"), 3);
 }
 
 TEST(GateCommand, OneBadSceneDoesNotHideTheOthers) {
@@ -361,10 +334,8 @@ TEST(GateCommand, OneBadSceneDoesNotHideTheOthers) {
     const std::string good = (folder.path / "good.yaml").string(),
                       bad = (folder.path / "bad.yaml").string();
     ASSERT_EQ(gate(good + " --accept --reason first").code, 0);
-    const Said said = gate(bad + " " + good);
-    EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.out, "bad.yaml: BAD INPUT")) << said.out;
-    EXPECT_TRUE(contains(said.out, "good.yaml: passed")) << said.out;
+    expect_said(gate(bad + " " + good), 2, {.out = {"bad.yaml: BAD INPUT", "good.yaml: passed"}});
 }
 
 }  // namespace
+}  // namespace elastocheck

@@ -17,9 +17,6 @@ namespace elastocheck {
 namespace {
 
 namespace fs = std::filesystem;
-using support::contains;
-using support::Folder;
-using support::text_of;
 
 // German locale, compiled into the folder; the machine only needs locale sources (package locales).
 struct German {

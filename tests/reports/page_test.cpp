@@ -5,15 +5,12 @@
 #include <set>
 
 #include "reports/page/report/report.hpp"
+#include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
-#include "tests/support/command.hpp"
-#include "tests/support/folder.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-using support::Folder;
-using support::text_of;
 using json = nlohmann::ordered_json;
 
 json two_scenes() {

@@ -16,18 +16,14 @@
 #include "reports/files/templates.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/plot.hpp"
+#include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
-#include "tests/support/command.hpp"
-#include "tests/support/folder.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
-using support::contains;
-using support::Folder;
-using support::text_of;
 
 const std::string command = ELASTOCHECK_COMMAND;
 
@@ -76,9 +72,8 @@ TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
 TEST(Report, EveryFigureIsWellFormed) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "r");
-    const auto said =
-        support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg");
-    EXPECT_EQ(said.code, 0) << said.err;
+    expect_said(
+        support::says("xmllint --noout " + (folder.path / "r" / "figures").string() + "/*.svg"), 0);
 }
 
 TEST(Report, NamesAreTextWhateverTheyContain) {
@@ -109,9 +104,8 @@ TEST(Report, AFigureIsWellFormedWhateverItsWordsAre) {
         figure.bands.push_back({0, 1, evil});
         figure.y_ticks = {{0.5, evil}};
         EXPECT_EQ(draw({{&figure, "f"}}, folder.path).size(), 1u) << evil;
-        const auto said =
-            support::says("xmllint --noout " + (folder.path / "figures" / "f.svg").string());
-        EXPECT_EQ(said.code, 0) << evil << said.err;
+        expect_said(
+            support::says("xmllint --noout " + (folder.path / "figures" / "f.svg").string()), 0);
         EXPECT_FALSE(contains(text_of(folder.path / "figures" / "f.svg"), "<script")) << evil;
     }
     // A document with such a name is rejected earlier.
@@ -266,21 +260,20 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
     const Folder folder;
     const auto good = folder.write("result.json", small_result("good").dump());
     const std::string out = (folder.path / "out").string();
-    EXPECT_EQ(support::says(command + " report --from " + good + " -o " + out).code, 0);
+    expect_said(support::says(command + " report --from " + good + " -o " + out), 0);
     EXPECT_TRUE(fs::exists(folder.path / "out" / "report.html"));
     json bad = small_result("bad");
     bad["scenes"][0]["branches"][0].erase("legs");
-    const auto missing = support::says(command + " report --from " +
-                                       folder.write("bad.json", bad.dump()) + " -o " + out);
-    EXPECT_EQ(missing.code, 2);
-    EXPECT_TRUE(contains(missing.err, "bad.json: scenes[0].branches[0].legs: missing"))
-        << missing.err;
+    expect_said(support::says(command + " report --from " + folder.write("bad.json", bad.dump()) +
+                              " -o " + out),
+                2, {.err = {"bad.json: scenes[0].branches[0].legs: missing"}});
     json doubtful = small_result("doubtful");
     doubtful["scenes"][0]["verdict"] = {
         {"conclusive", false}, {"numbers_compared", 0}, {"reasons", {"nothing was compared"}}};
-    const auto inconclusive = support::says(command + " report --from " +
-                                            folder.write("d.json", doubtful.dump()) + " -o " + out);
-    EXPECT_EQ(inconclusive.code, 3);
+    const auto inconclusive =
+        expect_said(support::says(command + " report --from " +
+                                  folder.write("d.json", doubtful.dump()) + " -o " + out),
+                    3);
     EXPECT_TRUE(
         contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
     EXPECT_TRUE(contains(text_of(folder.path / "out" / "report.html"),
@@ -292,17 +285,15 @@ TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
     for (const std::string open : {"[", "{\"a\":"}) {
         std::string deep = "{\"schema\":\"elastocheck/result/3\",\"scenes\":";
         for (int k = 0; k < 100'000; ++k) deep += open;
-        const auto said =
-            support::says(command + " report --from " + folder.write("deep.json", deep) + " -o " +
-                          (folder.path / "out").string());
-        EXPECT_EQ(said.code, 2);
-        EXPECT_TRUE(contains(said.err, "deep.json: nested more than 64 levels deep")) << said.err;
+        expect_said(support::says(command + " report --from " + folder.write("deep.json", deep) +
+                                  " -o " + (folder.path / "out").string()),
+                    2, {.err = {"deep.json: nested more than 64 levels deep"}});
     }
 }
 
 TEST(ReportCommand, SaysWhatItNeeds) {
     const Folder folder;
-    const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
+    const auto scene = scenes + "/single_bushing.yaml";
     const auto document = folder.write("document.json", small_result("x").dump());
     struct Case {
         std::string arguments, why;
@@ -317,22 +308,19 @@ TEST(ReportCommand, SaysWhatItNeeds) {
           Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
           Case{scene + " --tolerance 1inch -o out", "'inch' is not a unit of it"},
           Case{scene + " --measured none.csv -o out", "none.csv: cannot be read"}}) {
-        const auto said =
-            support::says("cd " + folder.path.string() + " && " + command + " report " + arguments);
-        EXPECT_EQ(said.code, 2) << arguments;
-        EXPECT_TRUE(contains(said.err, why)) << arguments << ": " << said.err;
+        expect_said(
+            support::says("cd " + folder.path.string() + " && " + command + " report " + arguments),
+            2, {.err = {why}});
         EXPECT_FALSE(fs::exists(folder.path / "out"));
     }
 }
 
 TEST(ReportCommand, SolvesAndDrawsAScene) {
     const Folder folder;
-    const auto scene = std::string(ELASTOCHECK_SCENES) + "/single_bushing.yaml";
-    const auto said =
-        support::says(command + " report " + scene + " -o " + (folder.path / "out").string());
-    EXPECT_EQ(said.code, 0) << said.err;
-    EXPECT_TRUE(contains(said.out, "The page: " + (folder.path / "out" / "report.html").string()))
-        << said.out;
+    const auto scene = scenes + "/single_bushing.yaml";
+    const auto said = expect_said(
+        support::says(command + " report " + scene + " -o " + (folder.path / "out").string()), 0,
+        {.out = {"The page: " + (folder.path / "out" / "report.html").string()}});
     const json result = json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_TRUE(contains(said.out,
                          ": Every number on these pages: two independent solutions agree "

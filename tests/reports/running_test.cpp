@@ -11,18 +11,13 @@ namespace elastocheck {
 namespace {
 
 using reports::progress_line;
-using support::contains;
-using support::Folder;
-using support::Said;
-using support::text_of;
 using json = nlohmann::ordered_json;
 
 const std::string strut = scenes + "/chrono_mcpherson.yaml";
 
 json scene_of(const Folder& folder, const std::string& arguments) {
     const std::string to = (folder.path / "report").string();
-    const Said said = elastocheck_says("report " + strut + " -o " + to + " " + arguments);
-    EXPECT_EQ(said.code, 0) << said.err;
+    expect_says("report " + strut + " -o " + to + " " + arguments, 0);
     return json::parse(text_of(to + "/result.json"))["scenes"][0];
 }
 
@@ -31,8 +26,7 @@ TEST(Running, AReportIsTheSameWithAnyNumberOfThreads) {
     const std::string to = (folder.path / "report").string();
     std::vector<std::string> results, pages;
     for (const char* jobs : {"--jobs 1", "--jobs=3 --quiet"}) {
-        const Said said = elastocheck_says("report " + strut + " -o " + to + " " + jobs);
-        ASSERT_EQ(said.code, 0) << said.err;
+        expect_says("report " + strut + " -o " + to + " " + jobs, 0);
         results.push_back(text_of(to + "/result.json"));
         pages.push_back(text_of(to + "/report.html"));
     }
@@ -51,7 +45,7 @@ TEST(Running, OtherCommandsAreTheSameWithAnyNumberOfThreads) {
         EXPECT_EQ(one.code, 0) << one.err;
         EXPECT_EQ(one.out, three.out) << command;
     }
-    EXPECT_EQ(elastocheck_says("compare " + strut + " --jobs 0").code, 2);
+    expect_says("compare " + strut + " --jobs 0", 2);
 }
 
 TEST(Running, KinematicsAndComplianceNeedNoStudy) {
@@ -81,10 +75,10 @@ TEST(Running, KinematicsAndComplianceNeedNoStudy) {
     EXPECT_TRUE(scene_of(folder, "--only evidence").contains("convergence"));
     const std::string to = (folder.path / "report").string();
     const std::string again = (folder.path / "again").string();
-    EXPECT_EQ(elastocheck_says("report --from " + to + "/result.json -o " + again).code, 0);
+    expect_says("report --from " + to + "/result.json -o " + again, 0);
     EXPECT_EQ(text_of(to + "/report.html"), text_of(again + "/report.html"));
-    EXPECT_EQ(elastocheck_says("report " + strut + " --only kinematics -o " + again).code, 2);
-    EXPECT_EQ(elastocheck_says("report --from " + to + "/result.json --quick -o " + again).code, 2);
+    expect_says("report " + strut + " --only kinematics -o " + again, 2);
+    expect_says("report --from " + to + "/result.json --quick -o " + again, 2);
 }
 
 TEST(Running, AReportOfSomeBranchesHasTheseAlone) {
@@ -92,10 +86,8 @@ TEST(Running, AReportOfSomeBranchesHasTheseAlone) {
     const json scene = scene_of(folder, "--quick --branch rebound");
     ASSERT_EQ(scene["branches"].size(), 1u);
     EXPECT_EQ(scene["branches"][0]["name"], "rebound");
-    const Said said = elastocheck_says("report " + strut + " -o " +
-                                       (folder.path / "none").string() + " --branch reboud");
-    EXPECT_EQ(said.code, 2);
-    EXPECT_TRUE(contains(said.err, "has no branch 'reboud', did you mean 'rebound'")) << said.err;
+    expect_says("report " + strut + " -o " + (folder.path / "none").string() + " --branch reboud",
+                2, {.err = {"has no branch 'reboud', did you mean 'rebound'"}});
 }
 
 TEST(Running, ALineOfProgressSaysShareTimeAndWork) {

@@ -12,6 +12,7 @@
 #include "reports/files/templates.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
+#include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
 
 namespace elastocheck::reports {
@@ -51,10 +52,6 @@ Figure figure(const json& result, const std::string& id) {
                 if (figure.id == id) return figure;
     ADD_FAILURE() << "no figure " << id;
     return {};
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != text.npos;
 }
 
 // Calls f on every value of the document; in a list only on the first.

@@ -22,11 +22,6 @@
 namespace elastocheck {
 namespace {
 
-using support::contains;
-using support::Folder;
-using support::Said;
-using support::text_of;
-
 // All rows at once, from stored paths.
 std::string csv_of_kept_points(const Model& model, const compare::SolverSettings& solver,
                                int steps) {
@@ -76,8 +71,7 @@ TEST(SolveCommand, AFastMethodSaysHowFarItIsOffAtTheEndOfEveryBranchSide) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 20 ";
     const auto right = cells_of(elastocheck_says(command).out);
     for (const char* method : {"published", "tangent"}) {
-        const Said said = elastocheck_says(command + "--method " + method);
-        EXPECT_EQ(said.code, 0);
+        const Said said = expect_says(command + "--method " + method, 0);
         const auto rows = cells_of(said.out);
         ASSERT_EQ(rows.size(), right.size());
         for (const std::size_t end : {21u, 42u}) {
@@ -148,8 +142,7 @@ TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 3";
     const auto all = cells_of(elastocheck_says(command).out);
     const auto expect = [&](const std::string& asked, const std::vector<std::string>& heads) {
-        const Said said = elastocheck_says(command + " --channels " + asked);
-        ASSERT_EQ(said.code, 0) << said.err;
+        const Said said = expect_says(command + " --channels " + asked, 0);
         const auto some = cells_of(said.out);
         ASSERT_EQ(some.size(), all.size());
         ASSERT_EQ(some[0].size(), 4 + heads.size()) << said.out;
@@ -203,15 +196,11 @@ TEST(SolveCommand, ChannelThatIsNoneIsAnsweredWithTheNearest) {
     const Folder folder;
     const std::string file = (folder.path / "c.csv").string();
     for (const auto& [asked, near] :
-         {std::pair{"tow", "toe"}, {"toe,cambr", "camber"}, {"Toe", "toe"}}) {
-        const Said said = elastocheck_says(
-            "solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked + " -o " + file);
-        EXPECT_EQ(said.code, 2) << said.out;
-        EXPECT_TRUE(contains(said.err, "--channels: there is no output")) << said.err;
-        EXPECT_TRUE(contains(said.err, fmt::format("did you mean '{}'?", near))) << said.err;
-    }
-    EXPECT_EQ(elastocheck_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'").code,
-              2);
+         {std::pair{"tow", "toe"}, {"toe,cambr", "camber"}, {"Toe", "toe"}})
+        expect_says(
+            "solve " + scenes + "/chrono_mcpherson.yaml --channels " + asked + " -o " + file, 2,
+            {.err = {"--channels: there is no output", fmt::format("did you mean '{}'?", near)}});
+    expect_says("solve " + scenes + "/chrono_mcpherson.yaml --channels 'x*'", 2);
     EXPECT_FALSE(std::filesystem::exists(file));
 }
 
@@ -247,16 +236,11 @@ TEST(SolveCommand, EveryNthStepIsOneOfTheSameRows) {
 TEST(SolveCommand, EveryThatIsNoneOrMoreThanThereAreStepsIsRefused) {
     const std::string scene = scenes + "/bushing_pair.yaml";
     for (const char* command : {"solve ", "compare "}) {
-        for (const char* none : {"0", "-1", "x", "1.5"}) {
-            const Said said = elastocheck_says(command + scene + " --every " + none);
-            EXPECT_EQ(said.code, 2) << none;
-            EXPECT_TRUE(contains(said.err, "--every")) << said.err;
-        }
-        const Said said = elastocheck_says(command + scene + " --steps 20 --every 21");
-        EXPECT_EQ(said.code, 2);
-        EXPECT_TRUE(
-            contains(said.err, "--every 21: branch 'lift' has 20 steps; allowed: 1 to as many"))
-            << said.err;
+        for (const char* none : {"0", "-1", "x", "1.5"})
+            expect_says(command + scene + " --every " + none, 2, {.err = {"--every"}});
+        const Said said =
+            expect_says(command + scene + " --steps 20 --every 21", 2,
+                        {.err = {"--every 21: branch 'lift' has 20 steps; allowed: 1 to as many"}});
         EXPECT_TRUE(said.out.empty());
     }
 }
@@ -264,8 +248,7 @@ TEST(SolveCommand, EveryThatIsNoneOrMoreThanThereAreStepsIsRefused) {
 TEST(CompareCommand, EveryNthStepIsCompared) {
     const Folder folder;
     const std::string scene = scenes + "/bushing_pair.yaml", out = (folder.path / "out").string();
-    const Said said = elastocheck_says("compare " + scene + " --steps 40 --every 15 -o " + out);
-    EXPECT_EQ(said.code, 0) << said.err;
+    expect_says("compare " + scene + " --steps 40 --every 15 -o " + out, 0);
     // scene, branch, leg, parameter, its unit, output, unit, value: those of the recursion equal
     // the output of `solve`.
     const auto all = cells_of(text_of(out + "/curves.csv"));
@@ -298,9 +281,8 @@ TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
             arch.substr(0, branches), first ? -300 : 300, first ? 300 : -300, arch.substr(probes));
         const std::string command =
             "solve " + folder.write("arch.yaml", scene) + " --method equilibrium --channels apex_z";
-        const Said said = elastocheck_says(command);
-        EXPECT_EQ(said.code, 3) << said.err;
-        EXPECT_TRUE(contains(said.err, "equilibrium: limit point: push to -300 N: ")) << said.err;
+        const Said said =
+            expect_says(command, 3, {.err = {"equilibrium: limit point: push to -300 N: "}});
         const auto rows = cells_of(said.out);
         ASSERT_EQ(rows.size(), 1u + 52) << said.out;  // -210 to 300 N
         EXPECT_EQ(std::stod(rows[1][2]), first ? -210 : 300);
@@ -308,7 +290,7 @@ TEST(SolveCommand, RowsBeforeAFailureAreWrittenAndTheCodeIs3) {
         for (std::size_t k = 2; k < rows.size(); ++k)
             EXPECT_NEAR(std::stod(rows[k][2]) - std::stod(rows[k - 1][2]), first ? 10 : -10, 1e-9);
         const auto file = (folder.path / "rows.csv").string();
-        EXPECT_EQ(elastocheck_says(command + " -o " + file).code, 3);
+        expect_says(command + " -o " + file, 3);
         EXPECT_EQ(text_of(file), said.out) << "what was reached is written";
     }
 }
@@ -319,12 +301,9 @@ TEST(ExportCommand, ConvertsBushingsAndSaysByHowMuchTheOutputsMove) {
     const Folder folder;
     const std::string deck = (folder.path / "m.adm").string(),
                       command = "export " + scenes + "/double_wishbone.yaml ";
-    const Said refused = elastocheck_says(command + "-o " + deck);
-    EXPECT_EQ(refused.code, 2);
-    EXPECT_TRUE(contains(refused.err, "--formulation adams converts it")) << refused.err;
+    expect_says(command + "-o " + deck, 2, {.err = {"--formulation adams converts it"}});
     EXPECT_FALSE(std::filesystem::exists(deck));
-    const Said said = elastocheck_says(command + "--formulation adams -o " + deck);
-    EXPECT_EQ(said.code, 0) << said.err;
+    const Said said = expect_says(command + "--formulation adams -o " + deck, 0);
     const std::string effect =
         "converted to the bushing formulation of adams: the outputs change by up to 6.9e-05 mm "
         "(wheel_centre_z "
@@ -334,9 +313,8 @@ TEST(ExportCommand, ConvertsBushingsAndSaysByHowMuchTheOutputsMove) {
         "leg";
     EXPECT_TRUE(contains(said.err, effect)) << said.err;
     EXPECT_TRUE(contains(text_of(deck), effect));
-    EXPECT_EQ(elastocheck_says("import " + deck + " -o " + (folder.path / "s.yaml").string()).code,
-              0);
-    EXPECT_EQ(elastocheck_says(command + "--formulation chrono").code, 2);
+    expect_says("import " + deck + " -o " + (folder.path / "s.yaml").string(), 0);
+    expect_says(command + "--formulation chrono", 2);
 }
 
 // A static load on an unresisted motion: no point is reached, not even a = 0.
@@ -355,11 +333,8 @@ probes: {tip: {on: bar, at: b}}
 )"),
                       states = (folder.path / "states.jsonl").string();
     for (int again = 0; again < 2; ++again) {
-        const Said said =
-            elastocheck_says("solve " + loose + " --method equilibrium --states " + states);
-        EXPECT_EQ(said.code, 3) << said.err;
-        EXPECT_TRUE(contains(said.err, "states.jsonl: not written: no state was reached"))
-            << said.err;
+        expect_says("solve " + loose + " --method equilibrium --states " + states, 3,
+                    {.err = {"states.jsonl: not written: no state was reached"}});
         EXPECT_FALSE(std::filesystem::exists(states));
     }
 }
@@ -370,14 +345,13 @@ TEST(SolveCommand, RatesAreOfTheSamePointsAndChannels) {
     const std::string command =
         "solve " + scenes + "/chrono_mcpherson.yaml --method series --steps 20 --every 8 --rates " +
         file;
-    const Said said = elastocheck_says(command + " --channels toe,ball_joint.force_x");
-    EXPECT_EQ(said.code, 0) << said.err;
+    const Said said = expect_says(command + " --channels toe,ball_joint.force_x", 0);
     const auto rows = cells_of(said.out), rates = cells_of(text_of(file));
     ASSERT_EQ(rates.size(), rows.size());
     for (std::size_t k = 1; k < rows.size(); ++k) EXPECT_EQ(rates[k][1], rows[k][2]);
     EXPECT_EQ(rates[0], (std::vector<std::string>{"branch", "parameter", "parameter unit",
                                                   "toe [deg per parameter unit]"}));
-    EXPECT_EQ(elastocheck_says(command + " --channels '*force_x'").code, 2);
+    expect_says(command + " --channels '*force_x'", 2);
 }
 
 TEST(SolveCommand, ReaderThatHasReadEnoughEndsItQuietly) {
@@ -385,8 +359,7 @@ TEST(SolveCommand, ReaderThatHasReadEnoughEndsItQuietly) {
         std::string(ELASTOCHECK_COMMAND) + " solve " + scenes + "/pinned_bar.yaml --steps 20000";
     // Exit code of a shell for a filter ended by SIGPIPE, also where the signal is ignored.
     for (const char* shell : {"bash -o pipefail -c '", "bash -o pipefail -c 'trap \"\" PIPE; "}) {
-        const Said said = support::says(shell + command + " | head -1'");
-        EXPECT_EQ(said.code, 141);
+        const Said said = expect_said(support::says(shell + command + " | head -1'"), 141);
         EXPECT_TRUE(said.out.starts_with("branch,leg,parameter,unit,")) << said.out;
         EXPECT_TRUE(said.err.empty()) << said.err;
     }

@@ -17,9 +17,6 @@
 namespace elastocheck::reports {
 namespace {
 
-using support::contains;
-using support::Folder;
-using support::text_of;
 using json = nlohmann::ordered_json;
 
 // Small: only two figures.
@@ -113,11 +110,8 @@ TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
           {"report " + scenes + "/single_bushing.yaml -o never --stress " + scenes +
                "/single_bushing.yaml",
            "single_bushing.yaml"},
-          {"report --from a.json -o never --stress b.json", "--stress: not with --from"}}) {
-        const auto said = elastocheck_says(arguments);
-        EXPECT_EQ(said.code, 2) << arguments;
-        EXPECT_TRUE(contains(said.err, says)) << arguments << ": " << said.err;
-    }
+          {"report --from a.json -o never --stress b.json", "--stress: not with --from"}})
+        expect_says(arguments, 2, {.err = {says}});
 }
 
 TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {

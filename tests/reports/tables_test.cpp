@@ -19,6 +19,7 @@
 #include "reports/tables/studies/study_tables.hpp"
 #include "reports/tables/studies/work_precision_tables.hpp"
 #include "reports/text/numbers.hpp"
+#include "tests/reports/command.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -35,10 +36,6 @@ const compare::Table small{
      {"error", "mm", "", false, Digits::size},
      {"count", "", "", false, Digits::whole}},
     {{"a, b", "x", 0.1, 3.0}, {"c", "x", nan, 4.0}, {"a, b", "y", 1e-7, 3.0}}};
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != text.npos;
-}
 
 void expect_same(const compare::Table& a, const compare::Table& b) {
     ASSERT_EQ(a.columns.size(), b.columns.size());
