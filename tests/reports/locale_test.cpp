@@ -60,8 +60,7 @@ const Line lines[] = {
      "$E compare $SCENES/pendulum.yaml --quiet --jobs 1 -o compared --formulations --within "
      "0.02mm,0.002deg"},
     {"converge", "$E converge $SCENES/parallel_springs.yaml --quiet -o converged"},
-    {"trade",
-     "$E trade $SCENES/single_bushing.yaml --quiet -o traded --tolerance 0.015mm,0.0015deg"},
+    {"trade", "$E trade chain.yaml --quiet -o traded --tolerance 0.015mm,0.0015deg"},
     {"new", "$E new double_wishbone"},
     {"import",
      "$E import $SAMPLES/generic__DoubleWishbone.json -o wishbone.yaml && $E inspect "
@@ -108,6 +107,7 @@ Found run(const std::string& line, const std::string& environment) {
     static const std::regex seconds(
         "[0-9.e+-]+ s, [0-9.e+-]+ s of processor time.*|in [0-9]+ s of .*");
     const Folder folder;
+    folder.write("chain.yaml", chain_of(15));
     Found found;
     found.said = support::says(
         fmt::format("cd {} && unset CI GITHUB_STEP_SUMMARY; export {} E={} SCENES={} SAMPLES={} "
