@@ -42,7 +42,7 @@ std::vector<std::string> parts(const std::string& text, const std::string& open,
     return found;
 }
 
-TEST(Page, AsksForNothingFromOutside) {
+TEST(Report, PageAsksForNothingFromOutside) {
     const std::string html = page();
     // the page's own two scripts, by their hashes, and no other; data of the drawings are inert
     EXPECT_TRUE(std::regex_search(
@@ -62,7 +62,7 @@ TEST(Page, AsksForNothingFromOutside) {
             << address;
 }
 
-TEST(Page, HeadingsAreInOrderAndIdsAreUnique) {
+TEST(Report, PageHeadingsAreInOrderAndIdsAreUnique) {
     const std::string html = page();
     EXPECT_NE(html.find("<html lang=\"en\">"), html.npos);
     int before = 0, first = 0;
@@ -82,7 +82,7 @@ TEST(Page, HeadingsAreInOrderAndIdsAreUnique) {
             EXPECT_TRUE(ids.contains(reference)) << reference;
 }
 
-TEST(Page, EveryFigureHasASizeWordsAndATable) {
+TEST(Report, PageEveryFigureHasASizeWordsAndATable) {
     const std::string html = page();
     const auto figures = parts(html, "<figure", "</figure>");
     EXPECT_GE(figures.size(), 15u);
@@ -109,13 +109,13 @@ TEST(Page, EveryFigureHasASizeWordsAndATable) {
     }
 }
 
-TEST(Page, ColoursAreClassesSoThatDarkPaperCanChangeThem) {
+TEST(Report, PageColoursAreClassesSoThatDarkPaperCanChangeThem) {
     for (const auto& svg : parts(page(), "<svg", "</svg>"))
         for (const auto& colour : all(svg, "(?:stroke|fill|color)=['\"]((?:rgb|#)[^'\"]*)['\"]"))
             ADD_FAILURE() << "a colour of its own: " << colour;
 }
 
-TEST(Page, TheMarkdownTwinSaysTheSame) {
+TEST(Report, PageTheMarkdownTwinSaysTheSame) {
     const Folder folder;
     write_report(two_scenes(), "result.json", folder.path / "r");
     const std::string html = text_of(folder.path / "r" / "report.html"),
@@ -187,7 +187,7 @@ const seen={boxes,wrong,clashes,outside,requests:performance.getEntriesByType('r
 
 bool no_browser() { return support::says("command -v chromium").code != 0; }
 
-TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
+TEST(Report, BrowserOpensThePageWithoutAnErrorOrARequest) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     for (const auto& [width, scheme] : {std::pair{"1280", "1"}, std::pair{"390", "0"}}) {
         const json seen = measured_in_a_browser(page(), layout, width, scheme);
@@ -211,7 +211,7 @@ TEST(Browser, OpensThePageWithoutAnErrorOrARequest) {
 
 // Values under the pointer, and curves switched by the legend. The policy of the page lets this
 // script run: it names its hash.
-TEST(Browser, TellsTheValueUnderThePointerAndSwitchesCurves) {
+TEST(Report, BrowserTellsTheValueUnderThePointerAndSwitchesCurves) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const std::string html = page(compared_result("front_axle"));
     const json seen = measured_in_a_browser(html, R"(
@@ -260,7 +260,7 @@ const drag=(x,y)=>{const at=(e,t,x,y)=>e.dispatchEvent(new PointerEvent(t,{point
 const key=k=>svg.dispatchEvent(new KeyboardEvent('keydown',{key:k}));
 )";
 
-TEST(Browser, TurnsTheDrawingByPointerAndKeys) {
+TEST(Report, BrowserTurnsTheDrawingByPointerAndKeys) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const json seen = measured_in_a_browser(page(compared_result("front_axle")), turned + R"(
 const seen={wrong,requests:performance.getEntriesByType('resource').length,hidden:getComputedStyle(fixed).display};
@@ -286,7 +286,7 @@ seen.focus=svg.tabIndex;seen.buttons=[...document.querySelectorAll('.turn button
     EXPECT_NEAR(across("near", 0) / across("top", 0), 1.25, 2e-3);
 }
 
-TEST(Browser, MovesTheDrawingByWhatTheCurveSays) {
+TEST(Report, BrowserMovesTheDrawingByWhatTheCurveSays) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const json& result = compared_result("front_axle");
     const json seen = measured_in_a_browser(page(result), turned + R"(
@@ -331,7 +331,7 @@ seen.px_per_mm=(centres()[0][0]-centres()[1][0])/(y(l)-y(r))*100;
     }
 }
 
-TEST(Browser, ShowsTheFixedViewsWithoutScripts) {
+TEST(Report, BrowserShowsTheFixedViewsWithoutScripts) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     std::string html = page(compared_result("front_axle"));
     const std::string whole = html;
@@ -361,7 +361,7 @@ const seen={wrong,views:views.map(s=>s.getBoundingClientRect().height),controls:
     EXPECT_GT(std::abs(printed(without) / no_scripts - 1), 2e-3) << "a page without them differs";
 }
 
-TEST(Browser, RunsTheScriptsOfThePolicy) {
+TEST(Report, BrowserRunsTheScriptsOfThePolicy) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const Folder folder;
     const auto said = in_a_browser(folder, page(compared_result("front_axle")), "--dump-dom");
@@ -369,7 +369,7 @@ TEST(Browser, RunsTheScriptsOfThePolicy) {
     EXPECT_EQ(said.err.find("Content Security Policy"), std::string::npos) << said.err;
 }
 
-TEST(Browser, RowsOfRatesFitAPhone) {
+TEST(Report, BrowserRowsOfRatesFitAPhone) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     const json seen = measured_in_a_browser(page(compared_result("front_axle")), R"(
 const rows=[...document.querySelectorAll('section[id$=rates] tr,section[id$=first] tr')];
@@ -392,7 +392,7 @@ int printed_pages(const std::string& html) {
     return static_cast<int>(all(text_of(pdf), "(/Type /Page)[^s]").size());
 }
 
-TEST(Browser, PartOneOfAnAxlePrintsOnFivePages) {
+TEST(Report, BrowserPartOneOfAnAxlePrintsOnFivePages) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     std::string html = page(compared_result("front_axle"));
     EXPECT_LE(html.size(), 950'000u);
@@ -407,7 +407,7 @@ TEST(Browser, PartOneOfAnAxlePrintsOnFivePages) {
     EXPECT_LE(whole, first + 15);
 }
 
-TEST(Browser, PrintsTheFirstScreenBelowTheTitleAndPartOneOnANewPage) {
+TEST(Report, BrowserPrintsTheFirstScreenBelowTheTitleAndPartOneOnANewPage) {
     if (no_browser()) GTEST_SKIP() << "chromium is not installed";
     std::string html = page(compared_result("mcpherson_strut"));  // without studies
     const auto evidence = html.find("<details class=\"evidence\"");

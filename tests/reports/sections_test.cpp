@@ -151,7 +151,7 @@ TEST(Sections, AMissingFieldIsNamed) {
 
 // ---- How far the numbers can be trusted.
 
-TEST(Trust, IsTheDistanceOfTheReferencesAndTheProvedPoints) {
+TEST(Sections, TrustIsTheDistanceOfTheReferencesAndTheProvedPoints) {
     json result = sample_result();
     result["scenes"][0]["findings"]["references_apart"]["mm"]["max"] = 9e-12;
     result["scenes"][0]["findings"]["references_apart"]["deg"]["max"] = 2e-13;
@@ -169,7 +169,7 @@ TEST(Trust, IsTheDistanceOfTheReferencesAndTheProvedPoints) {
         << said(result, "first");
 }
 
-TEST(Trust, WhatCannotBeJudgedIsSaidFirst) {
+TEST(Sections, TrustWhatCannotBeJudgedIsSaidFirst) {
     json result = sample_result();
     result["scenes"][0]["verdict"] = {{"conclusive", false},
                                       {"numbers_compared", 3},
@@ -181,7 +181,7 @@ TEST(Trust, WhatCannotBeJudgedIsSaidFirst) {
         << said(result, "first");
 }
 
-TEST(Trust, AReferenceThatStoppedIsNotSaidToAgree) {
+TEST(Sections, TrustAReferenceThatStoppedIsNotSaidToAgree) {
     json result = sample_result();
     for (auto& branch : result["scenes"][0]["branches"]) {
         auto& curve = branch["legs"][2]["curve"];
@@ -204,7 +204,7 @@ TEST(Trust, AReferenceThatStoppedIsNotSaidToAgree) {
 
 // ---- Which fast method is good enough.
 
-TEST(Methods, AreATableOfErrorAndWork) {
+TEST(Sections, MethodsAreATableOfErrorAndWork) {
     json result = sample_result();
     auto& judgement = result["scenes"][0]["judgement"];
     judgement["position"]["max"] = 2.5;
@@ -221,7 +221,7 @@ TEST(Methods, AreATableOfErrorAndWork) {
 }
 
 // A method is within the tolerance by its own numbers; NaN never is.
-TEST(Methods, AreWithinTheToleranceByTheirNumbers) {
+TEST(Sections, MethodsAreWithinTheToleranceByTheirNumbers) {
     json result = sample_result();
     auto& table = result["scenes"][0]["trade"]["points"];
     const auto column = [&](const char* name) {
@@ -241,7 +241,7 @@ TEST(Methods, AreWithinTheToleranceByTheirNumbers) {
         std::regex_search(set_published(nullptr), std::regex("published . \\d+.*steps . yes")));
 }
 
-TEST(Methods, WithoutARecommendationNoneIsNamed) {
+TEST(Sections, MethodsWithoutARecommendationNoneIsNamed) {
     json result = sample_result();
     result["scenes"][0]["trade"]["recommendation"] = nullptr;
     auto& table = result["scenes"][0]["trade"]["points"];
@@ -270,7 +270,7 @@ TEST(Sections, NameTheReadingsByWhatTheBranchMoves) {
 // ---- Kinematics and compliance.
 
 // The first branch of the scene lifts one wheel, and it alone has rate errors.
-TEST(Kinematics, LeadsWithHeaveOfBothWheels) {
+TEST(Sections, KinematicsLeadsWithHeaveOfBothWheels) {
     json result = compared_result("front_axle");
     auto& branches = result["scenes"][0]["branches"];
     json single = branches[1];  // opposite travel
@@ -285,7 +285,7 @@ TEST(Kinematics, LeadsWithHeaveOfBothWheels) {
     EXPECT_EQ(leading(), "single_wheel") << "else the first travel that is declared";
 }
 
-TEST(Kinematics, NamesWhatEachBranchDoesToTheWheels) {
+TEST(Sections, KinematicsNamesWhatEachBranchDoesToTheWheels) {
     std::map<std::string, std::string> cases;
     for (const auto& branch : compared_result("front_axle")["scenes"][0]["branches"])
         cases[branch["name"]] = branch["case"];
@@ -303,7 +303,7 @@ TEST(Kinematics, NamesWhatEachBranchDoesToTheWheels) {
 }
 
 // In roll the right wheel goes the other way: over its own travel its toe is that of the left one.
-TEST(Kinematics, EachWheelGoesOverItsOwnTravel) {
+TEST(Sections, KinematicsEachWheelGoesOverItsOwnTravel) {
     json result = compared_result("front_axle");
     const Figure coincide = figure(result, "toe-travel");
     EXPECT_EQ(coincide.x, "wheel travel [mm]");
@@ -326,7 +326,7 @@ TEST(Kinematics, EachWheelGoesOverItsOwnTravel) {
 }
 
 // y points to the left: outwards for one wheel, inwards for the other.
-TEST(Kinematics, LateralMovementIsPositiveOutwardsOnBothSides) {
+TEST(Sections, KinematicsLateralMovementIsPositiveOutwardsOnBothSides) {
     for (const auto& series : figure(compared_result("front_axle"), "track-change-travel").series) {
         EXPECT_FALSE(contains(series.title, "right")) << series.title;
         EXPECT_LT(series.rows.front()[1], 0) << "inwards in rebound";
@@ -334,7 +334,7 @@ TEST(Kinematics, LateralMovementIsPositiveOutwardsOnBothSides) {
 }
 
 // Both sides of the design position are one curve.
-TEST(Kinematics, JounceAndReboundAreOneCurve) {
+TEST(Sections, KinematicsJounceAndReboundAreOneCurve) {
     const Figure toe = figure(sample_result(), "toe-travel");
     ASSERT_EQ(toe.series.size(), 1u);
     const auto& rows = toe.series[0].rows;
@@ -343,7 +343,7 @@ TEST(Kinematics, JounceAndReboundAreOneCurve) {
     EXPECT_GT(rows.back()[0], 10);
 }
 
-TEST(Kinematics, TheWheelLoadHasTheStaticPart) {
+TEST(Sections, KinematicsTheWheelLoadHasTheStaticPart) {
     const Figure load = figure(compared_result("front_axle"), "wheel-load-travel");
     EXPECT_EQ(load.y, "wheel load [N]");
     for (const auto& series : load.series) {
@@ -356,7 +356,7 @@ TEST(Kinematics, TheWheelLoadHasTheStaticPart) {
     EXPECT_NEAR(loads[loads.size() / 2].get<double>(), 3800, 1e-6);
 }
 
-TEST(Kinematics, AxesHaveTheDrivesOwnNames) {
+TEST(Sections, KinematicsAxesHaveTheDrivesOwnNames) {
     const json& result = compared_result("front_axle");
     EXPECT_EQ(figure(result, "toe-steering").x, "rack [mm]");
     EXPECT_EQ(figure(result, "toe-force").x, "force [N]");
@@ -370,7 +370,7 @@ TEST(Kinematics, AxesHaveTheDrivesOwnNames) {
 }
 
 // Row by row against the document: what is drawn, and what the trim makes of it.
-TEST(First, ShowsTheStaticAlignmentAsDrawnAndAsSettled) {
+TEST(Sections, FirstShowsTheStaticAlignmentAsDrawnAndAsSettled) {
     json result = compared_result("front_axle");
     const std::string text = said(result, "first");
     EXPECT_TRUE(contains(text,
@@ -386,7 +386,7 @@ TEST(First, ShowsTheStaticAlignmentAsDrawnAndAsSettled) {
         << said(result, "first");
 }
 
-TEST(First, HasKeyFiguresWithUnitsAndNoVerdict) {
+TEST(Sections, FirstHasKeyFiguresWithUnitsAndNoVerdict) {
     const std::string text = said(compared_result("front_axle"), "first");
     for (const char* part : {"| wheel rate | ", "| N/mm |", "| roll centre height | ",
                              "| toe change at −80\u00a0mm | ", "| roll stiffness at the wheels | "})
@@ -396,7 +396,7 @@ TEST(First, HasKeyFiguresWithUnitsAndNoVerdict) {
 }
 
 // The wheels of an axle in roll: K = k t² / 2, of which what heave lacks is the bar's.
-TEST(Rates, RollStiffnessFollowsFromTheWheelRates) {
+TEST(Sections, RatesRollStiffnessFollowsFromTheWheelRates) {
     const json& result = compared_result("front_axle");
     double roll = 0, heave = 0;
     const auto& design = result["scenes"][0]["characteristics"]["design"];
@@ -416,7 +416,7 @@ TEST(Rates, RollStiffnessFollowsFromTheWheelRates) {
 }
 
 // A quotient of a rounding error and a value that is zero is no percentage.
-TEST(Rates, HaveNoPercentageOfZero) {
+TEST(Sections, RatesHaveNoPercentageOfZero) {
     json result = compared_result("front_axle");
     auto& row = result["scenes"][0]["characteristics"]["design"]["rows"][0];
     row[5] = 0.3, row[6] = 85519.0;
@@ -424,7 +424,7 @@ TEST(Rates, HaveNoPercentageOfZero) {
     EXPECT_TRUE(contains(said(result, "matrices"), "| +0.300 | – |")) << said(result, "matrices");
 }
 
-TEST(Forces, OfAStopAreShownWithItsPenetration) {
+TEST(Sections, ForcesOfAStopAreShownWithItsPenetration) {
     const json& result = compared_result("front_axle");
     double deflection = 0;
     for (const auto& row : result["scenes"][0]["forces"]["rows"])
@@ -439,7 +439,7 @@ TEST(Forces, OfAStopAreShownWithItsPenetration) {
     EXPECT_NEAR(std::stod(found[1]), deflection - 25, 0.5);
 }
 
-TEST(Forces, AreTheLargestAlongTheBranchAndSayWhere) {
+TEST(Sections, ForcesAreTheLargestAlongTheBranchAndSayWhere) {
     json result = compared_result("twist_beam");
     const json& branch = result["scenes"][0]["branches"][0];
     for (auto& row : result["scenes"][0]["largest_forces"]["rows"]) {
@@ -452,7 +452,7 @@ TEST(Forces, AreTheLargestAlongTheBranchAndSayWhere) {
         << said(result, "forces");
 }
 
-TEST(Forces, OfABeamAreThoseOfItsMostLoadedSegment) {
+TEST(Sections, ForcesOfABeamAreThoseOfItsMostLoadedSegment) {
     const json& result = compared_result("twist_beam");
     std::set<std::string> beams;
     for (const auto& element : result["scenes"][0]["elements"])
@@ -465,7 +465,7 @@ TEST(Forces, OfABeamAreThoseOfItsMostLoadedSegment) {
     }
 }
 
-TEST(ParseResult, RefusesWhatItCannotRead) {
+TEST(Sections, ParseResultRefusesWhatItCannotRead) {
     const auto refusal = [](const std::string& text) {
         try {
             (void)parse_result(text, file);
