@@ -69,6 +69,15 @@ class Read {
     std::vector<double> values_;
 };
 
+// Both undefined, or alike to a share of the value, at least of 1.
+void expect_alike(double is, double other, double share, const std::string& where) {
+    if (is == undefined) {
+        EXPECT_EQ(other, undefined) << where;
+    } else {
+        EXPECT_NEAR(other, is, share * std::max(1.0, std::abs(is))) << where;
+    }
+}
+
 // ---- One arm about a fixed axis: closed form by the velocity field ω × (p - a).
 
 struct Arm {
@@ -77,6 +86,7 @@ struct Arm {
     Vector3d n() const { return (b - a).normalized(); }
     Vector3d v(const Vector3d& p) const { return n().cross(p - a); }
 };
+const Arm trailing{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
 
 std::string arm_scene(const Arm& arm, const std::string& more = "") {
     const auto point = [](const Vector3d& p) {
@@ -125,9 +135,8 @@ TEST(Characteristics, SemiTrailingArmTurnsAboutItsAxisInEveryLeg) {
 }
 
 TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromTheFront) {
-    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     for (const Leg leg : all_legs) {
-        const Read is(model_of(arm_scene(arm)), leg);
+        const Read is(model_of(arm_scene(trailing)), leg);
         EXPECT_NEAR(is["roll_centre_height"], 0, 1e-9);
         EXPECT_EQ(is["front_view_swing_arm"], undefined);
         EXPECT_NEAR(is["side_view_swing_arm"], 500, 1e-9);
@@ -135,19 +144,26 @@ TEST(Characteristics, TrailingArmHasItsRollCentreOnTheRoadAndAnEndlessArmFromThe
     }
 }
 
-// On an oblique slide both wheels move together: back by a quarter and across by a tenth of their
-// rise.
-TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
-    const Model model = model_of(R"(
-points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4]}
+// Both wheels on one body, which one joint leaves one motion.
+Model axle_on(const std::string& joint) {
+    return model_of(R"(
+points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4],
+         beside: [0, -2, 0]}
 bodies: {axle: {origin: mid}}
-joints: {slide: {type: translational, bodies: [axle, ground], at: mid, axis: [-0.25, 0.1, 1]}}
+joints: {guide: {bodies: [axle, ground], )" +
+                    joint + R"(}}
 springs: {coil: {bodies: [axle, ground], from: mid, to: top, rate: 50e3}}
 branches: {travel: {drive: left.travel, to: 0.01, steps: 2}}
 wheels:
   left: {body: axle, centre: l, contact_patch: pl, spin_axis: y, side: left}
   right: {body: axle, centre: r, contact_patch: pr, spin_axis: -y, side: right}
 )");
+}
+
+// On an oblique slide both wheels move together: back by a quarter and across by a tenth of their
+// rise.
+TEST(Characteristics, AnAxleThatMovesOnlyAsOneHasTheFiguresOfThatMotion) {
+    const Model model = axle_on("type: translational, at: mid, axis: [-0.25, 0.1, 1]");
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
         const Read is(model, leg);
@@ -170,17 +186,7 @@ wheels:
 // About an axis beside the right wheel the left one rises by 2.8, the right one by 1.2: each value
 // is per metre of its own wheel's travel.
 TEST(Characteristics, OfAnAxleThatMovesAsOneEachWheelHasItsOwnTravel) {
-    const Model model = model_of(R"(
-points: {l: [0, 0.8, 0], r: [0, -0.8, 0], pl: [0, 0.8, -0.3], pr: [0, -0.8, -0.3], mid: [0, 0, 0], top: [0, 0, 0.4],
-         beside: [0, -2, 0]}
-bodies: {axle: {origin: mid}}
-joints: {swing: {type: revolute, bodies: [axle, ground], at: beside, axis: x}}
-springs: {coil: {bodies: [axle, ground], from: mid, to: top, rate: 50e3}}
-branches: {travel: {drive: left.travel, to: 0.01, steps: 2}}
-wheels:
-  left: {body: axle, centre: l, contact_patch: pl, spin_axis: y, side: left}
-  right: {body: axle, centre: r, contact_patch: pr, spin_axis: -y, side: right}
-)");
+    const Model model = axle_on("type: revolute, at: beside, axis: x");
     for (const Leg leg : all_legs) {
         SCOPED_TRACE(name(leg));
         const Read is(model, leg);
@@ -195,10 +201,9 @@ wheels:
 // Per unit of rise the patch moves back by (0.1 + 0.3)/0.5, the centre by 0.1/0.5: the pivot is
 // ahead and above.
 TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
-    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
-    const auto with = [&](const char* axle) {
+    const auto with = [](const char* axle) {
         return model_of(arm_scene(
-            arm,
+            trailing,
             fmt::format("vehicle: {{wheelbase: 2.5, cg_height: 0.5, axle: {}, brake_share: 0.4, "
                         "drive_share: 1}}\n",
                         axle)));
@@ -214,8 +219,7 @@ TEST(Characteristics, AntiFiguresAreThoseOfTheArmsAngle) {
 // An unresisted motion has an undefined rate; a failed solve gives NaN, and the two are never
 // confused.
 TEST(Characteristics, FailureToAnswerIsNoAbsenceOfAWheelRate) {
-    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
-    const Model model = model_of(arm_scene(arm));
+    const Model model = model_of(arm_scene(trailing));
     Read is(model, Leg::equilibrium);
     const auto list = characteristics(model);
     const auto& rate = list[static_cast<std::size_t>(find_channel(list, "wheel_rate"))];
@@ -413,7 +417,6 @@ TEST(Characteristics, ComplianceOfOneBushingIsItsInverseSeenFromTheWheel) {
 // A jack and a tyre act as the dead force they exert: the response equals that under this force at
 // the same place.
 TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
-    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
     const auto rates_at_end = [&](const Model& model, const std::string& force) {
         const auto all = characteristics(model);
         const BranchSide way = sides_of(model, model.branches[0]).front();
@@ -428,7 +431,7 @@ TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
                          c < 0 ? 0.0 : values[static_cast<std::size_t>(c)]};
     };
     const auto scene = [&](const std::string& branches, const std::string& more) {
-        std::string text = arm_scene(arm, more);
+        std::string text = arm_scene(trailing, more);
         const auto from = text.find("branches:"), to = text.find('\n', from);
         return model_of(text.replace(from, to - from, branches));
     };
@@ -441,21 +444,15 @@ TEST(Characteristics, WheelThatIsHeldAnswersAsUnderTheForceThatHoldsIt) {
                "tyres: {front: {rate: 200e3, preload: 0}}\n", "front.force", "p"}}) {
         const auto [by_holding, force] = rates_at_end(scene(held.branches, held.more), held.force);
         ASSERT_GT(force, 1000) << held.force;
-        std::string text = arm_scene(arm, held.more);
+        std::string text = arm_scene(trailing, held.more);
         text.replace(text.find("at: p, force"), 5, "at: " + held.at);
         const auto from = text.find("branches:"), to = text.find('\n', from);
         text.replace(from, to - from,
                      fmt::format("branches: {{t: {{load: up, to: {:.17g}, steps: 2}}}}", force));
         const auto by_load = rates_at_end(model_of(text), "").first;
         ASSERT_EQ(by_load.size(), by_holding.size());
-        for (std::size_t c = 0; c < by_load.size(); ++c) {
-            if (std::isinf(by_load[c])) {
-                EXPECT_EQ(by_holding[c], by_load[c]) << held.force << " " << c;
-            } else {
-                EXPECT_NEAR(by_holding[c], by_load[c], 1e-7 * std::max(1.0, std::abs(by_load[c])))
-                    << held.force << " " << c;
-            }
-        }
+        for (std::size_t c = 0; c < by_load.size(); ++c)
+            expect_alike(by_load[c], by_holding[c], 1e-7, fmt::format("{} {}", held.force, c));
     }
 }
 
@@ -472,17 +469,9 @@ TEST(Characteristics, LegsAgreeAndReciprocityHoldsOnEverySuspension) {
         const Model model = standing(support::scene(scene));
         const Read truth(model, Leg::equilibrium), second(model, Leg::energy),
             series(model, Leg::series);
-        for (std::size_t c = 0; c < truth.values().size(); ++c) {
-            const double is = truth.values()[c];
-            for (const Read* other : {&second, &series}) {
-                if (is == undefined) {
-                    EXPECT_EQ(other->values()[c], undefined) << truth.channels()[c].name;
-                } else {
-                    EXPECT_NEAR(other->values()[c], is, 1e-6 * std::max(1.0, std::abs(is)))
-                        << truth.channels()[c].name;
-                }
-            }
-        }
+        for (std::size_t c = 0; c < truth.values().size(); ++c)
+            for (const Read* other : {&second, &series})
+                expect_alike(truth.values()[c], other->values()[c], 1e-6, truth.channels()[c].name);
         for (const Read* leg : {&truth, &second, &series}) {
             const auto C = compliance(model, WheelPoint::centre, leg->state, leg->response);
             EXPECT_LE(reciprocity(model, C), 1e-8);
@@ -498,23 +487,14 @@ TEST(Characteristics, WheelItsMirrorImageAndOtherUnitsAreToldAlike) {
             units(standing(support::in_millimetres_and_kilonewtons(name)), Leg::equilibrium);
         for (std::size_t c = 0; c < is.values().size(); ++c) {
             const auto& channel = is.channels()[c];
-            for (const Read* same : {&other, &units}) {
-                if (is.values()[c] == undefined) {
-                    EXPECT_EQ(same->values()[c], undefined) << name << " " << channel.name;
-                } else {
-                    EXPECT_NEAR(same->values()[c], is.values()[c],
-                                1e-7 * std::max(1.0, std::abs(is.values()[c])))
-                        << name << " " << channel.name;
-                }
-            }
-            // Left and right values of an axle are equal.
-            // one rack steers one wheel in and the other out
+            const std::string where = std::string(name) + " " + channel.name;
+            for (const Read* same : {&other, &units})
+                expect_alike(is.values()[c], same->values()[c], 1e-7, where);
+            // Left and right values of an axle are equal, but for the steer gradient: one rack
+            // steers one wheel in and the other out.
             if (channel.name.starts_with("left.") && is.values()[c] != undefined &&
-                !channel.name.ends_with("steer_gradient")) {
-                EXPECT_NEAR(is["right." + channel.name.substr(5)], is.values()[c],
-                            1e-7 * std::max(1.0, std::abs(is.values()[c])))
-                    << name << " " << channel.name;
-            }
+                !channel.name.ends_with("steer_gradient"))
+                expect_alike(is.values()[c], is["right." + channel.name.substr(5)], 1e-7, where);
         }
     }
 }
@@ -566,11 +546,9 @@ TEST(Characteristics, RatesAreTheSlopesOfTheCurves) {
 
 // The published matrix contains no spring force: its wheel rate is that of the unloaded suspension.
 TEST(Characteristics, PublishedTangentLeavesOutWhatThePreloadDoes) {
-    const Arm arm{{0.5, 0.9, 0.1}, {0.5, 0.5, 0.1}};
-    const Model unloaded = model_of(arm_scene(arm));
-    std::string text =
-        arm_scene(arm, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n");
-    const Model loaded = model_of(text);
+    const Model unloaded = model_of(arm_scene(trailing)),
+                loaded = model_of(arm_scene(
+                    trailing, "static_loads: {weight: {on: arm, at: p, force: [0, 0, 2000]}}\n"));
     const double published = Read(loaded, Leg::recursive)["wheel_rate"],
                  truth = Read(loaded, Leg::equilibrium)["wheel_rate"];
     EXPECT_GT(std::abs(published - truth), 0.01 * truth);
