@@ -29,7 +29,7 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
     const std::string chain = folder.write("chain.yaml", chain_of(15));
     for (const std::string& command :
          {"inspect " + scene, "solve --steps=4 " + scene, "compare --steps=4 " + scene,
-          "converge --steps=4,8,16,32,64 " + scene, "trade " + chain}) {
+          "converge " + scene + " --steps=4,8,16,32,64", "trade " + chain}) {
         const json said = document(command);
         EXPECT_EQ(said["schema"], "elastocheck/result/3") << command;
         EXPECT_EQ(said["scenes"].size(), 1u) << command;

@@ -349,12 +349,13 @@ MatrixXd inverse(const MatrixXd& J) {
     return D_c.asDiagonal() * Eigen::PartialPivLU<MatrixXd>(A).inverse() * D_r.asDiagonal();
 }
 
-// Newton's method until its steps are rounding. The last two steps share an inverse, unless they do
+// Newton's method until its steps are rounding, near the state: a divergent one along an idle motion
+// also ends in small steps, at coordinates of 1e7 and more. The last two steps share an inverse, unless they do
 // not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
 // point this is rounding.
 Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     constexpr int most = 12, last = 2, most_anew = 3;
-    constexpr double close = 1e-7;  // relative to the model's size
+    constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
     Approximate at{from, {}};
     const auto size_of = [&](const VectorXd& step) {
@@ -384,6 +385,7 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
         if (other_side) shared = 0, ++anew;
         before = size;
     }
+    at.settled = at.settled && size_of(at.y - from) <= near;
     return at;
 }
 

@@ -87,7 +87,8 @@ std::optional<VectorXd> bend(const Continuation& continuation, double h) {
 //
 //   A = x + D x',   B = D (x₀' - x'),   D² c = 3 A + B,   D³ d = 2 A + B
 //
-// For a rotation θ the rate is J⁻¹(θ) ω = ω - ½ θ × ω + O(θ²) ω.
+// For a rotation θ the rate is J⁻¹(θ) ω = ω - ½ θ × ω + O(θ²) ω. A and B are without idle motion and
+// self-stress, which no equation corrects: the cubic would take five times the last one each step.
 VectorXd predicted_step(const Continuation& continuation, double h) {
     const Station& here = continuation.here;
     VectorXd dx = h * here.tangent;
@@ -104,7 +105,11 @@ VectorXd predicted_step(const Continuation& continuation, double h) {
         const Eigen::Vector3d once = cross(theta, Eigen::Vector3d(turn));
         turn += -once / 2 + cross(theta, once) / 12;
     }
-    const VectorXd A = back + D * here.tangent, B = D * (rate - here.tangent);
+    const Sparse& V = here.linearised.modes.right;
+    const auto resisted = [&](const VectorXd& v) -> VectorXd {
+        return v - V * (V.transpose() * v);
+    };
+    const VectorXd A = resisted(back + D * here.tangent), B = resisted(D * (rate - here.tangent));
     VectorXd cubic = h * here.tangent + share * share * (3 * A + B + share * (2 * A + B));
     return (cubic - dx).norm() < 0.5 * more->norm() ? cubic : dx;
 }

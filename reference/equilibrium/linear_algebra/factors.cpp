@@ -2,7 +2,6 @@
 
 #include <klu.h>
 
-#include <Eigen/LU>
 #include <Eigen/SPQRSupport>
 #include <algorithm>
 #include <cmath>
@@ -20,9 +19,6 @@ namespace {
 // Threshold pivoting: a pivot may be this much smaller than the largest of its column to reduce
 // fill-in. Newton's method recovers the lost digits.
 constexpr double pivot_preference = 0.1;
-
-// Up to this size a dense LU takes less time than KLU.
-constexpr Index few = 64;
 
 klu_common settings() {
     klu_common common;
@@ -88,24 +84,6 @@ struct Pivots {
     }
 };
 
-// L U = P R A, the rows scaled to size one by R.
-struct Dense {
-    VectorXd R;
-    Eigen::PartialPivLU<MatrixXd> lu;
-    explicit Dense(MatrixXd A)
-        : R(A.rowwise()
-                .lpNorm<Eigen::Infinity>()
-                .cwiseMax(std::numeric_limits<double>::min())
-                .cwiseInverse()),
-          lu(R.asDiagonal() * A) {}
-    int sign() const {
-        const auto pivots = lu.matrixLU().diagonal().array();
-        if (!(pivots != 0).all()) return 0;
-        const auto negative = (pivots < 0).count();
-        return static_cast<int>(lu.permutationP().determinant()) * (negative % 2 == 0 ? 1 : -1);
-    }
-};
-
 bool is_finite(const Sparse& A) {
     return Eigen::Map<const VectorXd>(A.valuePtr(), A.nonZeros()).allFinite();
 }
@@ -119,11 +97,6 @@ double largest_entry(const Sparse& A) {
 // KLU form: L U + F = R⁻¹ P A Q with F above the diagonal blocks of U, R > 0.
 Factors::Factors(const Sparse& A, const Factors* of_such) : size_(A.cols()) {
     if (size_ == 0) return;
-    if (size_ <= few) {
-        dense_ = std::make_shared<const Dense>(A);
-        sign_ = dense_->sign();
-        return;
-    }
     order_ = of_such != nullptr && of_such->order_ && of_such->order_->is_for(A)
                  ? of_such->order_
                  : std::make_shared<const Order>(A);
@@ -137,7 +110,6 @@ Factors::Factors(const Sparse& A, const Factors* of_such) : size_(A.cols()) {
 
 double Factors::condition(const Sparse& A) const {
     if (sign_ == 0) return std::numeric_limits<double>::infinity();
-    if (dense_) return 1 / dense_->lu.rcond();
     klu_common common = settings();
     klu_condest(starts(A), values(A), order_->symbolic, pivots_->numeric, &common);
     return common.condest;
@@ -145,26 +117,19 @@ double Factors::condition(const Sparse& A) const {
 
 MatrixXd Factors::solve(MatrixXd right) const {
     if (sign_ == 0) right.setConstant(std::numeric_limits<double>::quiet_NaN());
-    if (right.size() == 0 || sign_ == 0) return right;
-    if (dense_ && right.cols() == 1)
-        return dense_->lu.solve(VectorXd(dense_->R.cwiseProduct(right.col(0))));
-    if (dense_) return dense_->lu.solve(dense_->R.asDiagonal() * right);
     klu_common common = settings();
-    klu_solve(order_->symbolic, pivots_->numeric, static_cast<int>(right.rows()),
-              static_cast<int>(right.cols()), right.data(), &common);
+    if (right.size() > 0 && sign_ != 0)
+        klu_solve(order_->symbolic, pivots_->numeric, static_cast<int>(right.rows()),
+                  static_cast<int>(right.cols()), right.data(), &common);
     return right;
 }
 
 MatrixXd Factors::solve_transposed(MatrixXd right) const {
     if (sign_ == 0) right.setConstant(std::numeric_limits<double>::quiet_NaN());
-    if (right.size() == 0 || sign_ == 0) return right;
-    if (dense_) {
-        right = dense_->lu.transpose().solve(right).eval();
-        return dense_->R.asDiagonal() * right;
-    }
     klu_common common = settings();
-    klu_tsolve(order_->symbolic, pivots_->numeric, static_cast<int>(right.rows()),
-               static_cast<int>(right.cols()), right.data(), &common);
+    if (right.size() > 0 && sign_ != 0)
+        klu_tsolve(order_->symbolic, pivots_->numeric, static_cast<int>(right.rows()),
+                   static_cast<int>(right.cols()), right.data(), &common);
     return right;
 }
 

@@ -1,5 +1,5 @@
-// Factorisations of sparse matrices: LU for regular ones (KLU, dense where they are small), QR
-// (SPQR) for matrices that may be singular.
+// Sparse factorisations: LU (KLU) for regular matrices, QR (SPQR) for matrices that may be
+// singular.
 //
 // The elimination order depends only on the pattern. It is reused when the factors of a matrix with
 // the same pattern are passed in.
@@ -17,7 +17,6 @@ double largest_entry(const Sparse& A);  // absolute
 
 struct Order;
 struct Pivots;
-struct Dense;
 
 class Factors {
   public:
@@ -40,7 +39,6 @@ class Factors {
     int sign_ = 0;
     std::shared_ptr<const Order> order_;
     std::shared_ptr<Pivots> pivots_;
-    std::shared_ptr<const Dense> dense_;  // instead of both, where A is small
 };
 
 // Bases of the null spaces of A (square) and Aᵀ: A right = 0, Aᵀ left = 0. Neither is orthonormal;
