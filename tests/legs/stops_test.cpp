@@ -178,5 +178,19 @@ TEST_P(Stops, AStrutOnItsStopsDoesNotDependOnThePoints) {
         << "the stop did close";
 }
 
+// Wherever the points lie: a point may be predicted almost on the knot, and the next step must end
+// on it all the same.
+TEST_P(Stops, AnyNumberOfPointsPassesTheKnots) {
+    const Scene s = support::scene("mcpherson_strut");
+    for (const std::size_t n : {0u, 1u}) {
+        const OneWay side = side_of(s, n);
+        const Equilibrium end = solved(leg(), side, 1).points.back();
+        for (int steps = 2; steps <= 40; ++steps) {
+            SCOPED_TRACE(fmt::format("{} in {} steps", side.branch.name, steps));
+            EXPECT_LE(distance(solved(leg(), side, steps).points.back(), end, 2), 1e-11);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace elastocheck::legs

@@ -254,6 +254,13 @@ Trial try_step(Continuation& continuation, double t) {
     }
     const double correction = further.norm();
     const double h = t - continuation.here.t;
+    // The corrected state is kept: the error that a correction leaves is its square times the
+    // ratio of axial to lateral member stiffness, 1e6 and more in a chain of beams. Knots are
+    // located in its deformations, since a predicted state may be off by more than `at_knot`.
+    if (VectorXd x = moved(system, next.x, further); is_solved(x)) {
+        next.x = std::move(x);
+        next.curves = on_curves(system, loading, next.x, next.tangent);
+    }
     if (!is_continuation(system, continuation.here, next))
         trial.verdict = Verdict::another_branch;
     else if (pose_size(system, dx) > longest_step &&
@@ -267,12 +274,8 @@ Trial try_step(Continuation& continuation, double t) {
     else if (continuation.stage == Stage::branch &&
              !(moved_by_rounding(continuation, next) <= last_correction))
         trial.verdict = Verdict::uncertain;
-    else {
+    else
         trial.verdict = side_of(continuation, next);
-        // The corrected state is kept: the error that a correction leaves is its square times the
-        // ratio of axial to lateral member stiffness, 1e6 and more in a chain of beams.
-        if (VectorXd x = moved(system, next.x, further); is_solved(x)) next.x = std::move(x);
-    }
     return trial;
 }
 
