@@ -1,29 +1,19 @@
-// Speed of the recursion, as ratios within one process.
+// Speed of every leg on the paper's example, the McPherson strut, as ratios in Markdown.
 //
-//   bare      600 × PartialPivLU factor + solve of a dense 27×27 matrix, what the paper's method cannot do
+//   LU        PartialPivLU factor + solve of a dense 27×27 matrix, what the paper's method cannot do
 //             without
-//   sweep     the paper's example, 2 × 300 steps, by every rung; the ratio to `bare`
-//   points    the same 2 × 301 output points by `adaptive`, `series` and both references; the ratio to the
-//             equilibrium leg
-//   branches  both branches by `series`, as polynomials; the ratio to the published sweep
+//   sweep     2 × 300 steps, by every rung
+//   points    2 × 301 output points
+//   branches  both, as polynomials
 //
-//   sweep: the paper's example, 2 × 300 steps, by every rung; the ratio to `bare`.
-//
-//   points: the same 2 × 301 output points by `adaptive`, `series` and both references; the ratio to the
-//   equilibrium leg.
-//
-//   branches: both branches by `series`, as polynomials; the ratio to the published sweep.
-//
-//   analysis: what is told of the model once (analysis.hpp); the ratio to the published sweep. All of the
-//   above that the recursive leg does has it given.
-//
-// The counter `ratio` is measured against its base in turns, sweep by sweep, so that a slow moment slows
-// both.
-#include <benchmark/benchmark.h>
+// The recursion has the analysis of the model given, which is a row of its own. Each job and its
+// base take turns, and their ratio is the median, so that a slow moment slows both; processor time,
+// so that other programs do not count.
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <functional>
 
 #include "elastocheck/compile.hpp"
@@ -37,7 +27,6 @@
 namespace {
 
 using namespace elastocheck;
-using Clock = std::chrono::steady_clock;
 
 const Model& mcpherson() {
     static const Model model = compile(support::scene("chrono_mcpherson"));
@@ -50,6 +39,7 @@ const recursive::Analysis& analysis() {
     return analysis;
 }
 
+volatile double kept = 0;  // or the compiler may leave out what nobody reads
 void bare() {
     static Eigen::MatrixXd A =
         Eigen::MatrixXd::Random(27, 27) + 27 * Eigen::MatrixXd::Identity(27, 27);
@@ -59,14 +49,14 @@ void bare() {
         A(k % 27, 0) += 1e-12;
         lu.compute(A);
         x = lu.solve(b);
-        benchmark::DoNotOptimize(x.data());
+        kept = x(0);
     }
 }
 
 void sweep(const recursive::Method& method) {
     for (const auto& branch : mcpherson().branches)
-        benchmark::DoNotOptimize(recursive::solve(
-            mcpherson(), branch, {.method = method, .steps = 300, .record = 1}, analysis()));
+        recursive::solve(mcpherson(), branch, {.method = method, .steps = 300, .record = 1},
+                         analysis());
 }
 
 template <class Solve>
@@ -74,7 +64,7 @@ void points(Solve&& solve) {
     for (const auto& branch : mcpherson().branches) {
         std::vector<double> loads;
         for (int k = 0; k <= 300; ++k) loads.push_back(branch.to * k / 300);
-        benchmark::DoNotOptimize(solve(branch, loads));
+        solve(branch, loads);
     }
 }
 void equilibrium() {
@@ -104,57 +94,46 @@ void series() {  // 1e-12 m
 }
 void branches(int order) {  // 1e-12 m, nothing evaluated
     for (const auto& branch : mcpherson().branches)
-        benchmark::DoNotOptimize(
-            recursive::series::follow(mcpherson(), branch, {.order = order}, analysis()));
+        recursive::series::follow(mcpherson(), branch, {.order = order}, analysis());
 }
-void published() { sweep(recursive::Method{}); }
 
-// Runs job and base in turns; reports the time of the job and the median of their ratios.
-void in_turns(benchmark::State& state, const std::function<void()>& job,
-              const std::function<void()>& base) {
-    const auto seconds = [](const std::function<void()>& f) {
-        const auto start = Clock::now();
-        f();
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
+double seconds(const std::function<void()>& work) {
+    const std::clock_t start = std::clock();
+    work();
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+// One row: `job` takes so many times `unit` bases, the median of a second's turns or of nine.
+void row(const std::string& name, const std::function<void()>& job,
+         const std::function<void()>& base, double unit = 1) {
     std::vector<double> ratios;
-    for (auto _ : state) {
+    double spent = 0;
+    while (ratios.size() < 9 || spent < 1) {
         const double own = seconds(job), other = seconds(base);
-        state.SetIterationTime(own);
-        ratios.push_back(own / other);
+        spent += own + other;
+        ratios.push_back(unit * own / other);
     }
     std::ranges::nth_element(ratios,
                              ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2));
-    state.counters["ratio"] = ratios[ratios.size() / 2];
+    fmt::print("| {} | {:.3g} |\n", name, ratios[ratios.size() / 2]);
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    const auto add = [](const std::string& name, const std::function<void()>& job,
-                        const std::function<void()>& base) {
-        benchmark::RegisterBenchmark(name.c_str(),
-                                     [=](benchmark::State& state) { in_turns(state, job, base); })
-            ->UseManualTime()
-            ->Unit(benchmark::kMillisecond);
-    };
-    add("bare/bare", bare, bare);
+int main() {
+    fmt::print("| McPherson strut | ratio |\n|---|---|\n");
     for (const auto& method : recursive::methods)
         if (has_steps(method))
-            add(
-                "sweep/" + std::string(method.name), [&method] { sweep(method); }, bare);
-    add("points/equilibrium", equilibrium, equilibrium);
-    add("points/energy", energy, equilibrium);
-    add("points/adaptive", adaptive, equilibrium);
-    add("points/series", series, equilibrium);
-    for (const int order : {8, 12, 16, 20, 24})
-        add(
-            "branches/series order " + std::to_string(order), [order] { branches(order); },
-            published);
-    add(
-        "analysis", [] { benchmark::DoNotOptimize(recursive::analyse(mcpherson())); }, published);
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
+            row(
+                fmt::format("sweep by `{}` / 600 LU", method.name), [&] { sweep(method); }, bare);
+    for (const int order : {16, 20, 24})
+        row(
+            fmt::format("branches by `series`, order {} / LU", order), [=] { branches(order); },
+            bare, 600);
+    row(
+        "analysis of the model / LU", [] { recursive::analyse(mcpherson()); }, bare, 600);
+    row("a point by the equilibrium leg / LU", equilibrium, bare, 600. / 602);
+    row("a point by the energy leg / LU", energy, bare, 600. / 602);
+    row("points by the equilibrium leg / by `adaptive`", equilibrium, adaptive);
+    row("points by the equilibrium leg / by `series`", equilibrium, series);
 }

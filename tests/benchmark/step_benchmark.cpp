@@ -1,7 +1,8 @@
 // Cost of one step of the published recursion, of the project's sparse LU and of KLU (klu_refactor,
 // klu_solve, analysis done beforehand) for the same matrix: one numeric factorisation and one
 // solution. A step assembles, factorises, solves, checks and moves the bodies. Processor time, in
-// turns within one process: benchmark_step [SCENE | BODIES ...], by default two chains of hinges.
+// turns within one process, as a table in Markdown: benchmark_step [SCENE | BODIES ...], by default
+// two chains of hinges.
 #include <fmt/format.h>
 #include <klu.h>
 
@@ -67,7 +68,7 @@ bool compare(const std::string& name, const Scene& scene, int steps) {
     SteppingState<double> s(model, branch, analyse(model));
     const Linear published;
     if (settle(s, published, 1) != Outcome::converged) return false;
-    std::vector<double> step_time, own_time, klu_time, ratio;
+    std::vector<double> step_time, own_time, klu_time, slower;
     std::vector<double> values = s.system.values;
     Klu klu(s.system.lu.order.pattern, values);
     std::vector<double> b(s.system.lu.size()), x(b.size());
@@ -83,13 +84,11 @@ bool compare(const std::string& name, const Scene& scene, int steps) {
             solve(s.system.lu, b.data(), x.data());
         }));
         klu_time.push_back(seconds([&] { good = klu.solve(values, b) && good; }));
-        ratio.push_back(step_time.back() / klu_time.back());
+        slower.push_back(klu_time.back() / own_time.back());
     }
-    fmt::print("{:<16} {:>6} {:>9} {:>9} {:>9} {:>9.1f} {:>9.1f} {:>9.1f} {:>6.2f}\n", name,
-               model.bodies.size(), s.system.lu.size(),
-               s.system.lu.L.size() + s.system.lu.U.size() + s.system.lu.size(),
-               klu.numeric->lnz + klu.numeric->unz, 1e6 * median(step_time), 1e6 * median(own_time),
-               1e6 * median(klu_time), median(ratio));
+    fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.2f} |\n", name, s.system.lu.size(),
+               1e6 * median(step_time), 1e6 * median(own_time), 1e6 * median(klu_time),
+               median(slower));
     return good;
 }
 
@@ -98,8 +97,9 @@ bool compare(const std::string& name, const Scene& scene, int steps) {
 int main(int argc, char** argv) {
     std::vector<std::string> cases(argv + 1, argv + argc);
     if (cases.empty()) cases = {"300", "1000"};
-    fmt::print("{:<16} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "scene, or chain",
-               "bodies", "unknowns", "entries", "KLU's", "step, us", "own LU", "KLU", "ratio");
+    fmt::print(
+        "| matrix | unknowns | step [us] | LU [us] | KLU [us] | KLU / LU |\n"
+        "|---|---|---|---|---|---|\n");
     bool good = true;
     for (const std::string& at : cases) {
         if (std::filesystem::path(at).extension() == ".yaml") {
@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
         }
         for (const auto hinge : {families::Hinge::bushing, families::Hinge::revolute}) {
             const families::Family chain{families::Kind::chain, std::stoi(at), hinge};
-            good = compare(std::string(families::name(hinge)),
+            good = compare(fmt::format("{} bodies on {}s", at, families::name(hinge)),
                            parse_scene(families::scene(chain), "family"), 101) &&
                    good;
         }

@@ -64,6 +64,13 @@ TEST(Readme, LinksBetweenPagesLeadToFiles) {
     EXPECT_GT(links, 30);
 }
 
+TEST(Readme, ItsFiguresOfSpeedAreTheMeasuredOnes) {
+    const std::string folder = root + "/tests/benchmark/";
+    EXPECT_NE(text_of(folder + "README.md").find(text_of(folder + "speed.md") + "<!-- end -->"),
+              std::string::npos)
+        << "regenerate both: cmake --build --preset release --target speed_figures";
+}
+
 // A room's page is its map: a header that moved or went is noticed here.
 TEST(Readme, HeadersThatTheRoomsPagesNameExist) {
     static const std::regex file("`([A-Za-z_/]+\\.[hc]pp)`");
