@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -20,7 +19,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
 constexpr double idle_push = 1e-8;       // of the disturbance: smallest load on an idle mode
 constexpr double unanswered = 1e-3;      // of the disturbance: remainder before the last correction
 constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
@@ -77,13 +75,11 @@ struct Tangent {
     const Model& model;
     const State& state;
     Prescribed prescribed;
-    double energy;                                    // F·L
-    VectorXd S, D, lambda;                            // lambda of Φ, SI
-    Eigen::Matrix<double, 6, Eigen::Dynamic> stress;  // of the elements
-    MatrixXd stiffness, A, K;                         // Σ Eᵀ K E, A, H + A
-    MatrixXd Z, idle;                                 // resisting motions, and idle ones
-    Eigen::PartialPivLU<MatrixXd> W;                  // ZᵀKZ
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
+    double energy;                    // F·L
+    VectorXd S, D, lambda;            // lambda of Φ, SI
+    MatrixXd K;                       // H + A
+    MatrixXd Z, idle;                 // resisting motions, and idle ones
+    Eigen::PartialPivLU<MatrixXd> W;  // ZᵀKZ
 };
 
 Tangent tangent_of(const Path& path, const State& state) {
@@ -95,45 +91,14 @@ Tangent tangent_of(const Path& path, const State& state) {
               .S = path.scales.coordinates(n),
               .D = path.scales.rows(path.model),
               .lambda = {},
-              .stress = {},
-              .stiffness = {},
-              .A = {},
               .K = {},
               .Z = state.modes.Z(Eigen::all, state.modes.resisting()),
               .idle = state.modes.idle_motions(),
-              .W = {},
-              .J = {}};
+              .W = {}};
     t.lambda = t.energy * t.D.cwiseProduct(state.at.lambda);
-    const Chart chart = chart_about(state.poses);
-    t.stress = stresses(path.model, t.prescribed, chart);
-    t.stiffness = t.S.asDiagonal() * energy::stiffness(path.model, t.prescribed, chart) *
-                  t.S.asDiagonal() / t.energy;
-    t.A = moment_stiffness(t.prescribed, path.scales, n);
-    t.K = state.H + t.A;
+    t.K = state.H + moment_stiffness(t.prescribed, path.scales, n);
     if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * t.K * t.Z);
-    t.J.setThreshold(rank_threshold);
-    if (t.D.size() > 0) t.J.compute(state.at.J_t.transpose());
     return t;
-}
-
-// (H + A) t, the geometric part of H and the curvature of the constraints differenced along t
-// itself: where stiff elements are stressed, K loses the digits of soft motions.
-VectorXd times(const Tangent& at, const VectorXd& t) {
-    VectorXd product = at.stiffness * t + at.A * t;
-    const double size = largest(t);
-    if (!(size > 0)) return product;
-    const double h = fine_differences.step / size;
-    Chart chart = chart_about(at.state.poses);
-    const auto gradient = [&](double step) -> VectorXd {
-        move_to(chart, step * at.S.cwiseProduct(t));
-        return at.S.cwiseProduct(
-            geometric_gradient(at.model, at.prescribed, at.stress, at.lambda, chart));
-    };
-    for (std::size_t k = 0; k < fine_differences.weights.size(); ++k) {
-        const double step = h * static_cast<double>(k + 1);
-        product += fine_differences.weights[k] / h * (gradient(step) - gradient(-step)) / at.energy;
-    }
-    return product;
 }
 
 struct Answer {
@@ -151,7 +116,7 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
         const ConstraintRates rates = constraint_rates(model, at.prescribed, rate, chart);
         b += transposed_times(rates.Phi_qa, at.lambda);
         const VectorXd driven_rate = -at.D.cwiseProduct(rates.Phi_a);
-        t = at.J.solve(driven_rate);
+        t = shortest(at.state.at, driven_rate);
         if (!((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
             return {Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}};
     }
@@ -161,12 +126,10 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
     const double size = largest(b) + largest(left - b);
     const auto correct = [&] {
         if (at.Z.cols() == 0) return;
-        const VectorXd dt = -at.Z * at.W.solve(at.Z.transpose() * left);
-        t += dt;
-        left += at.K * dt;
+        t -= at.Z * at.W.solve(at.Z.transpose() * left);
+        left = b + at.K * t;
     };
     correct();
-    left = b + times(at, t);
     const double remains = at.Z.cols() > 0 ? largest(at.Z.transpose() * left) : 0;
     correct();
     if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}};
@@ -209,7 +172,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
                     turning_bushings(model, course),
                     std::abs(state.load),
                     unused};
-    const State here = state_at(path, state.load, state.poses, fine_differences);
+    const State here = state_at(path, state.load, state.poses);
     if (!here.at.left.allFinite() || !here.at.Phi.allFinite() || !here.H.allFinite())
         return fail(Outcome::not_finite, "the state has no finite potential");
     if (!within_laws(model, path.turning, state.poses))

@@ -1,10 +1,8 @@
 #include "reference/energy/constraints/balance.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -20,39 +18,6 @@ using Eigen::VectorXd;
 // of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
 constexpr double rank_threshold = 1e-9;
 constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
-
-// Adds to H the derivatives of the gradient of one part of V + λᵀΦ by the coordinates of its
-// bodies: `add` adds that gradient to its argument. The chart is at its centre.
-template <class Part, class Add>
-void add_differences(const Part& part, const Add& add, const Differences& by, const VectorXd& S,
-                     Chart& chart, MatrixXd& H) {
-    std::vector<BodyId> bodies;
-    each_body(part, [&](BodyId b) {
-        if (b != ground && std::ranges::find(bodies, b) == bodies.end()) bodies.push_back(b);
-    });
-    VectorXd g = VectorXd::Zero(H.rows()), change = g;
-    for (const BodyId b : bodies) {
-        Placement& body = chart.placements[static_cast<std::size_t>(b)];
-        const Placement centre = body;
-        for (int axis = 0; axis < 6; ++axis) {
-            for (const BodyId other : bodies) change.segment<6>(6 * other).setZero();
-            for (std::size_t k = 0; k < by.weights.size(); ++k)
-                for (const double side : {+1.0, -1.0}) {
-                    const double xi = side * static_cast<double>(k + 1) * by.step;
-                    move_to(body, Vector6(S[6 * b + axis] * xi * Vector6::Unit(axis)));
-                    for (const BodyId other : bodies) g.segment<6>(6 * other).setZero();
-                    add(g);
-                    for (const BodyId other : bodies)
-                        change.segment<6>(6 * other) +=
-                            side * by.weights[k] / by.step * g.segment<6>(6 * other);
-                }
-            for (const BodyId other : bodies)
-                H.block<6, 1>(6 * other, 6 * b + axis) +=
-                    change.segment<6>(6 * other) / S[6 * b + axis];
-        }
-        body = centre;
-    }
-}
 
 }  // namespace
 
@@ -72,10 +37,11 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
                .J_t = transposed(scaled(values.Phi_q, D, S)),
                .across = MatrixXd(n, 0),
                .along = MatrixXd::Identity(n, n),
-               .independent = {}};
+               .independent = {},
+               .qr = {}};
     if (m == 0 || n == 0 || !at.J_t.allFinite() || !g.allFinite()) return at;
 
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
+    auto& qr = at.qr;
     qr.setThreshold(rank_threshold);
     qr.compute(at.J_t);
     const int rank = static_cast<int>(qr.rank());
@@ -88,6 +54,10 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     return at;
 }
 
+VectorXd shortest(const Balance& at, const VectorXd& Phi) {
+    return at.qr.transpose().solve(Phi);
+}
+
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart) {
     return balance(model, scales, potential(model, prescribed, chart).gradient,
@@ -95,55 +65,25 @@ Balance balance(const Model& model, const Prescribed& prescribed, const Scales& 
 }
 
 MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                 const std::vector<Pose>& centre, const VectorXd& lambda, const Differences& by) {
-    const int n = coordinates(model);
-    const VectorXd S = scales.coordinates(n);
+                 const std::vector<Pose>& centre, const VectorXd& lambda) {
+    const VectorXd S = scales.coordinates(coordinates(model));
     const VectorXd lambda_D = scales.rows(model).cwiseProduct(lambda) * scales.energy();  // SI
-    Chart chart = chart_about(centre);
+    const Chart chart = chart_about(centre);
     const auto stress = stresses(model, prescribed, chart);
-    MatrixXd geometric = MatrixXd::Zero(n, n);
+    MatrixXd H = stiffness(model, prescribed, chart);
     for (std::size_t k = 0; k < model.elastics.size(); ++k) {
-        const ElasticKind& kind = model.elastics[k].kind;
         const Vector6 sigma = stress.col(static_cast<Eigen::Index>(k));
-        if (sigma.isZero(0)) continue;
-        add_differences(
-            kind, [&](VectorXd& g) { add_gradient(kind, sigma, chart, g); }, by, S, chart,
-            geometric);
+        if (!sigma.isZero(0)) add_curvature(model.elastics[k].kind, sigma, chart, H);
     }
-    for (const auto& force : prescribed.forces)
-        add_differences(
-            LoadKind(force), [&](VectorXd& g) { add_gradient(force, chart, g); }, by, S, chart,
-            geometric);
+    for (const auto& force : prescribed.forces) add_curvature(force, chart, H);
     int row = 0;
     for (std::size_t k = 0; k < model.constraints.size(); ++k) {
         const ConstraintKind& kind = model.constraints[k].kind;
-        const double offset = prescribed.offset[static_cast<Eigen::Index>(k)];
-        const double* of_rows = lambda_D.data() + row;
-        add_differences(
-            kind, [&](VectorXd& g) { add_gradient(kind, offset, chart, of_rows, g); }, by, S, chart,
-            geometric);
+        add_curvature(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart,
+                      lambda_D.data() + row, H);
         row += rows(kind);
     }
-    const MatrixXd H =
-        stiffness(model, prescribed, chart) + 0.5 * (geometric + geometric.transpose());
-    return S.asDiagonal() * H * S.asDiagonal() / scales.energy();
-}
-
-VectorXd geometric_gradient(const Model& model, const Prescribed& prescribed,
-                            const Eigen::Matrix<double, 6, Eigen::Dynamic>& stress,
-                            const VectorXd& lambda, const Chart& chart) {
-    VectorXd g = VectorXd::Zero(coordinates(model));
-    for (std::size_t k = 0; k < model.elastics.size(); ++k)
-        add_gradient(model.elastics[k].kind, stress.col(static_cast<Eigen::Index>(k)), chart, g);
-    for (const auto& force : prescribed.forces) add_gradient(force, chart, g);
-    int row = 0;
-    for (std::size_t k = 0; k < model.constraints.size(); ++k) {
-        const ConstraintKind& kind = model.constraints[k].kind;
-        add_gradient(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart,
-                     lambda.data() + row, g);
-        row += rows(kind);
-    }
-    return g;
+    return S.asDiagonal() * (0.5 * (H + H.transpose())) * S.asDiagonal() / scales.energy();
 }
 
 // With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with

@@ -4,6 +4,7 @@
 // All in scaled coordinates ξ (x = S ξ), scaled constraints D Φ, and energies in units of F·L.
 #pragma once
 
+#include <Eigen/QR>
 #include <span>
 
 #include "reference/energy/constraints/constraints.hpp"
@@ -24,41 +25,19 @@ struct Balance {
     Eigen::MatrixXd along;
     // linearly independent rows of Φ, by column-pivoted QR of (∂DΦ/∂ξ)ᵀ [rank]
     std::vector<int> independent;
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr;  // of J_t
 };
 Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd& gradient,
                 const ConstraintValues& values);
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
+// Shortest least-squares solution ξ of ∂DΦ/∂ξ ξ = Φ.
+Eigen::VectorXd shortest(const Balance& at, const Eigen::VectorXd& Phi);
 
-// Central differences of a gradient g: g' = Σ_k w_k (g(k h) - g(-k h)) / h, k from 1.
-struct Differences {
-    double step;  // h, of ξ
-    std::span<const double> weights;
-};
-
-// Second order, error 1e-10.
-inline constexpr double second_order[] = {0.5};
-inline constexpr Differences quick_differences{1e-5, second_order};
-
-// Eighth order: for a function that varies over a tenth of L as much as over L, the truncation
-// error of this step is 1e-13, and so is the rounding error.
-inline constexpr double eighth_order[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
-inline constexpr Differences fine_differences{0.005, eighth_order};
-
-// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E exactly, the rest by differences of
-// hand-derived gradients at constant stress and λ, one element or constraint after the other. By
-// quick differences it serves as the metric, the predictor and for stability; no result depends on
-// its last digits.
+// Hessian of V + λᵀΦ at the centre [6nb × 6nb]: Σ Eᵀ K E, and the curvature of deformations, forces
+// and constraints at constant stress, force and λ.
 Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
-                        const std::vector<Pose>& centre, const Eigen::VectorXd& lambda,
-                        const Differences& by = quick_differences);
-// The gradient that is differenced [6nb]: of elements at a constant `stress`, of the dead forces,
-// and of λᵀΦ, `lambda` of Φ in SI.
-Eigen::VectorXd geometric_gradient(const Model& model, const Prescribed& prescribed,
-                                   const Eigen::Matrix<double, 6, Eigen::Dynamic>& stress,
-                                   const Eigen::VectorXd& lambda, const Chart& chart);
-// An element is evaluated at most this often for one Hessian.
-inline constexpr int hessian_evaluations = 24;
+                        const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 
 // Unsymmetric stiffness A of a dead moment: with a small rotation φ of its body, the balance of
 // moments changes by ½ φ × m more than the gradient of the chart's potential does. In ξ

@@ -4,6 +4,8 @@
 #include <numbers>
 
 #include "models/kinds.hpp"
+#include "models/overloaded.hpp"
+#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -163,16 +165,39 @@ ConstraintValues constraints(const Model& model, const Prescribed& prescribed, c
     return values;
 }
 
-void add_gradient(const ConstraintKind& kind, double offset, const Chart& chart,
-                  const double* lambda, VectorXd& g) {
-    ConstraintValues values{VectorXd::Zero(rows(kind)), VectorXd::Zero(rows(kind)), {}};
-    values.Phi_q.slopes.reserve(6);
-    std::visit([&](const auto& c) { fill(c, chart, Rows{values, 0, offset}); }, kind);
-    for (const auto& slope : values.Phi_q.slopes) {
-        g.segment<3>(6 * slope.body) += lambda[slope.row] * slope.dr;
-        g.segment<3>(6 * slope.body + 3) +=
-            lambda[slope.row] * (chart[slope.body].J.transpose() * slope.dpi);
-    }
+void add_curvature(const ConstraintKind& kind, double offset, const Chart& chart,
+                   const double* lambda, Eigen::MatrixXd& H) {
+    const auto lever = [&](const Point& p) -> Carried {
+        return {p.body, motion(chart[p.body], p.s_local).lever};
+    };
+    const auto direction = [&](const Direction& d) -> Carried {
+        return {d.body, turned(chart[d.body], d.u_local).u};
+    };
+    const auto between = [&](const Point& i, const Point& j) -> Vector3d {
+        return motion(chart[i.body], i.s_local).p - motion(chart[j.body], j.s_local).p;
+    };
+    const auto cosine = [&](const Direction& i, const Direction& j) {
+        add_curvature_of_cosine(lambda[0], direction(i), direction(j), H);
+    };
+    std::visit(
+        overloaded{[&](const CoincidentPoints& c) {
+                       const Vector3d f(lambda[0], lambda[1], lambda[2]);
+                       add_curvature_along(f, lever(c.i), H);
+                       add_curvature_along(-f, lever(c.j), H);
+                   },
+                   [&](const PointInPlane& c) {
+                       const Carried n{c.normal_j.body, lambda[0] * direction(c.normal_j).u};
+                       add_curvature_of_offset(n, between(c.i, c.j), lever(c.i), lever(c.j), H);
+                   },
+                   [&](const PerpendicularDirections& c) { cosine(c.i, c.j); },
+                   [&](const DistanceBetween& c) {
+                       const double by_length = lambda[0] / (c.length + offset);
+                       add_curvature_of_difference(by_length * between(c.i, c.j),
+                                                   by_length * Matrix3d::Identity(), lever(c.i),
+                                                   lever(c.j), H);
+                   },
+                   [&](const DirectionAtAngle& c) { cosine(c.i, across(c, c.angle + offset)); }},
+        kind);
 }
 
 ConstraintRates constraint_rates(const Model& model, const Prescribed& prescribed,

@@ -17,9 +17,10 @@ struct ConstraintValues {
 };
 ConstraintValues constraints(const Model& model, const Prescribed& prescribed, const Chart& chart);
 
-// Adds λᵀ ∂Φ/∂x of one constraint to g [6nb], `lambda` of its rows; `offset` as in Prescribed.
-void add_gradient(const ConstraintKind& kind, double offset, const Chart& chart,
-                  const double* lambda, Eigen::VectorXd& g);
+// Adds λᵀ ∂²Φ/∂x² of one constraint to H [6nb × 6nb], at the centre of the chart; `lambda` of its
+// rows, `offset` as in Prescribed.
+void add_curvature(const ConstraintKind& kind, double offset, const Chart& chart,
+                   const double* lambda, Eigen::MatrixXd& H);
 
 // ∂/∂a of both where `prescribed` moves with `rate`.
 struct ConstraintRates {

@@ -23,7 +23,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 
@@ -50,7 +49,6 @@ constexpr double first_stride = 1.0 / 64;  // of the span: the first step, befor
 // of the span: instabilities that appear and vanish within this length are not searched for
 constexpr double look = 1e-3;
 constexpr int internal_points = 2000;    // between two requested values
-constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
 constexpr double largest_step = 0.1;     // of L or 1 rad, by the tangent
 constexpr double negligible = 1e-6;      // of L or 1 rad
 constexpr double short_step = 0.01;      // of L or 1 rad: the Hessian hardly changes
@@ -279,10 +277,10 @@ State state_with(const Path& path, double a, const std::vector<Pose>& poses, con
 
 }  // namespace
 
-State state_at(const Path& path, double a, const std::vector<Pose>& poses, const Differences& by) {
+State state_at(const Path& path, double a, const std::vector<Pose>& poses) {
     Balance at = balance_at(path, a, poses);
-    MatrixXd H = hessian(path.model, energy::at(path.course, a), path.scales, poses, at.lambda, by);
-    path.counts.evaluations += hessian_evaluations;
+    MatrixXd H = hessian(path.model, energy::at(path.course, a), path.scales, poses, at.lambda);
+    path.counts.evaluations += 1;
     Modes modes = modes_of(at, H);
     return {a, poses, std::move(at), std::move(H), std::move(modes)};
 }
@@ -292,11 +290,7 @@ VectorXd correction(const Path& path, const State& state, const VectorXd& left,
                     const VectorXd& Phi) {
     const auto A = unsymmetric_stiffness(path, state);
     if (Phi.isZero(0)) return newton_increment(state, A, left);
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> J;
-    J.setThreshold(rank_threshold);
-    J.compute(state.at.J_t.transpose());
-    path.counts.factorisations += 1;
-    const VectorXd p = J.solve(-Phi);
+    const VectorXd p = shortest(state.at, -Phi);
     VectorXd b = left + state.H * p;
     if (A) b += *A * p;
     return p + newton_increment(state, A, b);

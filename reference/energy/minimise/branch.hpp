@@ -55,8 +55,7 @@ struct Continuation {
 Continuation start_continuation(const Path& path, const State& state);
 
 // Poses, balance, Hessian and modes at parameter a; the poses need not be an equilibrium.
-State state_at(const Path& path, double a, const std::vector<Pose>& poses,
-               const Differences& by = quick_differences);
+State state_at(const Path& path, double a, const std::vector<Pose>& poses);
 
 // Whether the state satisfies the first-order conditions of the constrained minimum, to
 // options.tolerance.

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "models/overloaded.hpp"
+#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/laws.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"
 #include "reference/energy/potential/rotation.hpp"
@@ -157,6 +158,82 @@ void add_gradient(const Element<N>& e, const Matrix<double, N, 1>& stress, Vecto
     if (e.j != ground) g.segment<6>(6 * e.j) += e.E_j.transpose() * stress;
 }
 
+template <class AtPoint>
+Carried lever_at(const AtPoint& p, const Chart& chart) {
+    return {p.body, motion(chart[p.body], p.s_local).lever};
+}
+
+// ---- σ·∂²e/∂x² at the centre of the chart.
+
+// ∂²|D|/∂D² = (1 - n nᵀ)/|D|
+void add_geometric(const AxialSpring& spring, const Vector6& stress, const Chart& chart,
+                   MatrixXd& H) {
+    const Vector3d D = motion(chart[spring.j.body], spring.j.s_local).p -
+                       motion(chart[spring.i.body], spring.i.s_local).p;
+    const double l = D.norm();
+    const Vector3d n = D / l;
+    add_curvature_of_difference(stress[0] * n,
+                                stress[0] / l * (Matrix3d::Identity() - n * n.transpose()),
+                                lever_at(spring.j, chart), lever_at(spring.i, chart), H);
+}
+
+// σ_d·d = n·D with n = A_f σ_d, and σ_θ·θ(β), exp(β) = exp(-a_i) exp(a_j) with a = A_Iᵀ φ:
+//
+//   β = Δ - ½ a_i × a_j + ...,   Δ = a_j - a_i
+//
+// With the frame on i, n turns with i; θ contributes g·(-½ a_i × a_j) + ½ Δᵀ T Δ, g = Sᵀ σ_θ. A
+// frame in the middle, A_f = A_I exp(γ) C, turns by γ = P β + ... beyond that, Γ = A_I P A_Iᵀ:
+//
+//   (φ_i × (γ × n) + ½ γ × (γ × n))·D + δD·(γ × n),   γ = Γ (φ_j - φ_i) here
+//   m·(second order of γ),                            m = A_Iᵀ (n × D), so that g gains Pᵀ m
+void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& chart,
+                   MatrixXd& H) {
+    const BodyId i = bushing.i.body, j = bushing.j.body;
+    const Carried u_i = lever_at(bushing.i, chart), u_j = lever_at(bushing.j, chart);
+    const Vector3d D = motion(chart[j], bushing.j.s_local).p - motion(chart[i], bushing.i.s_local).p;
+    const Quaterniond q_i = chart[i].centre.p * bushing.i.A_local.normalized();
+    const Quaterniond q_j = chart[j].centre.p * bushing.j.A_local.normalized();
+    Quaterniond q = q_i.conjugate() * q_j;
+    if (q.w() < 0) q.coeffs() *= -1;
+    const RelativeRotation B{q, Quaterniond(0, 0, 0, 0), q.toRotationMatrix(), Matrix3d::Zero()};
+    const Matrix3d A = q_i.toRotationMatrix();
+
+    const Vector3d sigma_theta = stress.tail<3>();
+    Vector3d g = Vector3d::Zero();
+    Matrix3d T = Matrix3d::Zero();  // by φ_j - φ_i, ground axes
+    if (!sigma_theta.isZero(0)) {
+        g = A * angles(bushing.formulation.angles, B).slope.transpose() * sigma_theta;
+        T = A * angle_curvature(bushing.formulation.angles, q, sigma_theta) * A.transpose();
+    }
+    Vector3d n = A * stress.head<3>();
+    if (!n.isZero(0)) {
+        if (bushing.formulation.frame == Formulation::Frame::middle) {
+            const HalfWay half = half_way(B);
+            n = A * (half.C * stress.head<3>());
+            const Vector3d m = n.cross(D);
+            const Matrix3d Gamma = A * half.share * A.transpose(), n_Gamma = skew(n) * Gamma,
+                           D_n_Gamma = skew(D) * n_Gamma;
+            g += Gamma.transpose() * m;
+            T += Gamma.transpose() * turn_curvature(D, n) * Gamma +
+                 A * half_way_curvature(q, A.transpose() * m) * A.transpose();
+            add_pair(i, 3, j, 3, D_n_Gamma, H);
+            add_pair(i, 3, i, 3, -D_n_Gamma, H);
+            for (const auto& [end, sign] : {std::pair{&u_j, 1.0}, {&u_i, -1.0}}) {
+                const Matrix3d turned = sign * skew(end->u) * n_Gamma;
+                add_pair(end->body, 0, j, 3, -sign * n_Gamma, H);
+                add_pair(end->body, 0, i, 3, sign * n_Gamma, H);
+                add_pair(end->body, 3, j, 3, -turned, H);
+                add_pair(end->body, 3, i, 3, turned, H);
+            }
+        }
+        add_curvature_of_offset({i, n}, D, u_j, u_i, H);
+    }
+    // each quadratic form here is ½ xᵀ M x, so half of M and Mᵀ
+    add_pair(i, 3, i, 3, 0.5 * T, H);
+    add_pair(j, 3, j, 3, 0.5 * T, H);
+    add_pair(i, 3, j, 3, 0.5 * skew(g) - T, H);
+}
+
 // -f·Δp, and its gradient in (δr, δπ).
 double add_forces(const Prescribed& prescribed, const Chart& chart, VectorXd& g) {
     double change = 0;
@@ -216,26 +293,13 @@ VectorXd gradient_rate(const Model& model, const Prescribed& prescribed, const P
     return g;
 }
 
-void add_gradient(const ElasticKind& element, const Vector6& stress, const Chart& chart,
-                  VectorXd& g) {
-    const auto add = [&]<int N>(const Deformation<N>& e) {
-        const auto add_to = [&](BodyId body, const Matrix<double, N, 6>& E) {
-            if (body == ground) return;
-            const Vector6 of_body = E.transpose() * stress.head<N>();
-            g.segment<3>(6 * body) += of_body.head<3>();
-            g.segment<3>(6 * body + 3) += chart[body].J.transpose() * of_body.tail<3>();
-        };
-        add_to(e.i, e.E_i);
-        add_to(e.j, e.E_j);
-    };
-    std::visit([&](const auto& kind) { add(deformation(kind, chart)); }, element);
+void add_curvature(const ElasticKind& element, const Vector6& stress, const Chart& chart,
+                   MatrixXd& H) {
+    std::visit([&](const auto& kind) { add_geometric(kind, stress, chart, H); }, element);
 }
 
-void add_gradient(const DeadForce& force, const Chart& chart, VectorXd& g) {
-    const Placement& body = chart[force.at.body];
-    const Vector3d lever = motion(body, force.at.s_local).lever;
-    g.segment<3>(6 * force.at.body) -= force.f;
-    g.segment<3>(6 * force.at.body + 3) -= body.J.transpose() * lever.cross(force.f);
+void add_curvature(const DeadForce& force, const Chart& chart, MatrixXd& H) {
+    add_curvature_along(-force.f, lever_at(force.at, chart), H);
 }
 
 MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart) {

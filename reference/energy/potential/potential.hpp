@@ -27,12 +27,12 @@ Potential potential(const Model& model, const Prescribed& prescribed, const Char
 Eigen::VectorXd gradient_rate(const Model& model, const Prescribed& prescribed,
                               const Prescribed& rate, const Chart& chart);
 
-// Adds to g the gradient E(x)ᵀ σ of an element at a constant stress σ (row 0 of springs), and that
-// of a force. With σ = (∂U/∂e) at the centre, the derivatives of both there are the geometric part
-// of the Hessian; the rest is `stiffness`.
-void add_gradient(const ElasticKind& element, const Vector6& stress, const Chart& chart,
-                  Eigen::VectorXd& g);
-void add_gradient(const DeadForce& force, const Chart& chart, Eigen::VectorXd& g);
+// Adds to H [6nb × 6nb] the second derivatives, at the centre, of an element's deformation at a
+// constant stress σ (row 0 of springs), Σ σ ∂²e/∂x², and those of a force's -f·p. With
+// σ = ∂U/∂e they are the geometric part of the Hessian; the rest is `stiffness`.
+void add_curvature(const ElasticKind& element, const Vector6& stress, const Chart& chart,
+                   Eigen::MatrixXd& H);
+void add_curvature(const DeadForce& force, const Chart& chart, Eigen::MatrixXd& H);
 
 // Σ Eᵀ K E at the centre [6nb × 6nb], K = s ∂²u/∂e².
 Eigen::MatrixXd stiffness(const Model& model, const Prescribed& prescribed, const Chart& chart);

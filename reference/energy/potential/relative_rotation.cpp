@@ -4,12 +4,21 @@
 //   h = √(x² + y²):       h - h_c = (Δx (x + x_c) + Δy (y + y_c)) / (h + h_c)
 //   α = atan2(y, x):      α - α_c = atan2(x_c Δy - y_c Δx, x x_c + y y_c),
 //                         δα = (x δy - y δx)/(x² + y²)
+//
+// and with B_rc = e_r·(exp(β) B e_c), h and α as functions of β, their second derivatives; s is a
+// slope, C a curvature, ( )ₛ the symmetric part:
+//
+//   C(B_rc) = T(e_r, B e_c)                                                  (curvature.hpp)
+//   C(h) = (s_x s_xᵀ + s_y s_yᵀ + x C_x + y C_y - s_h s_hᵀ)/h
+//   C(α) = (x C_y - y C_x)/(x² + y²) - 2 (s_α (x s_x + y s_y)ᵀ)ₛ/(x² + y²)
 #include "reference/energy/potential/relative_rotation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "reference/energy/potential/curvature.hpp"
 #include "reference/energy/potential/rotation.hpp"
 
 namespace elastocheck::reference::energy {
@@ -46,7 +55,43 @@ Varying atan2(const Varying& y, const Varying& x) {
             (x.now() * y.slope - y.now() * x.slope) / (x.now() * x.now() + y.now() * y.now())};
 }
 
-AngleChange together(const Varying& x, const Varying& y, const Varying& z) {
+// Value, slope and curvature in β at the centre.
+struct Bent {
+    double at;
+    Vector3d slope;
+    Matrix3d curvature;
+};
+
+Matrix3d symmetric(const Matrix3d& M) { return 0.5 * (M + M.transpose()); }
+
+Bent operator-(const Bent& x) { return {-x.at, -x.slope, -x.curvature}; }
+
+Bent bent_entry(const Matrix3d& B, int r, int c) {
+    const Vector3d e = Vector3d::Unit(r), b = B.col(c);
+    return {b[r], b.cross(e), turn_curvature(e, b)};
+}
+
+Bent hypot(const Bent& x, const Bent& y) {
+    const double h = std::hypot(x.at, y.at);
+    const Vector3d slope = (x.at * x.slope + y.at * y.slope) / h;
+    return {h, slope,
+            (x.slope * x.slope.transpose() + y.slope * y.slope.transpose() + x.at * x.curvature +
+             y.at * y.curvature - slope * slope.transpose()) /
+                h};
+}
+
+Bent atan2(const Bent& y, const Bent& x) {
+    const double square = x.at * x.at + y.at * y.at;
+    const Vector3d slope = (x.at * y.slope - y.at * x.slope) / square,
+                   along = x.at * x.slope + y.at * y.slope;
+    return {std::atan2(y.at, x.at), slope,
+            (x.at * y.curvature - y.at * x.curvature -
+             2 * symmetric(slope * along.transpose())) /
+                square};
+}
+
+AngleChange together(const std::array<Varying, 3>& theta) {
+    const auto& [x, y, z] = theta;
     AngleChange angles;
     angles.theta_c << x.c, y.c, z.c;
     angles.dtheta << x.change, y.change, z.change;
@@ -57,20 +102,43 @@ AngleChange together(const Varying& x, const Varying& y, const Varying& z) {
 //            ⎡  c_y c_z                -c_y s_z                 s_y     ⎤
 // Rx Ry Rz = ⎢  c_x s_z + s_x s_y c_z   c_x c_z - s_x s_y s_z  -s_x c_y ⎥
 //            ⎣  s_x s_z - c_x s_y c_z   s_x c_z + c_x s_y s_z   c_x c_y ⎦
-AngleChange cardan(const RelativeRotation& B) {
-    const Varying s_x_c_y = -entry(B, 1, 2), c_x_c_y = entry(B, 2, 2);
-    return together(atan2(s_x_c_y, c_x_c_y), atan2(entry(B, 0, 2), hypot(s_x_c_y, c_x_c_y)),
-                    atan2(-entry(B, 0, 1), entry(B, 0, 0)));
+template <class Entry>
+auto cardan(const Entry& B) {
+    const auto s_x_c_y = -B(1, 2), c_x_c_y = B(2, 2);
+    return std::array{atan2(s_x_c_y, c_x_c_y), atan2(B(0, 2), hypot(s_x_c_y, c_x_c_y)),
+                      atan2(-B(0, 1), B(0, 0))};
 }
 
-AngleChange projected(const RelativeRotation& B) {
-    return together(atan2(-entry(B, 1, 2), entry(B, 2, 2)), atan2(entry(B, 0, 2), entry(B, 2, 2)),
-                    atan2(entry(B, 1, 0), entry(B, 0, 0)));
+template <class Entry>
+auto projected(const Entry& B) {
+    return std::array{atan2(-B(1, 2), B(2, 2)), atan2(B(0, 2), B(2, 2)), atan2(B(1, 0), B(0, 0))};
 }
 
 AngleChange rotation_vector_of(const RelativeRotation& B) {
     const LogChange log = log_change(B.q_c, B.dq);
     return {log.theta_c, log.dtheta, inverse_turn_jacobian(log.theta_c + log.dtheta)};
+}
+
+// With Sᵀ σ = σ + ½ θ × σ + c θ × (θ × σ), S = J⁻¹(θ), and δθ = S β:
+//
+//   δ(Sᵀ σ) = (-½ σ̃ - c ((θ × σ)~ + θ̃ σ̃) + c'/θ (θ × (θ × σ)) θᵀ) S β
+//
+// c = (1 - h cot h)/(4 h²), c'/θ = (h cot h + h²/sin² h - 2)/(16 h⁴), h = θ/2. The derivative by
+// exp(β) B is its symmetric part.
+Matrix3d rotation_vector_curvature(const Vector3d& theta, const Vector3d& sigma) {
+    constexpr double small = 0.1;  // below: the series is exact to 1e-14
+    const double h = 0.5 * theta.norm(), h2 = h * h;
+    double c = 1.0 / 12 + h2 / 180 + h2 * h2 / 1890 + h2 * h2 * h2 / 18900,
+           slope = 1.0 / 360 + h2 / 1890 + h2 * h2 / 12600 + h2 * h2 * h2 / 93555;
+    if (h > small) {
+        const double cot = h / std::tan(h), csc = h / std::sin(h);
+        c = (1 - cot) / (4 * h2);
+        slope = (cot + csc * csc - 2) / (16 * h2 * h2);
+    }
+    const Vector3d moment = theta.cross(sigma);
+    const Matrix3d turned = -0.5 * skew(sigma) - c * (skew(moment) + skew(theta) * skew(sigma)) +
+                            slope * theta.cross(moment) * theta.transpose();
+    return symmetric(turned * inverse_turn_jacobian(theta));
 }
 
 RelativeRotation at_rest(Quaterniond q) {
@@ -81,10 +149,27 @@ RelativeRotation at_rest(Quaterniond q) {
 }  // namespace
 
 AngleChange angles(Formulation::Angles kind, const RelativeRotation& rotation) {
+    const auto B = [&](int r, int c) { return entry(rotation, r, c); };
     switch (kind) {
         case Formulation::Angles::rotation_vector: return rotation_vector_of(rotation);
-        case Formulation::Angles::cardan: return cardan(rotation);
-        case Formulation::Angles::projected: return projected(rotation);
+        case Formulation::Angles::cardan: return together(cardan(B));
+        case Formulation::Angles::projected: return together(projected(B));
+    }
+    return {};
+}
+
+Matrix3d angle_curvature(Formulation::Angles kind, const Quaterniond& q, const Vector3d& sigma) {
+    const Matrix3d at = q.toRotationMatrix();
+    const auto B = [&](int r, int c) { return bent_entry(at, r, c); };
+    const auto sum = [&](const std::array<Bent, 3>& theta) -> Matrix3d {
+        return sigma[0] * theta[0].curvature + sigma[1] * theta[1].curvature +
+               sigma[2] * theta[2].curvature;
+    };
+    switch (kind) {
+        case Formulation::Angles::rotation_vector:
+            return rotation_vector_curvature(rotation_vector(q), sigma);
+        case Formulation::Angles::cardan: return sum(cardan(B));
+        case Formulation::Angles::projected: return sum(projected(B));
     }
     return {};
 }
@@ -111,6 +196,19 @@ HalfWay half_way(const RelativeRotation& rotation) {
     half.C = C_c + half.dC;
     half.share = 0.5 * (Matrix3d::Identity() - skew(s.vec() / s.w()));
     return half;
+}
+
+// With γ' = P β', P = ½ (1 - g̃), and q changing by ½ β q:
+//
+//   δg = G β,   G = ½ (w 1 - ṽ + v vᵀ/(1 + w))/(1 + w),   β·δP β = -½ (G β) × β
+//
+// so that m·γ has the second derivative (-½ m̃ G)ₛ.
+Matrix3d half_way_curvature(const Quaterniond& q, const Vector3d& m) {
+    const Vector3d v = q.vec();
+    const Matrix3d G =
+        0.5 *
+        (q.w() * Matrix3d::Identity() - skew(v) + v * v.transpose() / (1 + q.w())) / (1 + q.w());
+    return symmetric(-0.5 * skew(m) * G);
 }
 
 Vector3d angles_of(Formulation::Angles kind, const Quaterniond& q) {

@@ -23,12 +23,19 @@ struct AngleChange {
 };
 AngleChange angles(Formulation::Angles kind, const RelativeRotation& rotation);
 
+// σ·∂²θ/∂β² at the centre, where B has the unit quaternion q, w ≥ 0: B → exp(β) B.
+Eigen::Matrix3d angle_curvature(Formulation::Angles kind, const Eigen::Quaterniond& q,
+                                const Eigen::Vector3d& sigma);
+
 // Axes halfway from i to j, in the axes of marker i: C = B^½.
 struct HalfWay {
     Eigen::Matrix3d C, dC;
     Eigen::Matrix3d share;  // γ = share · β, where δC = γ̃ C
 };
 HalfWay half_way(const RelativeRotation& rotation);
+
+// m·∂²γ/∂β² of C → exp(γ) C, q as above.
+Eigen::Matrix3d half_way_curvature(const Eigen::Quaterniond& q, const Eigen::Vector3d& m);
 
 // The same angles, principal values, of B as a quaternion; and the distance to the nearest point
 // where they (and B^½ if used by the formulation) are not differentiable, zero or negative beyond

@@ -72,9 +72,8 @@ TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
         const auto values = sweep(branch);
         const Cost cost = cost_of(model, values.size());
         const Counts counts = solve(model, branch, values).counts;
-        // Besides the evaluations in charts, a state takes one and those of its Hessian.
-        const double states =
-            static_cast<double>(counts.evaluations - counts.factorisations) / hessian_evaluations;
+        // Besides the evaluations in charts, a state takes one and another for its Hessian.
+        const auto states = static_cast<double>(counts.evaluations - counts.factorisations);
         const double evaluations = static_cast<double>(counts.factorisations) - states;
         EXPECT_TRUE(is_near(cost.states, states))
             << model.name << " " << cost.states << " " << states;

@@ -1,0 +1,72 @@
+#include "reference/energy/potential/curvature.hpp"
+
+#include <array>
+
+#include "reference/energy/potential/rotation.hpp"
+
+namespace elastocheck::reference::energy {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+namespace {
+
+void add_block(BodyId a, int rows, BodyId b, int columns, const Matrix3d& M, MatrixXd& H) {
+    if (a != ground && b != ground) H.block<3, 3>(6 * a + rows, 6 * b + columns) += M;
+}
+
+}  // namespace
+
+Matrix3d turn_curvature(const Vector3d& f, const Vector3d& u) {
+    const Matrix3d product = f * u.transpose();
+    return 0.5 * (product + product.transpose()) - f.dot(u) * Matrix3d::Identity();
+}
+
+void add_pair(BodyId a, int rows, BodyId b, int columns, const Matrix3d& M, MatrixXd& H) {
+    add_block(a, rows, b, columns, M, H);
+    add_block(b, columns, a, rows, M.transpose(), H);
+}
+
+void add_curvature_along(const Vector3d& f, const Carried& at, MatrixXd& H) {
+    add_block(at.body, 3, at.body, 3, turn_curvature(f, at.u), H);
+}
+
+// δD = P x - P' x':  δDᵀ M δD, and f·δ²D.
+void add_curvature_of_difference(const Vector3d& f, const Matrix3d& M, const Carried& at,
+                                 const Carried& minus, MatrixXd& H) {
+    add_curvature_along(f, at, H);
+    add_curvature_along(-f, minus, H);
+    const std::array ends{&at, &minus};
+    for (const auto* a : ends)
+        for (const auto* b : ends) {
+            const Matrix3d sign_M = a == b ? M : Matrix3d(-M);
+            const Matrix3d u_a = skew(a->u), M_u = -sign_M * skew(b->u);
+            add_block(a->body, 0, b->body, 0, sign_M, H);
+            add_block(a->body, 0, b->body, 3, M_u, H);
+            add_block(a->body, 3, b->body, 0, u_a * sign_M, H);
+            add_block(a->body, 3, b->body, 3, u_a * M_u, H);
+        }
+}
+
+// n·δ²D + D·δ²n + 2 δn·δD, δn = -ñ φ, so δn·δD = φᵀ ñ (P x - P' x').
+void add_curvature_of_offset(const Carried& n, const Vector3d& D, const Carried& at,
+                             const Carried& minus, MatrixXd& H) {
+    add_curvature_along(n.u, at, H);
+    add_curvature_along(-n.u, minus, H);
+    add_curvature_along(D, n, H);
+    const Matrix3d n_skew = skew(n.u);
+    add_pair(n.body, 3, at.body, 0, n_skew, H);
+    add_pair(n.body, 3, at.body, 3, -n_skew * skew(at.u), H);
+    add_pair(n.body, 3, minus.body, 0, -n_skew, H);
+    add_pair(n.body, 3, minus.body, 3, n_skew * skew(minus.u), H);
+}
+
+// v·δ²u + u·δ²v + 2 δu·δv, δu·δv = φᵀ ũ (-ṽ) φ'
+void add_curvature_of_cosine(double lambda, const Carried& u, const Carried& v, MatrixXd& H) {
+    add_curvature_along(lambda * v.u, u, H);
+    add_curvature_along(lambda * u.u, v, H);
+    add_pair(u.body, 3, v.body, 3, -lambda * skew(u.u) * skew(v.u), H);
+}
+
+}  // namespace elastocheck::reference::energy
