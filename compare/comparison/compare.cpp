@@ -38,16 +38,25 @@ bool asks_for_characteristics(const std::vector<Channel>& channels) {
         channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
 }
 
+// Responses at the landmarks, as the outputs there were read from them.
+struct Responses {
+    std::optional<WheelResponse> front, start, back;
+};
+
 std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side,
-                                      const SolverSettings& solver, const LegRun& run) {
+                                      const SolverSettings& solver, const LegRun& run,
+                                      const Responses& known) {
     std::vector<Compliance> list;
     Analyses analyses;
-    for (const auto* state : {&run.landmarks.front, &run.landmarks.start, &run.landmarks.back}) {
+    const auto& marks = run.landmarks;
+    for (const auto& [state, read] :
+         {std::pair{&marks.front, &known.front}, {&marks.start, &known.start},
+          {&marks.back, &known.back}}) {
         if (!*state) continue;
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
         const WheelResponse response =
-            wheel_response(side, solver, steering_joint(model), **state, analyses);
+            *read ? **read : wheel_response(side, solver, steering_joint(model), **state, analyses);
         Compliance& at = list.emplace_back();
         at.a = a;
         at.why_not = response.why_not_free;
@@ -112,25 +121,33 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const double middle = requested[requested.size() / 2];
     const bool both_sides = sides.size() > 1;
     auto& marks = run.landmarks;
+    Responses responses;
     BranchErrorBounds error_bound{promise_of(side.model, solver)};
     const bool kept = solver.leg == Leg::equilibrium;
     const auto stations = kept ? stations_of(requested) : std::vector<double>{};
     std::optional<LargestForces> largest;
     if (kept) largest.emplace(model, branch);
     static_cast<PathCurve&>(run) =
-        walk(model, channels, branch, sides, solver, [&](const Equilibrium& state) {
+        walk(model, channels, branch, sides, solver,
+             [&](const Equilibrium& state, const WheelResponse* response) {
             for (const Leg by : legs) {
                 auto& worst = run.judged[static_cast<std::size_t>(by)];
                 worst = worse(worst, judge(by, side, state));
             }
             run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
             // The farthest point on either side comes last.
+            const auto mark = [&](std::optional<Equilibrium>& here,
+                                  std::optional<WheelResponse>& read) {
+                here = state;
+                read.reset();
+                if (response != nullptr) read = *response;
+            };
             if (state.load == 0)
-                marks.start = state;
+                mark(marks.start, responses.start);
             else if (both_sides && state.load * side.branch.to > 0)
-                marks.front = state;
+                mark(marks.front, responses.front);
             else
-                marks.back = state;
+                mark(marks.back, responses.back);
             if (state.load == middle) marks.middle = state;
             if (solver.error_bound) add(error_bound, state);
             if (largest) largest->add(state);
@@ -140,10 +157,10 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
     if (largest) run.largest = largest->list();
     run.messages = messages(error_bound, branch.unit);
-    if (!marks.front) marks.front = marks.start;
-    if (!marks.back) marks.back = marks.start;
+    if (!marks.front) marks.front = marks.start, responses.front = responses.start;
+    if (!marks.back) marks.back = marks.start, responses.back = responses.start;
     if (!model.wheels.empty() && asks_for_characteristics(channels))
-        run.compliance = compliance_of(model, side, solver, run);
+        run.compliance = compliance_of(model, side, solver, run, responses);
     if (!times)
         run.seconds = nan;
     else if (solver.leg == Leg::recursive || solver.leg == Leg::series)

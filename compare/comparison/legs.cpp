@@ -195,9 +195,10 @@ EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings&
 }
 
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
-           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
+           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses,
+           std::optional<WheelResponse>& response) {
     Row row{state.load, state.constraint_error, evaluate(model, side.branch, channels, state)};
-    std::optional<WheelResponse> response;
+    response.reset();
     std::optional<bool> corner;
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const auto* characteristic = std::get_if<Characteristic>(&channels[c].reads);
@@ -219,6 +220,12 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
 }
 
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
+           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses) {
+    std::optional<WheelResponse> response;
+    return row_of(model, channels, side, solver, state, analyses, response);
+}
+
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state) {
     Analyses analyses;
     return row_of(model, channels, side, solver, state, analyses);
@@ -232,18 +239,19 @@ EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings&
 
 PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
                const std::vector<BranchSide>& sides, const SolverSettings& solver,
-               const Visit& also) {
+               const VisitResponse& also) {
     PathCurve walked;
     walked.curve.unit = unit_of(branch.unit);
     double reading = 0;
     Analyses analyses;
+    std::optional<WheelResponse> response;
     const double start = processor_time();
     const EquilibriumPath path = walk(
         sides, solver,
         [&](const Equilibrium& state) {
             const double found = processor_time();
-            if (also) also(state);
-            Row row = row_of(model, channels, sides.front(), solver, state, analyses);
+            Row row = row_of(model, channels, sides.front(), solver, state, analyses, response);
+            if (also) also(state, response ? &*response : nullptr);
             reading += processor_time() - found;
             return row;
         },
@@ -346,7 +354,7 @@ ReferenceRuns run_references(const Model& model, const std::vector<Channel>& cha
     const Model& standing = sides.front().model;
     runs.scale = scale_of(standing, branch, {});
     runs.truth = walk(model, channels, branch, sides, {.leg = Leg::equilibrium},
-                      [&](const Equilibrium& state) {
+                      [&](const Equilibrium& state, const WheelResponse*) {
                           runs.scale = larger(runs.scale, scale_of(standing, branch, {&state, 1}));
                       });
     runs.other = walk(model, channels, branch, sides, {.leg = Leg::energy});

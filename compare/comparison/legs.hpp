@@ -26,10 +26,14 @@ struct Row {
     double constraint_error = 0;  // likewise
     std::vector<double> values;   // per channel, in its unit
 };
-struct Analyses;  // compliance.hpp
+struct Analyses;       // compliance.hpp
+struct WheelResponse;  // compliance.hpp
 // Evaluates the channels at one point. A characteristic is computed by the leg that found the
 // state, with these settings. `analyses` are reused over the points of a branch
-// side.
+// side. `response` receives what the characteristics are read from; empty where there are none.
+Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
+           const SolverSettings& solver, const Equilibrium& state, Analyses& analyses,
+           std::optional<WheelResponse>& response);
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses);
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
@@ -42,10 +46,12 @@ EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings&
                      const std::function<Row(const Equilibrium&)>& read,
                      const std::function<void(Row)>& hand_over);
 
-// The same path as a curve. `also` is called with every point when it is found.
+// The same path as a curve. `also` is called with every point when it is found, and with its
+// response where an output has asked for it.
+using VisitResponse = std::function<void(const Equilibrium&, const WheelResponse*)>;
 PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
                const std::vector<BranchSide>& sides, const SolverSettings& solver,
-               const Visit& also = {});
+               const VisitResponse& also = {});
 
 // The runs of the sides of a branch as one, as walk() joins them.
 PathCurve joined(const std::vector<BranchSide>& ways, const std::vector<PathCurve>& sides);

@@ -109,8 +109,10 @@ double shrinks(const Contraction& rest, VectorXd v) {
     return least;
 }
 
-// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes.
-double alone(const Problem& problem, const VectorXd& found, double a, const VectorXd& small) {
+// Largest t found for which the box of origins within t L and quaternions within t of ỹ passes. Any
+// Y will do: that of ỹ first, and where it fails the inverse at the middle of the Jacobian.
+double alone(const Problem& problem, const Approximate& at, double a, const VectorXd& small) {
+    const VectorXd& found = at.y;
     const System& system = problem.system;
     constexpr int trials = 8;
     constexpr double largest = 0.05, enough = 0.6, aim = 0.85, corner = 0.2;
@@ -130,7 +132,9 @@ double alone(const Problem& problem, const VectorXd& found, double a, const Vect
                     x[system.apart[k].element][system.apart[k].axis];
         }
         const auto J = evaluate(problem, y, Interval(a), Slopes::yes).J;
-        const double by = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
+        double by = shrinks(contraction(at.Y, J), r);
+        if (!(by < 1))
+            by = shrinks(contraction(inverse(middle(J, problem.size())), J), std::move(r));
         if (by < 1) {
             best = std::max(best, t);
             t = std::min({largest, t * aim / std::max(by, 1e-3), 0.7 * failed});
@@ -309,7 +313,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
                 certificate.unique =
-                    unique_around(at, found, alone(problem, found.y, state.load, r));
+                    unique_around(at, found, alone(problem, found, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 say(certificate.detail, theorem(problem, certificate));
                 if (const auto knots = on_knots(system, z, a); !knots.empty())

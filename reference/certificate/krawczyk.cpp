@@ -36,6 +36,7 @@ Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J)
     Contraction of;
     of.M.resize(n, n);
     of.R.resize(n, n);
+    MatrixXd product = MatrixXd::Zero(n, n);  // fl(Y M), over the entries of M, most are zero
     Index most = 0;
     for (Index col = 0; col < n; ++col) {
         Index entries = 0;
@@ -44,11 +45,13 @@ Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J)
             if (!bounded(entry)) return of;
             of.M(row, col) = mid(entry);
             of.R(row, col) = rad(entry);
-            if (!is_zero(entry)) ++entries;
+            if (is_zero(entry)) continue;
+            ++entries;
+            product.col(col) += inverse.col(row) * of.M(row, col);
         }
         most = std::max(most, entries);
     }
-    of.rest = (MatrixXd::Identity(n, n) - inverse * of.M).cwiseAbs();
+    of.rest = (MatrixXd::Identity(n, n) - product).cwiseAbs();
     of.Y = inverse.cwiseAbs();
     of.M = of.M.cwiseAbs();
     of.gamma = gamma(most + 2);

@@ -67,12 +67,13 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
 }
 
 // Reactions of least imbalance: E is linear in them.
-void balance(const System& system, const Loading& loading, VectorXd& x, Counts& counts) {
+void balance(const System& system, const Loading& loading, VectorXd& x, Derivatives& by,
+             Counts& counts) {
     const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
-    if (n == 0 || m == 0) return;
-    const Derivatives by = derivatives(system, loading, x, counts);
-    if (!is_finite(by.J) || !by.E.allFinite()) return;
-    x.tail(m) -= least_squares(by.J.topRightCorner(n, m), by.E.head(n));
+    if (n == 0 || m == 0 || !is_finite(by.J) || !by.E.allFinite()) return;
+    const VectorXd R = -least_squares(by.J.topRightCorner(n, m), by.E.head(n));
+    x.tail(m) += R;
+    add_reactions(system, loading, x, R, by, counts);
 }
 
 // dx with minimum-norm motion in the idle modes. The border would minimise motion and reactions of
@@ -112,11 +113,11 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     Counts unused;
     const Loading loading{.a = a, .a_rate = 1};
     VectorXd x = unknowns_at(system, state.poses);
-    balance(system, loading, x, unused);
-    Sparse J = derivatives(system, loading, x, unused).J;
-    if (!x.allFinite() || !is_finite(J))
+    Derivatives by = derivatives(system, loading, x, unused);
+    balance(system, loading, x, by, unused);
+    if (!x.allFinite() || !is_finite(by.J))
         return fail(Outcome::not_finite, "the equations give a number that is not finite");
-    const Linearisation at = linearise(std::move(J), nullptr, unused);
+    const Linearisation at = linearise(std::move(by.J), nullptr, unused);
     const VectorXd ahead = rate_of(moving, loading, x);
     if (system.equations() > 0 &&
         (at.bordered.sign() == 0 || is_pushed(refined_answer(at, ahead), ahead)))

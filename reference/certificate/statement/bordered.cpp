@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <Eigen/SparseLU>
 #include <algorithm>
 
 namespace elastocheck::reference::certificate {
@@ -21,18 +22,29 @@ constexpr int equilibration_sweeps = 8;
 // Relative to the largest entry of a null vector: smaller entries are rounding.
 constexpr double no_part = 1e-12;
 
+using Sparse = Eigen::SparseMatrix<double>;
+
 // D_r A D_c with rows and columns of size one (Ruiz 2001).
 struct Equilibrated {
-    MatrixXd A;
+    Sparse A;
     VectorXd D_r, D_c;
 };
 Equilibrated equilibrated(const MatrixXd& A) {
-    Equilibrated of{A, VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
+    Equilibrated of{A.sparseView(), VectorXd::Ones(A.rows()), VectorXd::Ones(A.cols())};
     const auto scale = [](double size) { return size > 0 ? 1 / std::sqrt(size) : 1; };
+    VectorXd r(A.rows()), c(A.cols());
     for (int sweep = 0; sweep < equilibration_sweeps; ++sweep) {
-        const VectorXd r = of.A.cwiseAbs().rowwise().maxCoeff().unaryExpr(scale),
-                       c = of.A.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(scale);
-        of.A = r.asDiagonal() * of.A * c.asDiagonal();
+        r.setZero(), c.setZero();
+        for (Index j = 0; j < A.cols(); ++j)
+            for (Sparse::InnerIterator at(of.A, j); at; ++at) {
+                const double size = std::abs(at.value());
+                r[at.row()] = std::max(r[at.row()], size);
+                c[j] = std::max(c[j], size);
+            }
+        r = r.unaryExpr(scale), c = c.unaryExpr(scale);
+        for (Index j = 0; j < A.cols(); ++j)
+            for (Sparse::InnerIterator at(of.A, j); at; ++at)
+                at.valueRef() = r[at.row()] * at.value() * c[j];
         of.D_r.array() *= r.array();
         of.D_c.array() *= c.array();
     }
@@ -168,7 +180,7 @@ Border border_at(const System& system, const VectorXd& z, double a, double nothi
     const MatrixXd J = square(at.J, n);
     if (!J.allFinite() || nb == 0) return border;
     // The condition estimate is meaningless for a matrix with a pivot that is rounding.
-    const Eigen::PartialPivLU<MatrixXd> lu(equilibrated(J).A);
+    const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(equilibrated(J).A));
     if (lu.matrixLU().diagonal().cwiseAbs().minCoeff() > nothing &&
         lu.rcond() > surely_regular * nothing)
         return border;
@@ -344,9 +356,15 @@ template Values<Along> evaluate_without_slopes(const Problem&, const std::vector
 template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vector<Jet<1>>&,
                                                 const Jet<1>&);
 
+// By sparse factors: a tenth of the entries of J is not zero. NaN where a pivot is zero.
 MatrixXd inverse(const MatrixXd& J) {
+    const Index n = J.rows();
+    const MatrixXd none = MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
+    if (n == 0 || !J.allFinite()) return none;
     const auto [A, D_r, D_c] = equilibrated(J);
-    return D_c.asDiagonal() * Eigen::PartialPivLU<MatrixXd>(A).inverse() * D_r.asDiagonal();
+    const Eigen::SparseLU<Sparse> lu(A);
+    if (lu.info() != Eigen::Success) return none;
+    return D_c.asDiagonal() * lu.solve(MatrixXd::Identity(n, n)) * D_r.asDiagonal();
 }
 
 // Newton's method until its steps are rounding, near the state: a divergent one along an idle motion

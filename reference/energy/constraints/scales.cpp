@@ -75,23 +75,28 @@ double drive_size(const Model& model, const Prescribed& prescribed, const Chart&
     if (J_t.cols() == 0 || K.rows() == 0 || !J_t.allFinite() || !K.allFinite() ||
         !values.Phi.allFinite())
         return 0;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr, of_J;
+    Eigen::CompleteOrthogonalDecomposition<MatrixXd> qr;
     qr.setThreshold(rank_threshold);
     qr.compute(J_t);
-    of_J.setThreshold(rank_threshold);
-    of_J.compute(J_t.transpose());
-    const VectorXd p = of_J.solve(-D.cwiseProduct(values.Phi));
+    const VectorXd p = qr.transpose().solve(-D.cwiseProduct(values.Phi));
     const MatrixXd Q = qr.householderQ(), Z = Q.rightCols(Q.cols() - qr.rank());
     VectorXd dxi = p;
     if (Z.cols() > 0) {
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> compliance;
         compliance.setThreshold(rank_threshold);
-        compliance.compute(Z.transpose() * K * Z);
-        dxi -= Z * compliance.solve(Z.transpose() * K * p);
+        const MatrixXd K_Z = K * Z;
+        compliance.compute(Z.transpose() * K_Z);
+        dxi -= Z * compliance.solve(K_Z.transpose() * p);
     }
     const double way = dxi.norm();
     if (!(way > scales.roundoff)) return 0;
     return dxi.dot(K * dxi) / (scales.length * way) * std::min(1.0, linear_reach / way);
+}
+
+// Whether anything but loads moves: neither stress nor the place of a joint depends on those.
+bool moves_parts(const Prescribed& rate) {
+    return !(rate.offset.isZero(0) && rate.gap.isZero(0) && rate.free_length.isZero(0) &&
+             rate.preload.isZero(0) && rate.strength.isZero(0));
 }
 
 }  // namespace
@@ -134,7 +139,9 @@ Scales scales_of(const Model& model, const Course& course, std::span<const doubl
     double force =
         loads_size(course.start, scales.length) + a * loads_size(course.rate, scales.length);
     double elastic = 0;
-    for (const double end : {0.0, a, -a}) {
+    const std::vector<double> ends =
+        moves_parts(course.rate) ? std::vector{0.0, a, -a} : std::vector{0.0};
+    for (const double end : ends) {
         const Prescribed prescribed = at(course, end);
         elastic = std::max(elastic, stress_size(model, prescribed, design, scales.length) +
                                         drive_size(model, prescribed, design, scales));

@@ -97,13 +97,21 @@ struct Rows {
     }
 };
 
-template <class Row>
-void for_each_row(const System& system, const Loading& loading, const VectorXd& x, Row row) {
+// The terms of the constraints at other reactions.
+struct Reacting : Seeds {
+    const VectorXd& R;
+
+    bool wants(Term term, std::size_t) const { return term == Term::constraint; }
+    Jet reaction(const Part& part, int k) const { return Jet(R[part.row + k], first_reaction + k); }
+};
+
+template <class Source, class Row>
+void for_each_row(const System& system, const Loading& loading, const Source& source, Row row) {
     Jet a(loading.a), held(loading.held);
     a.v[the_parameter] = loading.a_rate;
     held.v[the_parameter] = loading.held_rate;
     Rows<Row> rows{system, row};
-    assemble<Jet>(system, a, held, loading.pieces, Seeds{system, x}, rows);
+    assemble<Jet>(system, a, held, loading.pieces, source, rows);
 }
 
 }  // namespace
@@ -112,17 +120,21 @@ void for_each_row(const System& system, const Loading& loading, const VectorXd& 
 struct Pattern {
     Sparse J;                 // zeros
     std::vector<int> places;  // among its values
+    std::size_t constraints = 0;  // the first of theirs
 };
 
 namespace {
 
 Pattern pattern_of(const System& system, const Loading& loading, const VectorXd& x) {
     std::vector<Eigen::Triplet<double>> entries;
-    for_each_row(system, loading, x, [&](const Part& part, int row, bool balance, const Jet&) {
-        for_each_entry(system, part, row, balance,
-                       [&](int i, int j, int) { entries.emplace_back(i, j, 0.); });
-    });
-    Pattern pattern{Sparse(system.equations(), system.equations()), {}};
+    std::size_t of_others = 0;
+    for_each_row(system, loading, Seeds{system, x},
+                 [&](const Part& part, int row, bool balance, const Jet&) {
+                     for_each_entry(system, part, row, balance,
+                                    [&](int i, int j, int) { entries.emplace_back(i, j, 0.); });
+                     if (part.rows == 0) of_others = entries.size();
+                 });
+    Pattern pattern{Sparse(system.equations(), system.equations()), {}, of_others};
     pattern.J.setFromTriplets(entries.begin(), entries.end());
     const int *start = pattern.J.outerIndexPtr(), *row = pattern.J.innerIndexPtr();
     for (const auto& entry : entries)
@@ -158,21 +170,57 @@ Derivatives derivatives(const System& system, const Loading& loading, const Vect
                    VectorXd::Zero(system.equations())};
     double* values = by.J.valuePtr();
     const int* place = system.pattern->places.data();
-    for_each_row(system, loading, x, [&](const Part& part, int row, bool balance, const Jet& term) {
-        by.E[row] += term.a;
-        by.E_rate[row] += term.v[the_parameter];
-        for_each_entry(system, part, row, balance,
-                       [&](int, int, int n) { values[*place++] += term.v[n]; });
-    });
+    for_each_row(system, loading, Seeds{system, x},
+                 [&](const Part& part, int row, bool balance, const Jet& term) {
+                     by.E[row] += term.a;
+                     by.E_rate[row] += term.v[the_parameter];
+                     for_each_entry(system, part, row, balance,
+                                    [&](int, int, int n) { values[*place++] += term.v[n]; });
+                 });
     by.E -= loading.held * system.at_design;
     by.E_rate -= loading.held_rate * system.at_design;
     return by;
+}
+
+void add_reactions(const System& system, const Loading& loading, const VectorXd& x,
+                   const VectorXd& R, Derivatives& by, Counts& counts) {
+    ++counts.evaluations;
+    double* values = by.J.valuePtr();
+    const int* place = system.pattern->places.data() + system.pattern->constraints;
+    for_each_row(system, loading, Reacting{{system, x}, R},
+                 [&](const Part& part, int row, bool balance, const Jet& term) {
+                     if (balance) {
+                         by.E[row] += term.a;
+                         by.E_rate[row] += term.v[the_parameter];
+                     }
+                     // neither Φ nor the directions of the reactions change
+                     for_each_entry(system, part, row, balance, [&](int, int, int n) {
+                         if (balance && n < first_reaction) values[*place] += term.v[n];
+                         ++place;
+                     });
+                 });
 }
 
 VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x) {
     struct Source {
         const System& system;
         const VectorXd& x;
+        bool settling;
+        bool wants(Term term, std::size_t k) const {
+            if (settling) return true;
+            switch (term) {
+                case Term::element: {
+                    const ElementPath& path = system.elements[k];
+                    return path.free_length.rate != 0 ||
+                           std::ranges::any_of(path.preload,
+                                               [](const Affine& b) { return b.rate != 0; });
+                }
+                case Term::load: return system.loads[k].factor.rate != 0;
+                case Term::ground_spring: return false;
+                case Term::constraint: return system.values[k].rate != 0;
+            }
+            return true;
+        }
         Frame<Dual> frame(const Part& part, int which) const {
             return at_rest(frame_of(system, x, which == 0 ? part.i : part.j));
         }
@@ -197,7 +245,8 @@ VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x
     a.v[0] = loading.a_rate;
     held.v[0] = loading.held_rate;
     Sum sum{system, -loading.held_rate * system.at_design};
-    assemble<Dual>(system, a, held, loading.pieces, Source{system, x}, sum);
+    assemble<Dual>(system, a, held, loading.pieces, Source{system, x, loading.held_rate != 0},
+                   sum);
     return std::move(sum.E_rate);
 }
 

@@ -153,9 +153,11 @@ bool track(Linearisation& at) {
 
 // Rank is judged on the equilibrated matrix D_r J D_c, because a large ratio of stiffnesses is not
 // a singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
-NullSpaces null_spaces(const Sparse& J) {
+NullSpaces null_spaces(const Sparse& J, Factors* of_such) {
     const auto [A, D_r, D_c] = equilibrated(J);
-    if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
+    const Factors factors(A);
+    if (of_such != nullptr) *of_such = factors;
+    if (factors.condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
     const auto [near_right, near_left] = null_bases(A, null_threshold);
     const Sparse A_t = A.transpose();
     Sparse right = without_angles(A, near_right), left = without_angles(A_t, near_left);
@@ -180,8 +182,9 @@ Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
         if (!at.modes_are_new) return at;
         at.modes_are_soft = false;
     }
-    at.modes = null_spaces(at.J);
-    at.bordered = Factors(bordered_matrix(at.J, at.modes));
+    Factors of_such;
+    at.modes = null_spaces(at.J, &of_such);
+    at.bordered = Factors(bordered_matrix(at.J, at.modes), &of_such);
     counts.factorisations += 2;
     return at;
 }

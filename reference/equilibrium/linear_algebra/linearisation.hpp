@@ -13,7 +13,8 @@ struct NullSpaces {
     Sparse right, left;
     Eigen::Index count() const { return right.cols(); }
 };
-NullSpaces null_spaces(const Sparse& J);
+// `of_such`: where given, receives the factors of J equilibrated, for their elimination order.
+NullSpaces null_spaces(const Sparse& J, Factors* of_such = nullptr);
 
 // J bordered by the null spaces,
 //

@@ -194,7 +194,16 @@ struct Part {
 
 // `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)`
 // its scaled reactions; `sink.balance(part, body, force, moment)` and
-// `sink.constraint(part, k, Phi)` take the scaled terms, to be summed.
+// `sink.constraint(part, k, Phi)` take the scaled terms, to be summed. A source may leave out terms:
+// `source.wants(term, k)`, k the position among its kind.
+enum class Term { element, load, ground_spring, constraint };
+template <class Source>
+bool wants(const Source& source, Term term, std::size_t k) {
+    if constexpr (requires { source.wants(term, k); })
+        return source.wants(term, k);
+    else
+        return true;
+}
 template <class T, class Source, class Sink>
 void assemble(const System& system, const T& a, const T& held, const Pieces& pieces,
               const Source& source, Sink& sink) {
@@ -211,6 +220,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     };
 
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
+        if (!wants(source, Term::element, e)) continue;
         const auto [i, j] = bodies_of(model.elastics[e].kind);
         const Part part{i, j};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
@@ -218,17 +228,19 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         apply(part, i, frame_i, on.i, T(+1.0));
         apply(part, j, frame_j, on.j, T(+1.0));
     }
-    for (const auto& load : system.loads) {
+    for (std::size_t k = 0; k < system.loads.size(); ++k) {
+        const auto& load = system.loads[k];
         const Part part{body_of(load.kind), ground};
-        if (part.i == ground) continue;
+        if (part.i == ground || !wants(source, Term::load, k)) continue;
         const Frame<T> body = source.frame(part, 0);
         apply(part, part.i, body,
-              std::visit([&](const auto& k) { return on_body(k, body); }, load.kind),
+              std::visit([&](const auto& kind) { return on_body(kind, body); }, load.kind),
               system.grows ? T(load.factor.at(a) * (1.0 - held)) : load.factor.at(a));
     }
 
     if (system.hold != 0)
         for (int body = 0; body < system.bodies; ++body) {
+            if (!wants(source, Term::ground_spring, static_cast<std::size_t>(body))) continue;
             const Part part{body, ground};
             const Frame<T> frame = source.frame(part, 0);
             const Pose& drawn = model.bodies[static_cast<std::size_t>(body)].design;
@@ -238,12 +250,14 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
                 T(held * (system.hold * system.force)));
         }
 
-    int row = 0;
-    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+    for (std::size_t c = 0, row = 0; c < model.constraints.size(); ++c) {
         const auto& kind = model.constraints[c].kind;
+        const int first = static_cast<int>(row);
+        row += static_cast<std::size_t>(rows(kind));
+        if (!wants(source, Term::constraint, c)) continue;
         const auto [i, j] = bodies_of(kind);
         const bool directions = is_direction(kind);
-        const Part part{i, j, row, rows(kind), directions};
+        const Part part{i, j, first, rows(kind), directions};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
         T R[3];
         for (int k = 0; k < part.rows; ++k)
@@ -254,7 +268,6 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         apply(part, j, frame_j, h.reaction, T(-1.0));
         for (int k = 0; k < part.rows; ++k)
             sink.constraint(part, k, T(h.Phi[k] * (directions ? 1.0 : per_length)));
-        row += part.rows;
     }
 }
 
