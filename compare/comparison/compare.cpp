@@ -49,9 +49,9 @@ std::vector<Compliance> compliance_of(const Model& model, const BranchSide& side
     std::vector<Compliance> list;
     Analyses analyses;
     const auto& marks = run.landmarks;
-    for (const auto& [state, read] :
-         {std::pair{&marks.front, &known.front}, {&marks.start, &known.start},
-          {&marks.back, &known.back}}) {
+    for (const auto& [state, read] : {std::pair{&marks.front, &known.front},
+                                      {&marks.start, &known.start},
+                                      {&marks.back, &known.back}}) {
         if (!*state) continue;
         const double a = in_unit(run.curve.unit) * (*state)->load;
         if (std::ranges::find(list, a, &Compliance::a) != list.end()) continue;
@@ -130,30 +130,30 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     static_cast<PathCurve&>(run) =
         walk(model, channels, branch, sides, solver,
              [&](const Equilibrium& state, const WheelResponse* response) {
-            for (const Leg by : legs) {
-                auto& worst = run.judged[static_cast<std::size_t>(by)];
-                worst = worse(worst, judge(by, side, state));
-            }
-            run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
-            // The farthest point on either side comes last.
-            const auto mark = [&](std::optional<Equilibrium>& here,
-                                  std::optional<WheelResponse>& read) {
-                here = state;
-                read.reset();
-                if (response != nullptr) read = *response;
-            };
-            if (state.load == 0)
-                mark(marks.start, responses.start);
-            else if (both_sides && state.load * side.branch.to > 0)
-                mark(marks.front, responses.front);
-            else
-                mark(marks.back, responses.back);
-            if (state.load == middle) marks.middle = state;
-            if (solver.error_bound) add(error_bound, state);
-            if (largest) largest->add(state);
-            if (std::ranges::find(stations, state.load) != stations.end())
-                run.stations.push_back(state);
-        });
+                 for (const Leg by : legs) {
+                     auto& worst = run.judged[static_cast<std::size_t>(by)];
+                     worst = worse(worst, judge(by, side, state));
+                 }
+                 run.scale = larger(run.scale, scale_of(side.model, branch, {&state, 1}));
+                 // The farthest point on either side comes last.
+                 const auto mark = [&](std::optional<Equilibrium>& here,
+                                       std::optional<WheelResponse>& read) {
+                     here = state;
+                     read.reset();
+                     if (response != nullptr) read = *response;
+                 };
+                 if (state.load == 0)
+                     mark(marks.start, responses.start);
+                 else if (both_sides && state.load * side.branch.to > 0)
+                     mark(marks.front, responses.front);
+                 else
+                     mark(marks.back, responses.back);
+                 if (state.load == middle) marks.middle = state;
+                 if (solver.error_bound) add(error_bound, state);
+                 if (largest) largest->add(state);
+                 if (std::ranges::find(stations, state.load) != stations.end())
+                     run.stations.push_back(state);
+             });
     std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
     if (largest) run.largest = largest->list();
     run.messages = messages(error_bound, branch.unit);

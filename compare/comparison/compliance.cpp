@@ -100,15 +100,17 @@ ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
     return freed_case;
 }
 
-// Unit forces and moments at the wheel centres.
-std::vector<Disturbance> causes_at(const Model& model) {
+// Unit forces and moments at the wheel centres, then forces at the patches.
+std::vector<Disturbance> causes_at(const Model& model, bool with_patches) {
     std::vector<Disturbance> list;
     for (const Wheel& wheel : model.wheels) {
-        const Point centre{wheel.body, wheel.centre_local};
+        const Point centre{wheel.body, wheel.centre_local}, patch{wheel.body, wheel.contact_local};
         for (int k = 0; k < 3; ++k)
             list.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
         for (int k = 0; k < 3; ++k)
             list.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
+        for (int k = 0; with_patches && k < 3; ++k)
+            list.push_back(UnitWrench{patch, Vector3d::Unit(k), Vector3d::Zero()});
     }
     return list;
 }
@@ -128,15 +130,16 @@ Motions at_patch_of(const std::array<Motions, causes>& solved, const Vector3d& d
 }
 
 std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& all,
-                                                  const Model& model, const Equilibrium& state) {
-    constexpr std::size_t each = at_patch;
+                                                  const Model& model, const Equilibrium& state,
+                                                  bool with_patches) {
+    const std::size_t each = with_patches ? causes : at_patch;
     std::vector<std::array<Motions, causes>> list(model.wheels.size());
     for (std::size_t w = 0; w < list.size(); ++w) {
         const Wheel& wheel = model.wheels[w];
         for (std::size_t k = 0; k < each; ++k) list[w][k] = all[each * w + k];
         const Vector3d d = position(state.poses, wheel.body, wheel.contact_local) -
                            position(state.poses, wheel.body, wheel.centre_local);
-        for (int axis = 0; axis < 3; ++axis)
+        for (int axis = 0; !with_patches && axis < 3; ++axis)
             list[w][static_cast<std::size_t>(at_patch + axis)] = at_patch_of(list[w], d, axis);
     }
     return list;
@@ -181,11 +184,14 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     WheelResponse response;
     const std::size_t wheels = side.model.wheels.size();
     const ResponseCase freed_case = freed(side, state);
-    const auto wrenches = causes_at(side.model);
+    // The references refine their answers, so that those at the patch may be summed. The recursion
+    // does not: its sums would differ from its own answers by 1e-10.
+    const bool with_patches = solver.leg == Leg::recursive || solver.leg == Leg::series;
+    const auto wrenches = causes_at(side.model, with_patches);
     if (const Response free = linear_response(solver, freed_case.model, freed_case.branch,
                                               freed_case.state, wrenches, analyses.free);
         free.outcome == Outcome::converged)
-        response.free = by_wheel(free.increments, side.model, state);
+        response.free = by_wheel(free.increments, side.model, state, with_patches);
     else {
         response.why_not_free = failure_text(free);
         response.nothing_resists =
@@ -217,7 +223,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         response.steering = std::move(jacked.increments.back());
         jacked.increments.pop_back();
     }
-    response.held = by_wheel(jacked.increments, side.model, state);
+    response.held = by_wheel(jacked.increments, side.model, state, with_patches);
     response.travel.assign(
         jacked.increments.end() - static_cast<std::ptrdiff_t>(response.tied ? 1 : wheels),
         jacked.increments.end());

@@ -312,8 +312,7 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
-                certificate.unique =
-                    unique_around(at, found, alone(problem, found, state.load, r));
+                certificate.unique = unique_around(at, found, alone(problem, found, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
                 say(certificate.detail, theorem(problem, certificate));
                 if (const auto knots = on_knots(system, z, a); !knots.empty())

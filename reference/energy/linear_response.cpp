@@ -19,8 +19,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double idle_push = 1e-8;       // of the disturbance: smallest load on an idle mode
-constexpr double unanswered = 1e-3;      // of the disturbance: remainder before the last correction
+constexpr double idle_push = 1e-8;   // of the disturbance: smallest load on an idle mode
+constexpr double unanswered = 1e-3;  // of the disturbance: remainder before the last correction
 constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
 
 void check(const Model& model, const Equilibrium& state,

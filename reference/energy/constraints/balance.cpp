@@ -35,7 +35,6 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
                .left = g,
                .Phi = D.cwiseProduct(values.Phi),
                .J_t = transposed(scaled(values.Phi_q, D, S)),
-               .across = MatrixXd(n, 0),
                .along = MatrixXd::Identity(n, n),
                .independent = {},
                .qr = {}};
@@ -45,18 +44,21 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     qr.setThreshold(rank_threshold);
     qr.compute(at.J_t);
     const int rank = static_cast<int>(qr.rank());
-    const MatrixXd Q = qr.householderQ();
     at.lambda = qr.solve(-g);
     at.left = g + at.J_t * at.lambda;
-    at.across = Q.leftCols(rank);
-    at.along = Q.rightCols(n - rank);
+    at.along = MatrixXd::Identity(n, n).rightCols(n - rank);
+    at.along.applyOnTheLeft(qr.householderQ());
     for (int i = 0; i < rank; ++i) at.independent.push_back(qr.colsPermutation().indices()[i]);
     return at;
 }
 
-VectorXd shortest(const Balance& at, const VectorXd& Phi) {
-    return at.qr.transpose().solve(Phi);
+MatrixXd across(const Balance& at) {
+    MatrixXd basis = MatrixXd::Identity(at.along.rows(), std::ssize(at.independent));
+    if (basis.cols() > 0) basis.applyOnTheLeft(at.qr.householderQ());
+    return basis;
 }
+
+VectorXd shortest(const Balance& at, const VectorXd& Phi) { return at.qr.transpose().solve(Phi); }
 
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart) {
@@ -101,7 +103,7 @@ MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, in
 Modes modes_of(const Balance& at, const MatrixXd& H) {
     Modes modes;
     if (at.along.cols() == 0) return {at.along, VectorXd(0), 0};
-    const bool free = at.across.cols() == 0;  // `along` is then the unit matrix
+    const bool free = at.independent.empty();  // `along` is then the unit matrix
     const MatrixXd reduced = free ? H : MatrixXd(at.along.transpose() * H * at.along);
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(reduced);
     modes.Z = free ? eigen.eigenvectors() : MatrixXd(at.along * eigen.eigenvectors());

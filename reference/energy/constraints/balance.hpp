@@ -20,8 +20,7 @@ struct Balance {
     Eigen::VectorXd left;    // ∂V/∂ξ + (∂DΦ/∂ξ)ᵀ λ, the projected gradient [6nb]
     Eigen::VectorXd Phi;     // D Φ [m]
     Eigen::MatrixXd J_t;     // (∂DΦ/∂ξ)ᵀ [6nb × m]
-    Eigen::MatrixXd across;  // orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank]
-    // orthonormal basis of its null space: the motions that the constraints allow [6nb × f]
+    // orthonormal basis of the null space of ∂DΦ/∂ξ: the motions that the constraints allow [6nb × f]
     Eigen::MatrixXd along;
     // linearly independent rows of Φ, by column-pivoted QR of (∂DΦ/∂ξ)ᵀ [rank]
     std::vector<int> independent;
@@ -31,6 +30,8 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
                 const ConstraintValues& values);
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
+// Orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank].
+Eigen::MatrixXd across(const Balance& at);
 // Shortest least-squares solution ξ of ∂DΦ/∂ξ ξ = Φ.
 Eigen::VectorXd shortest(const Balance& at, const Eigen::VectorXd& Phi);
 

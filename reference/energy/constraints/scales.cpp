@@ -79,7 +79,8 @@ double drive_size(const Model& model, const Prescribed& prescribed, const Chart&
     qr.setThreshold(rank_threshold);
     qr.compute(J_t);
     const VectorXd p = qr.transpose().solve(-D.cwiseProduct(values.Phi));
-    const MatrixXd Q = qr.householderQ(), Z = Q.rightCols(Q.cols() - qr.rank());
+    MatrixXd Z = MatrixXd::Identity(K.rows(), K.rows()).rightCols(K.rows() - qr.rank());
+    Z.applyOnTheLeft(qr.householderQ());
     VectorXd dxi = p;
     if (Z.cols() > 0) {
         Eigen::CompleteOrthogonalDecomposition<MatrixXd> compliance;

@@ -48,12 +48,11 @@ constexpr double finest = 1e-12;
 constexpr double first_stride = 1.0 / 64;  // of the span: the first step, before any slope is known
 // of the span: instabilities that appear and vanish within this length are not searched for
 constexpr double look = 1e-3;
-constexpr int internal_points = 2000;    // between two requested values
-constexpr double largest_step = 0.1;     // of L or 1 rad, by the tangent
-constexpr double negligible = 1e-6;      // of L or 1 rad
-constexpr double short_step = 0.01;      // of L or 1 rad: the Hessian hardly changes
-constexpr double idle_push = 1e-8;       // of F or F·L: smallest load on an idle mode
-constexpr double spent = 0.01;           // of its first stiffness: the mode will soon be unstable
+constexpr int internal_points = 2000;  // between two requested values
+constexpr double largest_step = 0.1;   // of L or 1 rad, by the tangent
+constexpr double negligible = 1e-6;    // of L or 1 rad
+constexpr double idle_push = 1e-8;     // of F or F·L: smallest load on an idle mode
+constexpr double spent = 0.01;         // of its first stiffness: the mode will soon be unstable
 
 // A small gradient does not bound the error along a soft mode. Newton corrections are applied until
 // the last one is at most `last_correction`; after `corrections` of them at most `known` is
@@ -175,28 +174,20 @@ Attempt lost(Attempt attempt, const char* why) {
     return attempt;
 }
 
-// Start of the minimisation: poses, and the Hessian there for a short step.
-struct Predicted {
-    VectorXd xi;
-    std::optional<MatrixXd> H;
-};
-
-// Without an equilibrium before the last, t h. With it, ξ is the cubic t h + c h² + d h³ through both
-// equilibria and their tangents t_0 and t, without idle motions, and H is linear. With D from the one before to the last
-// and ξ_0 the increment back,
+// Start of the minimisation. Without an equilibrium before the last, t h. With it, ξ is the cubic
+// t h + c h² + d h³ through both equilibria and their tangents t_0 and t, without idle motions. With
+// D from the one before to the last and ξ_0 the increment back,
 //
 //   A = ξ_0 + D t,   B = D (t_0 - t),   D² c = 3 A + B,   D³ d = 2 A + B
 //
-// t_0 in the chart of the last, where a rotation φ changes by J⁻¹(φ) δπ. At a kink both are wrong:
-// they are used where they change little.
-Predicted predicted(const Path& path, const Continuation& continuation, const VectorXd& t,
-                    double h) {
-    constexpr double little = 0.5, hardly = 0.1;  // of t h, of H
+// t_0 in the chart of the last, where a rotation φ changes by J⁻¹(φ) δπ. At a kink it is wrong: it
+// is used where it changes little.
+VectorXd predicted(const Path& path, const Continuation& continuation, const VectorXd& t,
+                   double h) {
+    constexpr double little = 0.5;  // of t h
     const State &last = continuation.state, &before = continuation.before;
-    Predicted start{t * h, {}};
-    const bool is_short = largest(start.xi) <= short_step;
-    if (is_short) start.H = last.H;
-    if (continuation.tangent_before.size() == 0 || last.a == before.a) return start;
+    VectorXd xi = t * h;
+    if (continuation.tangent_before.size() == 0 || last.a == before.a) return xi;
     const double D = last.a - before.a, share = h / D;
     const VectorXd back = scaled_increment(path, last.poses, before.poses);
     VectorXd t_0 = continuation.tangent_before;
@@ -206,20 +197,16 @@ Predicted predicted(const Path& path, const Continuation& continuation, const Ve
     VectorXd bent = share * share * (3 * A + B + share * (2 * A + B));
     const MatrixXd idle = last.modes.idle_motions();
     bent -= idle * (idle.transpose() * bent).eval();
-    if (largest(bent) < little * largest(start.xi)) start.xi += bent;
-    if (is_short) {
-        const MatrixXd change = share * (last.H - before.H);
-        if (change.norm() <= hardly * last.H.norm()) *start.H += change;
-    }
-    return start;
+    if (largest(bent) < little * largest(xi)) xi += bent;
+    return xi;
 }
 
 // One continuation step; `expected` is the predictor along the tangent.
 Attempt step(const Path& path, const Continuation& continuation, double a, const VectorXd& expected,
-             const Predicted& start) {
+             const VectorXd& start) {
     const State& from = continuation.state;
-    Attempt attempt = minimum_from(path, a, moved(path, from.poses, start.xi),
-                                   from.modes.idle_motions(), start.H ? &*start.H : nullptr);
+    Attempt attempt =
+        minimum_from(path, a, moved(path, from.poses, start), from.modes.idle_motions());
     const State& to = attempt.state;
     if (attempt.failure && attempt.failure->outcome == Outcome::not_finite) return attempt;
     const VectorXd actual = resisted_increment(path, from, to);
@@ -268,11 +255,6 @@ Balance balance_at(const Path& path, double a, const std::vector<Pose>& poses) {
     path.counts.evaluations += 1;
     path.counts.factorisations += 1;
     return balance(path.model, at(path.course, a), path.scales, chart_about(poses));
-}
-
-State state_with(const Path& path, double a, const std::vector<Pose>& poses, const MatrixXd& H) {
-    const Balance at = balance_at(path, a, poses);
-    return {a, poses, at, H, modes_of(at, H)};
 }
 
 }  // namespace
@@ -342,13 +324,13 @@ Attempt corrected(const Path& path, State state) {
 }  // namespace
 
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const MatrixXd& idle, const MatrixXd* nearby) {
+                     const MatrixXd& idle) {
     const Options& options = path.options;
     const Prescribed prescribed = at(path.course, a);
     const int per_chart =
         std::max(10, options.evaluation_limit / std::max(1, options.recentre_limit));
     long evaluations = 0;
-    State state = nearby ? state_with(path, a, start, *nearby) : state_at(path, a, start);
+    State state = state_at(path, a, start);
     for (int i = 0; i < options.recentre_limit && evaluations < options.evaluation_limit; ++i) {
         const Minimisation m = minimise(path.model, prescribed, path.scales, state.poses, state.at,
                                         state.H, state.modes, idle, options.tolerance, per_chart);

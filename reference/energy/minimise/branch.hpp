@@ -67,10 +67,8 @@ struct Attempt {
     State state;
     std::optional<Failure> failure;
 };
-//
-// `nearby`: the Hessian at a state close to `start`, which serves as the metric of the first chart.
 Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
-                     const Eigen::MatrixXd& idle, const Eigen::MatrixXd* nearby = nullptr);
+                     const Eigen::MatrixXd& idle);
 
 // Poses after the increment ξ from `from`.
 std::vector<Pose> moved(const Path& path, const std::vector<Pose>& from, const Eigen::VectorXd& xi);

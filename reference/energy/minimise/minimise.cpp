@@ -56,12 +56,13 @@ MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& mo
     const auto resisting = modes.resisting();
     const MatrixXd Z = modes.Z(Eigen::all, resisting);
     const VectorXd W = modes.stiffness(resisting);
-    const int rank = static_cast<int>(at.across.cols());
+    const MatrixXd Y = across(at);
+    const auto rank = Y.cols();
     MatrixXd T(H.rows(), rank + Z.cols());
-    T.leftCols(rank) =
-        at.across - Z * (W.cwiseInverse().asDiagonal() * (Z.transpose() * (H * at.across)));
-    for (int i = 0; i < rank; ++i) {
-        const double stiffness = std::abs(T.col(i).dot(H * T.col(i)));
+    T.leftCols(rank) = Y - Z * (W.cwiseInverse().asDiagonal() * ((H * Z).transpose() * Y));
+    const MatrixXd H_T = H * T.leftCols(rank);
+    for (Eigen::Index i = 0; i < rank; ++i) {
+        const double stiffness = std::abs(T.col(i).dot(H_T.col(i)));
         T.col(i) /= std::sqrt(std::max(stiffness, 1.0));
     }
     T.rightCols(Z.cols()) = Z * W.cwiseAbs().cwiseSqrt().cwiseInverse().asDiagonal();

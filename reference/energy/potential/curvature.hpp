@@ -37,7 +37,6 @@ void add_curvature_of_offset(const Carried& n, const Eigen::Vector3d& D, const C
                              const Carried& minus, Eigen::MatrixXd& H);
 
 // λ u·v, both directions carried by bodies.
-void add_curvature_of_cosine(double lambda, const Carried& u, const Carried& v,
-                             Eigen::MatrixXd& H);
+void add_curvature_of_cosine(double lambda, const Carried& u, const Carried& v, Eigen::MatrixXd& H);
 
 }  // namespace elastocheck::reference::energy

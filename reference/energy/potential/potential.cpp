@@ -186,11 +186,11 @@ void add_geometric(const AxialSpring& spring, const Vector6& stress, const Chart
 //
 //   (φ_i × (γ × n) + ½ γ × (γ × n))·D + δD·(γ × n),   γ = Γ (φ_j - φ_i) here
 //   m·(second order of γ),                            m = A_Iᵀ (n × D), so that g gains Pᵀ m
-void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& chart,
-                   MatrixXd& H) {
+void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& chart, MatrixXd& H) {
     const BodyId i = bushing.i.body, j = bushing.j.body;
     const Carried u_i = lever_at(bushing.i, chart), u_j = lever_at(bushing.j, chart);
-    const Vector3d D = motion(chart[j], bushing.j.s_local).p - motion(chart[i], bushing.i.s_local).p;
+    const Vector3d D =
+        motion(chart[j], bushing.j.s_local).p - motion(chart[i], bushing.i.s_local).p;
     const Quaterniond q_i = chart[i].centre.p * bushing.i.A_local.normalized();
     const Quaterniond q_j = chart[j].centre.p * bushing.j.A_local.normalized();
     Quaterniond q = q_i.conjugate() * q_j;

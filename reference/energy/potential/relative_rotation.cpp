@@ -85,8 +85,7 @@ Bent atan2(const Bent& y, const Bent& x) {
     const Vector3d slope = (x.at * y.slope - y.at * x.slope) / square,
                    along = x.at * x.slope + y.at * y.slope;
     return {std::atan2(y.at, x.at), slope,
-            (x.at * y.curvature - y.at * x.curvature -
-             2 * symmetric(slope * along.transpose())) /
+            (x.at * y.curvature - y.at * x.curvature - 2 * symmetric(slope * along.transpose())) /
                 square};
 }
 
@@ -205,9 +204,9 @@ HalfWay half_way(const RelativeRotation& rotation) {
 // so that m·γ has the second derivative (-½ m̃ G)ₛ.
 Matrix3d half_way_curvature(const Quaterniond& q, const Vector3d& m) {
     const Vector3d v = q.vec();
-    const Matrix3d G =
-        0.5 *
-        (q.w() * Matrix3d::Identity() - skew(v) + v * v.transpose() / (1 + q.w())) / (1 + q.w());
+    const Matrix3d G = 0.5 *
+                       (q.w() * Matrix3d::Identity() - skew(v) + v * v.transpose() / (1 + q.w())) /
+                       (1 + q.w());
     return symmetric(-0.5 * skew(m) * G);
 }
 

@@ -118,8 +118,8 @@ void for_each_row(const System& system, const Loading& loading, const Source& so
 
 // Positions of the derivatives of each term in J, in assembly order.
 struct Pattern {
-    Sparse J;                 // zeros
-    std::vector<int> places;  // among its values
+    Sparse J;                     // zeros
+    std::vector<int> places;      // among its values
     std::size_t constraints = 0;  // the first of theirs
 };
 
@@ -245,8 +245,7 @@ VectorXd rate_of(const System& system, const Loading& loading, const VectorXd& x
     a.v[0] = loading.a_rate;
     held.v[0] = loading.held_rate;
     Sum sum{system, -loading.held_rate * system.at_design};
-    assemble<Dual>(system, a, held, loading.pieces, Source{system, x, loading.held_rate != 0},
-                   sum);
+    assemble<Dual>(system, a, held, loading.pieces, Source{system, x, loading.held_rate != 0}, sum);
     return std::move(sum.E_rate);
 }
 
