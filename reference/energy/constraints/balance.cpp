@@ -52,7 +52,7 @@ Balance balance(const Model& model, const Scales& scales, const VectorXd& gradie
     return at;
 }
 
-MatrixXd across(const Balance& at) {
+MatrixXd row_space(const Balance& at) {
     MatrixXd basis = MatrixXd::Identity(at.along.rows(), std::ssize(at.independent));
     if (basis.cols() > 0) basis.applyOnTheLeft(at.qr.householderQ());
     return basis;

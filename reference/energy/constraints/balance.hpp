@@ -31,7 +31,7 @@ Balance balance(const Model& model, const Scales& scales, const Eigen::VectorXd&
 Balance balance(const Model& model, const Prescribed& prescribed, const Scales& scales,
                 const Chart& chart);
 // Orthonormal basis of the row space of ∂DΦ/∂ξ [6nb × rank].
-Eigen::MatrixXd across(const Balance& at);
+Eigen::MatrixXd row_space(const Balance& at);
 // Shortest least-squares solution ξ of ∂DΦ/∂ξ ξ = Φ.
 Eigen::VectorXd shortest(const Balance& at, const Eigen::VectorXd& Phi);
 

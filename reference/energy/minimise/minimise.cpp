@@ -56,7 +56,7 @@ MatrixXd round_coordinates(const Balance& at, const MatrixXd& H, const Modes& mo
     const auto resisting = modes.resisting();
     const MatrixXd Z = modes.Z(Eigen::all, resisting);
     const VectorXd W = modes.stiffness(resisting);
-    const MatrixXd Y = across(at);
+    const MatrixXd Y = row_space(at);
     const auto rank = Y.cols();
     MatrixXd T(H.rows(), rank + Z.cols());
     T.leftCols(rank) = Y - Z * (W.cwiseInverse().asDiagonal() * ((H * Z).transpose() * Y));

@@ -144,12 +144,19 @@ Element<6> element(const Bushing& bushing, const Prescribed& prescribed, int k,
                       1 + prescribed.strength[k], b);
 }
 
-// f(k, element) for every element, in the model's order.
+// f(k, element) for every element with wanted(k), in the model's order.
+template <class Wanted, class F>
+void for_each_element(const Model& model, const Prescribed& prescribed, const Chart& chart,
+                      Wanted wanted, F f) {
+    for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k)
+        if (wanted(k))
+            std::visit([&](const auto& kind) { f(k, element(kind, prescribed, k, chart)); },
+                       model.elastics[static_cast<std::size_t>(k)].kind);
+}
 template <class F>
 void for_each_element(const Model& model, const Prescribed& prescribed, const Chart& chart, F f) {
-    for (int k = 0; k < static_cast<int>(model.elastics.size()); ++k)
-        std::visit([&](const auto& kind) { f(k, element(kind, prescribed, k, chart)); },
-                   model.elastics[static_cast<std::size_t>(k)].kind);
+    for_each_element(
+        model, prescribed, chart, [](int) { return true; }, f);
 }
 
 template <int N>
@@ -281,7 +288,10 @@ Potential potential(const Model& model, const Prescribed& prescribed, const Char
 VectorXd gradient_rate(const Model& model, const Prescribed& prescribed, const Prescribed& rate,
                        const Chart& chart) {
     VectorXd g = VectorXd::Zero(coordinates(model));
-    for_each_element(model, prescribed, chart, [&]<int N>(int k, const Element<N>& e) {
+    const auto is_driven = [&](int k) {
+        return !rate.preload.col(k).isZero(0) || rate.strength[k] != 0 || rate.free_length[k] != 0;
+    };
+    for_each_element(model, prescribed, chart, is_driven, [&]<int N>(int k, const Element<N>& e) {
         Matrix<double, N, 1> stress_rate =
             rate.preload.col(k).head<N>() + rate.strength[k] * e.of_law;
         if constexpr (N == 1) stress_rate -= e.stiffness * rate.free_length[k];

@@ -83,16 +83,16 @@ void for_each_entry(const System& system, const Part& part, int row, bool balanc
 
 // Rows of the terms in assembly order: balance of a body, without forces for a direction
 // constraint, then the constraint.
-template <class Row>
+template <class T, class Row>
 struct Rows {
     const System& system;
-    Row& row;
-    void balance(const Part& part, BodyId body, const Vec3<Jet>& force, const Vec3<Jet>& moment) {
+    const Row& row;
+    void balance(const Part& part, BodyId body, const Vec3<T>& force, const Vec3<T>& moment) {
         if (!part.directions)
             for (int k = 0; k < 3; ++k) row(part, 6 * body + k, true, force[k]);
         for (int k = 0; k < 3; ++k) row(part, 6 * body + 3 + k, true, moment[k]);
     }
-    void constraint(const Part& part, int k, const Jet& Phi) {
+    void constraint(const Part& part, int k, const T& Phi) {
         row(part, 6 * system.bodies + part.row + k, false, Phi);
     }
 };
@@ -110,7 +110,7 @@ void for_each_row(const System& system, const Loading& loading, const Source& so
     Jet a(loading.a), held(loading.held);
     a.v[the_parameter] = loading.a_rate;
     held.v[the_parameter] = loading.held_rate;
-    Rows<Row> rows{system, row};
+    Rows<Jet, Row> rows{system, row};
     assemble<Jet>(system, a, held, loading.pieces, source, rows);
 }
 
@@ -125,15 +125,27 @@ struct Pattern {
 
 namespace {
 
+// The terms in the same order, without their derivatives.
+struct Plain {
+    const System& system;
+    const VectorXd& x;
+
+    Frame<double> frame(const Part& part, int which) const {
+        return frame_of(system, x, which == 0 ? part.i : part.j);
+    }
+    double reaction(const Part&, int) const { return 0; }
+};
+
 Pattern pattern_of(const System& system, const Loading& loading, const VectorXd& x) {
     std::vector<Eigen::Triplet<double>> entries;
     std::size_t of_others = 0;
-    for_each_row(system, loading, Seeds{system, x},
-                 [&](const Part& part, int row, bool balance, const Jet&) {
-                     for_each_entry(system, part, row, balance,
-                                    [&](int i, int j, int) { entries.emplace_back(i, j, 0.); });
-                     if (part.rows == 0) of_others = entries.size();
-                 });
+    const auto add = [&](const Part& part, int row, bool balance, double) {
+        for_each_entry(system, part, row, balance,
+                       [&](int i, int j, int) { entries.emplace_back(i, j, 0.); });
+        if (part.rows == 0) of_others = entries.size();
+    };
+    Rows<double, decltype(add)> rows{system, add};
+    assemble<double>(system, loading.a, loading.held, loading.pieces, Plain{system, x}, rows);
     Pattern pattern{Sparse(system.equations(), system.equations()), {}, of_others};
     pattern.J.setFromTriplets(entries.begin(), entries.end());
     const int *start = pattern.J.outerIndexPtr(), *row = pattern.J.innerIndexPtr();

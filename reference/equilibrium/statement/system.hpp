@@ -198,11 +198,16 @@ struct Part {
 // `source.wants(term, k)`, k the position among its kind.
 enum class Term { element, load, ground_spring, constraint };
 template <class Source>
+concept LeavesOut = requires(const Source& source) {
+    source.wants(Term::element, std::size_t{});
+};
+template <class Source>
+bool wants(const Source&, Term, std::size_t) {
+    return true;
+}
+template <LeavesOut Source>
 bool wants(const Source& source, Term term, std::size_t k) {
-    if constexpr (requires { source.wants(term, k); })
-        return source.wants(term, k);
-    else
-        return true;
+    return source.wants(term, k);
 }
 template <class T, class Source, class Sink>
 void assemble(const System& system, const T& a, const T& held, const Pieces& pieces,
