@@ -115,26 +115,55 @@ Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
     return held;
 }
 
+// The scaling of each entry of the bordered matrix.
+void set_scaling(SaddlePoint<double>& system, const Pattern& pattern) {
+    const int N = system.n + system.m;
+    system.scaling.clear();
+    for (int j = 0; j < pattern.size; ++j)
+        for (int e = pattern.first[static_cast<std::size_t>(j)];
+             e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
+            const int i = pattern.row[static_cast<std::size_t>(e)];
+            system.scaling.push_back(i < N && j < N ? system.scale[i] * system.scale[j] : 0);
+        }
+}
+
+// log₂ of det M̂ / det M: D on both sides, and each border divided by its length.
+double log_of_scaling(const SaddlePoint<double>& system) {
+    double sum = system.scale.array().log2().sum();
+    for (int c = 0; c < system.held.size(); ++c) {
+        const auto W2 = weights(system, c);
+        double square = 0;
+        for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
+            const auto at = static_cast<std::size_t>(e);
+            const double b = system.scale[system.held.row[at]] * W2(e - system.held.begin(c)) *
+                             system.held.value[at];
+            square += b * b;
+        }
+        sum -= std::log2(square) / 2;
+    }
+    return 2 * sum;
+}
+
 }  // namespace
 
 void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
              const Pattern& inner, const std::vector<int>& loop) {
     const int N = system.n + system.m;
     system.scale = equilibration(system.M);
+    system.largest = {system.M.values.begin(), system.M.values.end()};
+    for (double& entry : system.largest) entry = std::abs(entry);
     system.held = places(idle, null_space, system.weight, system.n, loop);
     orthonormalise(system);
 
     const Pattern pattern = bordered(inner, system.held);
     system.source.clear();
-    system.scaling.clear();
     for (int j = 0; j < pattern.size; ++j)
         for (int e = pattern.first[static_cast<std::size_t>(j)];
              e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
             const int i = pattern.row[static_cast<std::size_t>(e)];
-            const bool inside = i < N && j < N;
-            system.source.push_back(inside ? system.M.at(i, j) : 0);
-            system.scaling.push_back(inside ? system.scale[i] * system.scale[j] : 0);
+            system.source.push_back(i < N && j < N ? system.M.at(i, j) : 0);
         }
+    set_scaling(system, pattern);
     system.border_at.clear();
     for (int c = 0; c < system.borders(); ++c)
         for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
@@ -147,6 +176,16 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
     system.solution.setZero(N + system.borders());
     scale_entries(system);
     analyse(system.lu, pattern, system.values.data());
+}
+
+void rescale(SaddlePoint<double>& system) {
+    const double before = log_of_scaling(system);
+    SaddleMatrix<double> all = system.M;
+    for (std::size_t e = 0; e < all.values.size(); ++e)
+        all.values[e] = system.largest[e] = std::max(system.largest[e], std::abs(all.values[e]));
+    system.scale = equilibration(all);
+    set_scaling(system, system.lu.order.pattern);
+    system.log_scale += log_of_scaling(system) - before;
 }
 
 }  // namespace elastocheck::recursive

@@ -62,10 +62,11 @@ struct Held {
 
 template <class Real>
 struct SaddlePoint {
-    int n = 0, m = 0;      // 6nb, rows of Φ
-    SaddleMatrix<Real> M;  // raw [(n+m) × (n+m)]; assembled by the caller
-    Vector<Real> scale;    // D, powers of two
-    Vector<Real> weight;   // W: 1 for Δr [m], L for Δπ, 1 for λ
+    int n = 0, m = 0;             // 6nb, rows of Φ
+    SaddleMatrix<Real> M;         // raw [(n+m) × (n+m)]; assembled by the caller
+    Vector<Real> scale;           // D, powers of two
+    std::vector<double> largest;  // of each entry of M, among the matrices that D is fixed from
+    Vector<Real> weight;          // W: 1 for Δr [m], L for Δπ, 1 for λ
     Held<Real> held;
     // M̂ with its border, in the order of the pattern: values, the scaling of each entry (0 in the
     // border), its position in M, and the two positions of each border entry.
@@ -74,6 +75,7 @@ struct SaddlePoint {
     std::vector<std::array<int, 2>> border_at;
     Vector<Real> rhs, solution;
     SparseLU<Real> lu;
+    double log_scale = 0;  // log₂ of det M̂ / det M at the present scaling over that at the first
 
     int borders() const { return held.size(); }
 };
@@ -139,6 +141,16 @@ void scale_entries(SaddlePoint<Real>& system) {
 // is the pattern of M, `loop` the loop of joints of every row of Φ.
 void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<double>& null_space,
              const Pattern& inner, const std::vector<int>& loop);
+
+// Fixes the scaling again, from the larger of each entry of M now and before: the geometric stiffness
+// of a large λ may exceed the stiffness at λ = 0 by any factor, and pivots in a scaling for the one
+// say nothing about the other. An entry that cancels, as at a limit point, keeps its scale.
+void rescale(SaddlePoint<double>& system);
+
+// log₂ |det| of the last matrix factorised, in the first scaling.
+inline double log_determinant(const SaddlePoint<double>& system) {
+    return log_determinant(system.lu) - system.log_scale;
+}
 
 // The same system in another arithmetic, with this elimination order; not factorised.
 template <class Real>

@@ -306,7 +306,7 @@ bool is_past(Continuation& w, double rises) {
 // |determinant| at the present point over that at the start of the expansion; negative if its sign
 // differs from that at the start of the path.
 double determinant(const Continuation& w) {
-    const double size = std::exp2(log_determinant(w.s.system.lu) - w.log_begin);
+    const double size = std::exp2(log_determinant(w.s.system) - w.log_begin);
     return side(w, w.to) == w.side ? size : -size;
 }
 
@@ -538,7 +538,7 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr) {
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
-        w.log_begin = log_determinant(s.system.lu);
+        w.log_begin = log_determinant(s.system);
         if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
             return o;
         // The polynomial continues past a bifurcation point, and the branch past a loss of

@@ -103,7 +103,7 @@ std::optional<double> suspect_between(SteppingState<double>& s,
         go_to(s, settings.at(from.p + t * (to.p - from.p)));
         const bool regular = factorise_at(s, q, lambda) == Outcome::converged;
         return regular && s.system.lu.orientation == from.orientation
-                   ? std::exp2(log_determinant(s.system.lu) - log_from)
+                   ? std::exp2(log_determinant(s.system) - log_from)
                    : -1;
     };
     const auto place = [&](double t) { return from.p + t * (to.p - from.p); };
@@ -145,7 +145,7 @@ Traversal follow_by_long_steps(SteppingState<double>& s, double to) {
     const ContinuationSettings<double> settings{Drive::rate, tolerance * s.length, tolerance};
     Node<double> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     differentiate(s, settings, node);
-    double log_here = log_determinant(s.system.lu);
+    double log_here = log_determinant(s.system);
     // The step before: its first node, the slope of the log-determinant over it, and whether its
     // interior was examined.
     Node<double> before = node;
@@ -170,7 +170,7 @@ Traversal follow_by_long_steps(SteppingState<double>& s, double to) {
             if (const auto lost = lost_between(s, settings, node, next.p)) return {false, lost};
         } else if (accepted && is_straight(s, settings, node, next)) {
             if (ahead == 1 && is_unstable(s)) return {};
-            const double log_next = log_determinant(s.system.lu),
+            const double log_next = log_determinant(s.system),
                          rise = (log_next - log_here) / (ahead - gone);
             const bool turns = !first && rise_before < 0 && rise > 0;
             for (const bool this_step : {true, false}) {

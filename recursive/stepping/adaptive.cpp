@@ -82,7 +82,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         take_pieces(s, settings, node, h * 1e-3, q);
         if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
     }
-    double log_here = log_determinant(s.system.lu);
+    double log_here = log_determinant(s.system);
     Matrix<double> softest;
     const auto unstable = [&] {
         const LeastStiffness least = least_stiffness(s, softest);
@@ -105,12 +105,12 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
             piece_of(s, *met.curve) += met.side;
             if (++changes > 2 * static_cast<int>(s.curves.size())) return Outcome::limit_point;
             if (const Outcome outcome = begin_anew(); outcome != Outcome::converged) return outcome;
-            log_here = log_determinant(s.system.lu);
+            log_here = log_determinant(s.system);
             continue;
         }
         double error = std::numeric_limits<double>::infinity();
         if (trial.verdict == Verdict::accepted) {
-            const double log_next = log_determinant(s.system.lu);
+            const double log_next = log_determinant(s.system);
             if (unstable()) trial.verdict = Verdict::past_singular_point;
             if (is_inconsistent_at(s, next, q, lambda)) return Outcome::inconsistent_constraints;
             between(node, next, 0.5, q, lambda);
@@ -119,7 +119,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
                 error = std::max({trial.left, size,
                                   share_of_reactions(s, settings, q, node.lambda, next.lambda)});
                 const bool turned = s.system.lu.orientation != node.orientation;
-                const bool dips = log_determinant(s.system.lu) < std::min(log_here, log_next) - 1;
+                const bool dips = log_determinant(s.system) < std::min(log_here, log_next) - 1;
                 if (trial.verdict == Verdict::accepted && (turned || dips))
                     trial.verdict =
                         turned ? Verdict::past_singular_point : Verdict::nearly_singular;
@@ -143,7 +143,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
                     take_pieces(s, settings, node, h * 1e-3, q);
                     if (const Outcome outcome = begin_anew(); outcome != Outcome::converged)
                         return outcome;
-                    log_here = log_determinant(s.system.lu);
+                    log_here = log_determinant(s.system);
                     continue;  // with the step size that the knot shortened
                 }
             }

@@ -346,12 +346,16 @@ bool has_diverged(SteppingState<Real>& s) {
     return s.swings >= guard::swings || too_long || !(turn <= Real(guard::largest_turn));
 }
 
+template <class Real>
+bool is_regular(const SteppingState<Real>& s, Real pivot_ratio) {
+    return pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m());
+}
+
 // Checks the factors in the system, of its matrix at q: finite, regular, and held modes still idle.
 template <class Real>
 Outcome check_factors(SteppingState<Real>& s, const State<Real>& q, Real pivot_ratio) {
     if (!std::isfinite(pivot_ratio)) return Outcome::not_finite;
-    if (!(pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m())))
-        return Outcome::singular;
+    if (!is_regular(s, pivot_ratio)) return Outcome::singular;
     // A strain above the blur is a real stiffness; holding that mode would give a wrong result
     // silently.
     const Real rounding = Real(guard::rounding) * std::numeric_limits<Real>::epsilon();
@@ -397,8 +401,14 @@ Outcome factorise_at(SteppingState<Real>& s, const State<Real>& q, const Vector<
         assemble_consistent<Real>(s.model, s.branch, s.inputs, q, lambda, s.system.M, s.Phi);
     else
         assemble<Real>(s.model, s.inputs, q, s.system.M, s.Phi);
-    const Real pivot_ratio = factorise(s.system);
+    Real pivot_ratio = factorise(s.system);
     ++s.counts.factorisations;
+    if constexpr (std::is_same_v<Real, double>)
+        if (pivot_ratio >= 0 && !is_regular(s, pivot_ratio)) {
+            rescale(s.system);
+            pivot_ratio = factorise(s.system);
+            ++s.counts.factorisations;
+        }
     return check_factors(s, q, pivot_ratio);
 }
 

@@ -155,5 +155,17 @@ TEST(Series, CountsItsExpansionsForEachKnot) {
     EXPECT_GT(path.expansions.size(), 900u);
 }
 
+// Pivots are judged in the scaling of the present matrix: the geometric stiffness of links that bear
+// 770 kN is nothing at λ = 0, where the scaling was chosen.
+TEST(Found, LargeReactionsOnBodiesWithoutStiffnessAreNoSingularity) {
+    const auto sides = one_ways(found("bodies-without-stiffness"));
+    ASSERT_EQ(sides.size(), 1u);
+    for (const Method& method : methods) {
+        const auto path = solve(sides[0].model, sides[0].branch, {.method = method});
+        EXPECT_EQ(path.outcome, Outcome::converged) << method.name << ": " << path.detail;
+        EXPECT_EQ(path.points.size(), 61u) << method.name;
+    }
+}
+
 }  // namespace
 }  // namespace elastocheck::recursive
