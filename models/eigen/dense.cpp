@@ -1,5 +1,13 @@
 #include "models/eigen/dense.hpp"
 
+namespace elastocheck {
+
+Eigen::MatrixXd matrix_Q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+    return qr.householderQ();
+}
+
+}  // namespace elastocheck
+
 namespace Eigen {
 
 template class HouseholderQR<MatrixXd>;
@@ -7,9 +15,14 @@ template class ColPivHouseholderQR<MatrixXd>;
 template class CompleteOrthogonalDecomposition<MatrixXd>;
 template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,
                                                                      VectorXd&) const;
+template class PartialPivLU<MatrixXd>;
 template class JacobiSVD<MatrixXd>;
+template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
+template SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(
+    const EigenBase<MatrixXd>&, int);
 template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
 SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
+template EigenSolver<MatrixXd>& EigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&, bool);
 
 template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheLeft(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);

@@ -1,10 +1,20 @@
-// Explicit instantiation of Eigen's dense decompositions of MatrixXd (in dense.cpp).
+// Explicit instantiation of Eigen's decompositions of MatrixXd and of sparse matrices (in dense.cpp
+// and sparse.cpp), each of which costs the compiler seconds wherever it is used.
 //
-// Included by the precompiled headers only. It defines nothing: a file that includes only Eigen
-// instantiates the same code itself.
+// Included by the precompiled headers; a file that calls matrix_Q includes it itself. A
+// decomposition's argument has to be a matrix, not an expression: for every type of an expression
+// Eigen instantiates the decomposition again.
 #pragma once
 
 #include <Eigen/Dense>
+
+namespace elastocheck {
+
+// Q of A P = Q R as a square matrix. (The members of Eigen's Householder sequence are inline, so
+// that no declaration keeps them from being instantiated.)
+Eigen::MatrixXd matrix_Q(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
+
+}  // namespace elastocheck
 
 namespace Eigen {
 
@@ -13,9 +23,15 @@ extern template class ColPivHouseholderQR<MatrixXd>;
 extern template class CompleteOrthogonalDecomposition<MatrixXd>;
 extern template void CompleteOrthogonalDecomposition<MatrixXd>::_solve_impl(const VectorXd&,
                                                                             VectorXd&) const;
+extern template class PartialPivLU<MatrixXd>;
 extern template class JacobiSVD<MatrixXd>;
+extern template LLT<MatrixXd>& LLT<MatrixXd>::compute(const EigenBase<MatrixXd>&);
+extern template SelfAdjointEigenSolver<MatrixXd>& SelfAdjointEigenSolver<MatrixXd>::compute(
+    const EigenBase<MatrixXd>&, int);
 extern template SelfAdjointEigenSolver<Matrix<double, 6, 6>>&
 SelfAdjointEigenSolver<Matrix<double, 6, 6>>::compute(const EigenBase<Matrix<double, 6, 6>>&, int);
+extern template EigenSolver<MatrixXd>& EigenSolver<MatrixXd>::compute(const EigenBase<MatrixXd>&,
+                                                                      bool);
 
 extern template void MatrixBase<Block<MatrixXd>>::applyHouseholderOnTheLeft(
     const Block<const MatrixXd, Dynamic, 1>&, const double&, double*);

@@ -12,6 +12,7 @@
 #include <map>
 #include <numeric>
 
+#include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/rank.hpp"
@@ -183,7 +184,7 @@ Columns modes_of_single_bodies(const Rows& rows, int bodies) {
         if (own.cols() > 0) {
             Eigen::ColPivHouseholderQR<MatrixXd> qr(own);
             qr.setThreshold(rank_threshold);
-            Q = qr.householderQ();
+            Q = matrix_Q(qr);
             rank = qr.rank();
         }
         for (Eigen::Index c = rank; c < 6; ++c, ++modes)

@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
+#include "models/eigen/dense.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive {
@@ -125,9 +126,10 @@ std::string softest_motion(const SteppingState<double>& s) {
         Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(n, m);
         qr.setThreshold(independent);
         qr.compute(Phi_T);
-        Z = (qr.householderQ() * Z).rightCols(n - qr.rank()).eval();
+        Z = matrix_Q(qr).rightCols(n - qr.rank());
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Z.transpose() * K * Z);
+    const Eigen::MatrixXd reduced = Z.transpose() * K * Z;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(reduced);
     return moving_bodies(s.model, Z * solver.eigenvectors().col(0));
 }
 
@@ -151,8 +153,8 @@ Outcome check_start_stability(SteppingState<double>& s, const StartStability& st
 }
 
 double least_eigenvalue(const Eigen::MatrixXd& Q) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>((Q + Q.transpose()) / 2,
-                                                          Eigen::EigenvaluesOnly)
+    const Eigen::MatrixXd S = (Q + Q.transpose()) / 2;
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S, Eigen::EigenvaluesOnly)
         .eigenvalues()[0];
 }
 

@@ -19,8 +19,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double idle_push = 1e-8;   // of the disturbance: smallest load on an idle mode
-constexpr double unanswered = 1e-3;  // of the disturbance: remainder before the last correction
+constexpr double rest_on_idle = 1e-8;  // of the disturbance: smallest load on an idle mode
+constexpr double unanswered = 1e-3;    // of the disturbance: remainder before the last correction
 constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
 
 void check(const Model& model, const Equilibrium& state,
@@ -136,7 +136,7 @@ Answer answer(const Tangent& at, const Prescribed& rate) {
     // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
     if (!(remains <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}};
-    if (!(largest(at.idle.transpose() * left) <= idle_push * size))
+    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}};
     return {Outcome::converged, "", t};
 }

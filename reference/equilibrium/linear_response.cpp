@@ -13,7 +13,7 @@ namespace {
 using Eigen::VectorXd;
 
 // Relative part of a disturbance outside the range of ∂E/∂x that counts as round-off.
-constexpr double remainder_round_off = 1e-9;
+constexpr double residual_round_off = 1e-9;
 
 // Largest displacement under F, over L: beyond it the stiffness is round-off.
 constexpr double farthest = 1e10;
@@ -92,7 +92,7 @@ VectorXd with_shortest_motion(const System& system, const Linearisation& at, con
 
 // Whether the disturbance has a part outside the range of ∂E/∂x.
 bool is_pushed(const Rate& rate, const VectorXd& E_rate) {
-    return rate.mu.norm() > remainder_round_off * E_rate.norm();
+    return rate.mu.norm() > residual_round_off * E_rate.norm();
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::vector<std::string> parts(const std::string& list, char between) {
 }
 
 // Looks up the first word as a shell does.
-bool is_there(const std::string& command) {
+bool is_executable(const std::string& command) {
     const auto words = parts(command, ' ');
     if (words.empty()) return false;
     if (words.front().find('/') != std::string::npos)
@@ -48,8 +48,8 @@ std::string browser() {
     if (const std::string ci = variable("CI"); !ci.empty() && ci != "false" && ci != "0")
         throw std::invalid_argument("--open: not in CI (variable CI is set)");
     for (const auto& command : parts(variable("BROWSER"), ':'))
-        if (is_there(command)) return command;
-    if (is_there("xdg-open")) return "xdg-open";
+        if (is_executable(command)) return command;
+    if (is_executable("xdg-open")) return "xdg-open";
     throw std::invalid_argument(
         "--open: there is nothing to open a page with: $BROWSER names no program, and xdg-open (of "
         "xdg-utils) is not there");

@@ -18,7 +18,7 @@
 namespace elastocheck::reports {
 namespace {
 
-struct Request {
+struct CertifyRequest {
     std::string scene, tolerance = compare::claimed_accuracy, folder;
     std::vector<std::string> solvers;
     int points = compare::CertifyOptions{}.points;
@@ -35,7 +35,7 @@ compare::SolverSettings settings_of(const std::string& solver) {
     return settings;
 }
 
-int certify(const Request& request, const std::string& command) {
+int certify(const CertifyRequest& request, const std::string& command) {
     compare::CertifyOptions options;
     options.tolerance = compare::claim(request.tolerance);  // throws before the work
     if (!request.folder.empty()) Staging::check(request.folder);
@@ -68,7 +68,7 @@ int certify(const Request& request, const std::string& command) {
 }  // namespace
 
 Command certify_command() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<CertifyRequest>();
     std::vector<std::string> known{"equilibrium", "energy"};
     for (const auto& method : recursive::methods) known.emplace_back(method.name);
     return {"certify",

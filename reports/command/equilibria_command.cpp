@@ -20,7 +20,7 @@
 namespace elastocheck::reports {
 namespace {
 
-struct Request {
+struct EquilibriaRequest {
     std::string scene;
     Settings settings;
     std::string branch;  // empty: the first
@@ -42,7 +42,7 @@ const Branch& branch_named(const Model& model, const std::string& name) {
 }
 
 // Exit code 0: the branch reaches this value and all found equilibria are proved; else 3.
-int equilibria(const Request& request, const Delivery& delivery) {
+int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
     if (!std::isfinite(request.at)) throw std::invalid_argument("--at: not a finite number");
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Branch& branch = branch_named(loaded.model, request.branch);
@@ -65,7 +65,7 @@ int equilibria(const Request& request, const Delivery& delivery) {
 }  // namespace
 
 Command equilibria_command() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<EquilibriaRequest>();
     constexpr double any = std::numeric_limits<double>::infinity();
     return {"equilibria",
             "Search all equilibria at one load, prove each, and describe them",

@@ -18,7 +18,7 @@ namespace elastocheck::reports {
 
 namespace {
 
-struct Request {
+struct JudgeRequest {
     std::string scene;
     Settings settings;
     CandidateRequest candidate;
@@ -29,12 +29,12 @@ struct Request {
 };
 
 // Exit code: 0 all pass, 1 one fails, 3 none fails and one could not be judged.
-int judge(const Request& request, const Delivery& delivery) {
+int judge(const JudgeRequest& request, const Delivery& delivery) {
     if (!request.candidate.wanted())
         throw std::invalid_argument(
             "judge: no candidate; give --candidate FILE or --candidate-command");
     const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::forces_too);
-    const bool asked = request.tolerance != Request{}.tolerance;
+    const bool asked = request.tolerance != JudgeRequest{}.tolerance;
     check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
@@ -82,7 +82,7 @@ int judge(const Request& request, const Delivery& delivery) {
 }  // namespace
 
 Command judge_command() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<JudgeRequest>();
     std::vector<Option> options{scene_option(request->scene), set_option(request->settings)};
     add_candidate_options(options, request->candidate);
     options.insert(

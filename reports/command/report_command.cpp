@@ -54,7 +54,7 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* report_schema = "elastocheck/report/1";
 
-struct Request {
+struct ReportRequest {
     std::vector<std::string> scenes;
     Settings settings;
     std::string from;  // a result.json instead of scenes
@@ -98,19 +98,19 @@ json recommended(compare::Solves& solves, const compare::Trade& trade) {
 }
 
 // Names of the measured file's columns and branches.
-ColumnMap map_of_measured(const Request& request) {
+ColumnMap map_of_measured(const ReportRequest& request) {
     ColumnMap map;
     if (!request.candidate.map.empty())
         map = read_column_map(read_whole(request.candidate.map, largest_baseline),
                               request.candidate.map);
-    if (request.branch_column != Request{}.branch_column)
+    if (request.branch_column != ReportRequest{}.branch_column)
         map.columns.push_back({.theirs = request.branch_column, .output = "branch", .unit = {}});
     for (const auto& text : request.cases) map.branches.push_back(parse_load_case(text));
     return map;
 }
 
 // Returns why the measurement could not be compared; empty if it was.
-std::string add_measured(json& document, const Request& request) {
+std::string add_measured(json& document, const ReportRequest& request) {
     add_measurement(document, read_whole(request.measured, largest_measurement), request.measured,
                     map_of_measured(request));
     for (const auto& column : document["measured"]["left_out"])
@@ -188,7 +188,7 @@ void add_studies(json& document, const Model& model, const compare::Comparison& 
                                                          .progress = part(0.95, 1)}));
 }
 
-json solve_scene(const std::string& file, const Request& request, int threads,
+json solve_scene(const std::string& file, const ReportRequest& request, int threads,
                  const compare::Progress& progress_of_scene) {
     LoadedScene loaded = load_scene(file, request.settings);
     select_branches(loaded.scene, loaded.model, request.branches);
@@ -228,14 +228,14 @@ json solve_scene(const std::string& file, const Request& request, int threads,
         document["candidates"] = json::array();
         for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
             const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
-                                          request.tolerance != Request{}.tolerance);
+                                          request.tolerance != ReportRequest{}.tolerance);
             document["candidates"].push_back(
                 candidate_json(judgement, comparison, sentence(judgement, comparison)));
         }
     }
     add_verdict(document, comparison.compared, reasons);
-    auto judgement =
-        compare::assess(model, comparison, tolerance, request.tolerance != Request{}.tolerance);
+    auto judgement = compare::assess(model, comparison, tolerance,
+                                     request.tolerance != ReportRequest{}.tolerance);
     if (!reasons.empty())
         judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
     document["judgement"] = judgement_json(judgement);
@@ -243,7 +243,7 @@ json solve_scene(const std::string& file, const Request& request, int threads,
 }
 
 // A measurement over the curves of a result that is not solved again.
-void overlay(json& result, const Request& request) {
+void overlay(json& result, const ReportRequest& request) {
     if (result["scenes"].size() != 1)
         throw std::invalid_argument("report: --measured: the result has several scenes");
     json& scene = result["scenes"][0];
@@ -323,7 +323,7 @@ void remove_times(json& value) {
 }
 
 // Returns the exit code. `reproduce` is the command line as given.
-int report(const Request& request, const std::string& reproduce) {
+int report(const ReportRequest& request, const std::string& reproduce) {
     if (request.from.empty() == request.scenes.empty())
         throw std::invalid_argument(
             "report: needs scene files or --from a result.json, one of the two");
@@ -352,7 +352,7 @@ int report(const Request& request, const std::string& reproduce) {
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
     (void)map_of_measured(request);
     if (request.measured.empty() &&
-        (request.branch_column != Request{}.branch_column || !request.cases.empty()))
+        (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
         throw std::invalid_argument("report: --branch-column and --case: only with --measured");
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (!request.alarms.empty() && !request.from.empty())
@@ -433,7 +433,7 @@ int report(const Request& request, const std::string& reproduce) {
 }  // namespace
 
 Command report_command() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<ReportRequest>();
     std::vector<Option> options{
         {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
          "scene files (YAML)"},

@@ -27,7 +27,7 @@
 namespace elastocheck::reports {
 namespace {
 
-struct Request {
+struct StressRequest {
     std::vector<std::string> scenes;  // files; none: the built-in ones
     Settings settings;
     std::string folder;
@@ -52,7 +52,7 @@ std::vector<compare::Trial> built_in() {
 }
 
 // Exit code: 0 no wrong result, 1 a wrong result, 3 nothing could be judged.
-int stress(const Request& request, const Delivery& delivery) {
+int stress(const StressRequest& request, const Delivery& delivery) {
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const auto start = std::chrono::steady_clock::now();
     std::vector<compare::Trial> trials;
@@ -97,7 +97,7 @@ int stress(const Request& request, const Delivery& delivery) {
 }  // namespace
 
 Command stress_command() {
-    const auto request = std::make_shared<Request>();
+    const auto request = std::make_shared<StressRequest>();
     return {"stress",
             "Stress test: solve transformed and extreme scenes by every leg and method",
             {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},

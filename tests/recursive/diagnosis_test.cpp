@@ -1,5 +1,6 @@
 // Diagnosis at the design position: rank, redundancy, idle modes, condition number.
 #include "recursive/diagnosis/diagnosis.hpp"
+#include "models/eigen/dense.hpp"
 
 #include <gtest/gtest.h>
 
@@ -298,8 +299,7 @@ void expect_as_dense(const Model& model, const Diagnosis& d, const std::string& 
     std::vector<std::vector<int>> sets;
     if (d.rank < d.rows) {
         qr.compute(Phi_q);
-        const MatrixXd Q = qr.householderQ(), Y = Q.rightCols(d.rows - d.rank),
-                       P = Y * Y.transpose();
+        const MatrixXd Q = matrix_Q(qr), Y = Q.rightCols(d.rows - d.rank), P = Y * Y.transpose();
         MatrixXd coupled = MatrixXd::Zero(static_cast<Eigen::Index>(end.size()),
                                           static_cast<Eigen::Index>(end.size()));
         for (int k = 0; k < d.rows; ++k)

@@ -8,6 +8,8 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 
+#include "models/eigen/dense.hpp"
+
 namespace elastocheck::reference::certificate {
 namespace {
 
@@ -57,7 +59,7 @@ MatrixXd null_space(const MatrixXd& A, double nothing) {
     if (A.size() == 0) return MatrixXd::Identity(n, n);
     Eigen::ColPivHouseholderQR<MatrixXd> qr(A.transpose());
     qr.setThreshold(nothing / std::max(nothing, A.rowwise().norm().maxCoeff()));
-    return MatrixXd(qr.householderQ()).rightCols(n - qr.rank());
+    return matrix_Q(qr).rightCols(n - qr.rank());
 }
 // Scales the rows to size one and returns the factors.
 VectorXd normalise(MatrixXd& A) {
@@ -98,28 +100,28 @@ MatrixXd resisted(const ElasticKind& kind, double length) {
             if (resists[static_cast<std::size_t>(k)]) rows.row(count++) = rows.row(k).eval();
         rows.conservativeResize(count, 6);
     };
-    each_member(
-        kind,
-        overloaded{[&](const ScalarLaw& law) { keep({!is_zero(law)}); },
-                   [&](const SpatialLaw& spatial) {
-                       if (const PerAxis* law = axes_of(spatial)) {
-                           std::array<bool, 6> resists{};
-                           for (std::size_t k = 0; k < 6; ++k) resists[k] = !is_zero(law->axis[k]);
-                           return keep(resists);
-                       }
-                       // K = D Q diag(κ) Qᵀ D, D² its diagonal: independent of the ratio of
-                       // stiff to soft axes.
-                       const Matrix6& K = *matrix_of(spatial);
-                       const Vector6 D = K.diagonal().cwiseMax(0).cwiseSqrt(),
-                                     by = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
-                       const Eigen::SelfAdjointEigenSolver<Matrix6> modes(by.asDiagonal() * K *
-                                                                          by.asDiagonal());
-                       std::array<bool, 6> resists{};
-                       for (Index k = 0; k < 6; ++k)
-                           resists[static_cast<std::size_t>(k)] = modes.eigenvalues()[k] > no_part;
-                       rows = modes.eigenvectors().transpose() * D.asDiagonal();
-                       keep(resists);
-                   }});
+    // K = D Q diag(κ) Qᵀ D, D² its diagonal: independent of the ratio of stiff to soft axes.
+    const auto keep_of_matrix = [&](const Matrix6& K) {
+        const Vector6 D = K.diagonal().cwiseMax(0).cwiseSqrt(),
+                      by = D.unaryExpr([](double d) { return d > 0 ? 1 / d : 0; });
+        const Matrix6 C = by.asDiagonal() * K * by.asDiagonal();
+        const Eigen::SelfAdjointEigenSolver<Matrix6> modes(C);
+        std::array<bool, 6> resists{};
+        for (Index k = 0; k < 6; ++k)
+            resists[static_cast<std::size_t>(k)] = modes.eigenvalues()[k] > no_part;
+        rows = modes.eigenvectors().transpose() * D.asDiagonal();
+        keep(resists);
+    };
+    each_member(kind, overloaded{[&](const ScalarLaw& law) { keep({!is_zero(law)}); },
+                                 [&](const SpatialLaw& spatial) {
+                                     if (const PerAxis* law = axes_of(spatial)) {
+                                         std::array<bool, 6> resists{};
+                                         for (std::size_t k = 0; k < 6; ++k)
+                                             resists[k] = !is_zero(law->axis[k]);
+                                         return keep(resists);
+                                     }
+                                     keep_of_matrix(*matrix_of(spatial));
+                                 }});
     for (Index k = 0; k < 3; ++k) rows.col(k) *= length;
     return rows;
 }

@@ -15,8 +15,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// of the pivots of (∂DΦ/∂ξ)ᵀ, whose columns are of order one
-constexpr double rank_threshold = 1e-9;
 constexpr double idle_stiffness = 1e-9;  // F would move such a mode by 10⁹ L
 
 }  // namespace

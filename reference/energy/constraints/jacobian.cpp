@@ -10,8 +10,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double rank_threshold = 1e-9;  // of the columns of Φ_qᵀ, as in balance.cpp
-
 using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
 
 Sparse sparse_transposed(const Jacobian& Phi_q) {

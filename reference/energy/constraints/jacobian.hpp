@@ -8,6 +8,9 @@
 
 namespace elastocheck::reference::energy {
 
+// Smallest pivot of a scaled matrix, as of (∂DΦ/∂ξ)ᵀ, whose columns are of order one.
+inline constexpr double rank_threshold = 1e-9;
+
 // ∂Φ_row/∂x of one body.
 struct Slope {
     int row;

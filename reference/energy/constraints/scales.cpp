@@ -21,7 +21,6 @@ constexpr double coincident = 1e-9;  // [m] closer points count as coincident
 constexpr double rounding = 1e-12;   // generous relative error of a distance
 // of L or 1 rad: range of validity of the stiffness at the design pose
 constexpr double linear_reach = 0.5;
-constexpr double rank_threshold = 1e-9;  // of the pivots of scaled matrices
 
 // Every attachment point, in ground axes in the design pose.
 std::vector<Vector3d> attachment_points(const Model& model, const Course& course,

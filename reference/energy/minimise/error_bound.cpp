@@ -10,7 +10,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int corrections = 8;
+constexpr int most_corrections = 8;
 constexpr double contraction = 0.25;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
@@ -36,7 +36,7 @@ VectorXd with_signs(VectorXd e, Index from) {
     return e;
 }
 
-Size rounding(const Path& path, const State& state) {
+Size rounding_of(const Path& path, const State& state) {
     constexpr int probes = 3;
     const double L = path.scales.length;
     VectorXd c(state.H.rows());
@@ -60,13 +60,13 @@ Size rounding(const Path& path, const State& state) {
 }
 
 ErrorBound bound(const Path& path, State state) {
-    const Size rounded = rounding(path, state);
+    const Size rounded = rounding_of(path, state);
     Size way, last;
     double before = std::numeric_limits<double>::infinity(), reach = 0;
     for (const Pose& pose : state.poses) reach = std::max(reach, pose.r.norm());
     for (int k = 0;; ++k) {
         const VectorXd dxi = correction(path, state, state.at.left, state.at.Phi);
-        if (k == corrections || !dxi.allFinite()) return {};
+        if (k == most_corrections || !dxi.allFinite()) return {};
         last = size_of(dxi);
         way = {way.length + last.length, way.angle + last.angle};
         if (last.largest() <= rounded.largest()) break;

@@ -25,11 +25,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double hold = 1;               // κ
-constexpr int closing_steps = 100;       // Gauss-Newton on |Φ|²
-constexpr int closing_halvings = 20;     // of each of them
-constexpr double at_rest = 0.999;        // times the previous |Φ|: stagnation
-constexpr double rank_threshold = 1e-9;  // of the pivots of ∂DΦ/∂ξ, as in balance.cpp
+constexpr double hold = 1;            // κ
+constexpr int closing_steps = 100;    // Gauss-Newton on |Φ|²
+constexpr int closing_halvings = 20;  // of each of them
+constexpr double stagnant = 0.999;    // times the previous |Φ|: stagnation
 
 Course settling_course(const Model& model, const Prescribed& held) {
     const Chart design = chart_about(design_poses(model));
@@ -124,13 +123,13 @@ std::optional<std::string> contradicting_joint(const Path& path, double a,
         J.compute(transposed(scaled(values.Phi_q, D, S)).transpose());
         VectorXd x = S.cwiseProduct(J.solve(-Phi));
         double after = INFINITY;
-        for (int halved = 0; halved <= closing_halvings && !(after <= at_rest * Phi.norm());
+        for (int halved = 0; halved <= closing_halvings && !(after <= stagnant * Phi.norm());
              ++halved) {
             move_to(chart, x);
             after = D.cwiseProduct(constraints(path.model, prescribed, chart).Phi).norm();
             x *= 0.5;
         }
-        if (!(after <= at_rest * Phi.norm())) {
+        if (!(after <= stagnant * Phi.norm())) {
             int worst = 0;
             Phi.cwiseAbs().maxCoeff(&worst);
             return joint_of_row(path.model, worst);

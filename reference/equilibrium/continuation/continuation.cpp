@@ -31,7 +31,7 @@ constexpr double last_correction = 1e-8;
 // Rounding of the constrained quantities: a state that it moves by more than a last correction is
 // not judged. At a bifurcation of a mechanism, rounding ε of the scene's numbers connects the two
 // curves within a distance √ε.
-constexpr double held = 2e-15;
+constexpr double constrained_rounding = 2e-15;
 
 // Relative part of a load on an idle mode that counts as round-off.
 constexpr double remainder_round_off = 1e-9;
@@ -202,8 +202,9 @@ double moved_by_rounding(const Continuation& continuation, const Station& at) {
     const int m = continuation.system.constraint_rows;
     VectorXd E = VectorXd::Zero(continuation.system.equations());
     for (int k = 0; k < m; ++k)
-        E[6 * continuation.system.bodies + k] =
-            std::fmod(0.6180339887498949 * (k + 1), 1.) < 0.5 ? held : -held;
+        E[6 * continuation.system.bodies + k] = std::fmod(0.6180339887498949 * (k + 1), 1.) < 0.5
+                                                    ? constrained_rounding
+                                                    : -constrained_rounding;
     if (m == 0) return 0;
     const double softer =
         continuation.first_stiffness > 0 ? at.stiffness.least / continuation.first_stiffness : 1;

@@ -18,7 +18,7 @@ constexpr double contraction = 0.25;
 constexpr double answered = 1e-9;
 
 // The unknowns in extended precision.
-struct Values {
+struct ExtendedValues {
     const System& system;
     const VectorXr& x;
     Frame<Real> frame(const Part& part, int which) const {
@@ -30,7 +30,7 @@ struct Values {
     }
     Real reaction(const Part& part, int k) const { return x[7 * system.bodies + part.row + k]; }
 };
-struct Sum {
+struct ExtendedSum {
     const System& system;
     VectorXr E;
     void balance(const Part&, BodyId body, const Vec3<Real>& force, const Vec3<Real>& moment) {
@@ -41,9 +41,9 @@ struct Sum {
         E[6 * system.bodies + part.row + k] += Phi;
     }
 };
-VectorXr residual(const System& system, double a, const VectorXr& x) {
-    Sum sum{system, VectorXr::Zero(system.equations())};
-    assemble<Real>(system, Real(a), Real(0), {}, Values{system, x}, sum);
+VectorXr extended_residual(const System& system, double a, const VectorXr& x) {
+    ExtendedSum sum{system, VectorXr::Zero(system.equations())};
+    assemble<Real>(system, Real(a), Real(0), {}, ExtendedValues{system, x}, sum);
     return std::move(sum.E);
 }
 
@@ -112,7 +112,7 @@ ErrorBound bound(const Continuation& continuation, double a) {
     Size way, last;
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0;; ++k) {
-        const VectorXd dx = answer(at.bordered, residual(system, a, x).cast<double>()).dx;
+        const VectorXd dx = answer(at.bordered, extended_residual(system, a, x).cast<double>()).dx;
         if (k == refinements || !dx.allFinite()) return {};
         last = size_of(system, dx);
         x = moved(system, x, dx);
@@ -121,7 +121,7 @@ ErrorBound bound(const Continuation& continuation, double a) {
         if (!(last.largest() <= contraction * before)) return {};
         before = last.largest();
     }
-    const VectorXr left = residual(system, a, x);
+    const VectorXr left = extended_residual(system, a, x);
     const auto open = static_cast<double>(left.tail(system.constraint_rows).norm());
     if (!(static_cast<double>(left.norm()) <= answered)) return {};
     // Poses are stored with the digits of a double.

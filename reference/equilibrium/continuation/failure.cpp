@@ -124,8 +124,8 @@ std::string softest_motion(const System& system, const Linearisation& at) {
         Z = svd.matrixV().rightCols(n - svd.rank()).eval();
     }
     const Eigen::MatrixXd K = -J.topLeftCorner(n, n);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Z.transpose() *
-                                                                ((K + K.transpose()) / 2) * Z);
+    const Eigen::MatrixXd M = Z.transpose() * ((K + K.transpose()) / 2) * Z;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M);
     const VectorXd motion = Z * solver.eigenvectors().col(0);
     VectorXd turns = motion, moves = motion;
     for (int body = 0; body < system.bodies; ++body) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "models/eigen/dense.hpp"
 #include "reference/equilibrium/continuation/newton.hpp"
 #include "reference/equilibrium/continuation/stability.hpp"
 
@@ -17,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Longest Newton step [L or rad], since no branch limits it.
-constexpr double longest_step = 0.3;
+constexpr double longest_correction = 0.3;
 
 // Below this step size Newton's method converges without a step limit [L or rad].
 constexpr double close = 1e-3;
@@ -27,7 +28,7 @@ constexpr double close = 1e-3;
 constexpr double one_state = 1e-6;
 
 // Motions with less stiffness than this, relative to the largest, are idle.
-constexpr double idle_stiffness = 1e-10;
+constexpr double idle_eigenvalue = 1e-10;
 
 // A state to be excluded. Its idle motions do not count in the distance.
 struct Known {
@@ -49,7 +50,7 @@ Known known_state(const System& system, double a, const Equilibrium& state) {
     const MatrixXd V = MatrixXd(null_spaces(J).right).topRows(6 * system.bodies);
     if (V.cols() == 0) return known;
     const Eigen::ColPivHouseholderQR<MatrixXd> qr(V);
-    known.idle = MatrixXd(qr.householderQ()).leftCols(qr.rank());
+    known.idle = matrix_Q(qr).leftCols(qr.rank());
     return known;
 }
 
@@ -98,7 +99,7 @@ FromStart solve_from(const Model& model, const Branch& branch, double a,
         dx *= stretched(system, others, x, dx);
         const double size = pose_size(system, dx);
         if (!std::isfinite(size)) return {Outcome::singular};
-        if (size > longest_step) dx *= longest_step / size;
+        if (size > longest_correction) dx *= longest_correction / size;
         x = moved(system, x, dx);
         by = derivatives(system, loading, x, counts);
         if (!by.E.allFinite() || !is_finite(by.J)) return {Outcome::not_finite};
@@ -139,13 +140,13 @@ std::vector<std::vector<Pose>> beside(const Model& model, const Branch& branch,
     MatrixXd Z = MatrixXd::Identity(n, n);
     if (m > 0) {
         Eigen::ColPivHouseholderQR<MatrixXd> qr(MatrixXd(by.J.bottomLeftCorner(m, n)).transpose());
-        Z = MatrixXd(qr.householderQ()).rightCols(n - qr.rank());
+        Z = matrix_Q(qr).rightCols(n - qr.rank());
     }
     if (Z.cols() == 0) return {};
     const MatrixXd K = -MatrixXd(by.J.topLeftCorner(n, n)),
                    M = Z.transpose() * (K + K.transpose()) / 2 * Z;
     const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(M);
-    const double idle = idle_stiffness * modes.eigenvalues().cwiseAbs().maxCoeff();
+    const double idle = idle_eigenvalue * modes.eigenvalues().cwiseAbs().maxCoeff();
     std::vector<std::vector<Pose>> list;
     int taken = 0;
     for (Index k = 0; k < Z.cols() && taken < motions; ++k) {

@@ -9,7 +9,7 @@ namespace elastocheck::reference::equilibrium {
 namespace {
 
 // A deformation whose movement over the whole stage is below this multiple of `at_knot` is at rest.
-constexpr double at_rest = 1e-3;
+constexpr double standing = 1e-3;
 
 struct Ends {
     double lower, upper;
@@ -68,7 +68,7 @@ Pieces pieces_at(const System& system, const Loading& loading, const Eigen::Vect
 int leaves(const OnCurve& at, int piece, double direction, double length) {
     const auto [lower, upper] = ends(*at.curve, piece);
     const double near = at_knot * at.size, onward = direction * at.rate;
-    if (!(std::abs(onward) * length > at_rest * near)) return 0;
+    if (!(std::abs(onward) * length > standing * near)) return 0;
     if (onward > 0 && at.x >= upper - near) return +1;
     if (onward < 0 && at.x <= lower + near) return -1;
     return 0;

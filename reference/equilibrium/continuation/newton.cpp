@@ -6,7 +6,7 @@ namespace {
 using Eigen::VectorXd;
 
 // After a correction of this size the next one would be of its square, which is round-off.
-constexpr double last_correction = 1e-8;
+constexpr double smallest_step = 1e-8;
 
 // A damped step is accepted if it reduces the level by at least this part of the predicted
 // reduction.
@@ -66,7 +66,7 @@ Attempt newton(const System& system, const Loading& loading, const VectorXd& sta
         x = std::move(there);
         attempt.residual = largest(E);
         before = now;
-        if (attempt.residual <= options.tolerance && part * dx.norm() <= last_correction)
+        if (attempt.residual <= options.tolerance && part * dx.norm() <= smallest_step)
             return attempt;
         by = derivatives(system, loading, x, counts);
     }

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <optional>
 
+#include "models/eigen/dense.hpp"
+
 namespace elastocheck::reference::equilibrium {
 namespace {
 
@@ -61,9 +63,8 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
     const MatrixXd dense = J;
     MatrixXd Z = MatrixXd::Identity(n, n).rightCols(d);
     if (m > 0)
-        Z.applyOnTheLeft(
-            Eigen::ColPivHouseholderQR<MatrixXd>(dense.bottomLeftCorner(m, n).transpose())
-                .householderQ());
+        Z = matrix_Q(Eigen::ColPivHouseholderQR<MatrixXd>(dense.bottomLeftCorner(m, n).transpose()))
+                .rightCols(d);
     const MatrixXd M = -Z.transpose() * (dense.topLeftCorner(n, n) * Z),
                    S = (M + M.transpose()) / 2;
     const double size = dense.topLeftCorner(n, n).cwiseAbs().maxCoeff();

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double no_deformation = 1e-12;
 
 // Modes with a smaller part on bodies are self-stresses of redundant joints.
-constexpr double of_bodies = 1e-3;
+constexpr double part_of_bodies = 1e-3;
 
 // Threshold of the null vectors of J, relative to its largest entry. The vector v of an idle motion
 // may contain a part δ of motions whose stiffness μ is above this threshold. Then G = μ δ² and
@@ -26,7 +26,7 @@ constexpr double of_bodies = 1e-3;
 constexpr double threshold = 1e-11;
 
 // Relative to the largest eigenvalue of G: smaller ones are zero.
-constexpr double no_part = 1e-12;
+constexpr double zero_eigenvalue = 1e-12;
 
 // Relative to the largest entry of J: smaller stiffnesses are below its rounding.
 constexpr double entry_rounding = 16 * std::numeric_limits<double>::epsilon();
@@ -55,7 +55,7 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
         // spins: then G exceeds |J v|.
         const double stored = one.rate.dot(one.answer),
                      most = few * left * motion + entry_rounding * size;
-        if (motion < of_bodies * v.norm() || !(stored > nothing && stored <= most)) {
+        if (motion < part_of_bodies * v.norm() || !(stored > nothing && stored <= most)) {
             idle.push_back(k);
         } else {
             resisted.push_back(k);
@@ -70,9 +70,10 @@ Sorted sorted(const System& system, const Loading& loading, const VectorXd& x, c
         for (Index b = 0; b < count; ++b)
             G(a, b) =
                 by[static_cast<std::size_t>(a)].rate.dot(by[static_cast<std::size_t>(b)].answer);
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver((G + G.transpose()) / 2);
+    G = ((G + G.transpose()) / 2).eval();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(G);
     const double largest = solver.eigenvalues()[count - 1];
-    const Index nothing = (solver.eigenvalues().array() <= no_part * largest).count();
+    const Index nothing = (solver.eigenvalues().array() <= zero_eigenvalue * largest).count();
     MatrixXd all(modes.rows(), static_cast<Index>(idle.size()) + nothing);
     for (std::size_t k = 0; k < idle.size(); ++k)
         all.col(static_cast<Index>(k)) = VectorXd(modes.col(idle[k]));

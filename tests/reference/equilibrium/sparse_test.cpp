@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "models/branch.hpp"
+#include "models/eigen/dense.hpp"
 #include "reference/equilibrium/continuation/continuation.hpp"
 #include "tests/reference/equilibrium/scenes.hpp"
 
@@ -102,7 +103,7 @@ MatrixXd null_space(const MatrixXd& A) {
     Eigen::ColPivHouseholderQR<MatrixXd> qr;
     qr.setThreshold(1e-10);
     qr.compute(A.transpose());
-    const MatrixXd Q = qr.householderQ();
+    const MatrixXd Q = matrix_Q(qr);
     return Q.rightCols(Q.cols() - qr.rank());
 }
 
