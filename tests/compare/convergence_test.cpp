@@ -14,10 +14,11 @@
 #include <string>
 #include <vector>
 
+#include "compare/outputs/not_a_number.hpp"
+
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Floors exact;
 

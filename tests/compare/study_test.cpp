@@ -8,13 +8,12 @@
 #include <tuple>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/compile.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 StudyOptions options(std::vector<std::string_view> names = {"published"}) {
     StudyOptions o;

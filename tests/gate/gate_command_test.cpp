@@ -22,7 +22,7 @@ using reports::BaselineFile;
 using reports::BaselineText;
 
 const std::filesystem::path baselines = scenes + "/baselines";
-const BaselineFile committed = reports::read_baseline(baselines / "single_bushing.json");
+const BaselineFile as_committed = reports::read_baseline(baselines / "single_bushing.json");
 
 // Not in CI, whatever the tests themselves run in.
 Said gate(const std::string& arguments, const std::string& environment = "CI= GITHUB_ACTIONS=") {
@@ -44,7 +44,7 @@ Said crafted(const BaselineText& baseline, const BaselineText& measurement) {
 
 using Edit = std::function<void(BaselineFile&)>;
 BaselineText edited(const Edit& edit) {
-    BaselineFile file = committed;
+    BaselineFile file = as_committed;
     edit(file);
     return reports::baseline_text(file);
 }
@@ -56,14 +56,14 @@ compare::Series& first_moving(BaselineFile& file) {  // a curve whose end is not
 }
 
 TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
-    const BaselineText good = reports::baseline_text(committed);
+    const BaselineText good = reports::baseline_text(as_committed);
     struct Case {
         const char* what;
         int code;
         BaselineText baseline, measurement;
     };
     const double atol =
-        committed.baseline.tolerances.at(compare::ToleranceClass::same_build).at("mm").atol;
+        as_committed.baseline.tolerances.at(compare::ToleranceClass::same_build).at("mm").atol;
     const auto set_first = [&](double value) {
         return edited([&](auto& file) {
             for (auto& s : series(file))
@@ -206,7 +206,7 @@ TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
     expect_said(gate("nowhere.yaml" + there), 2);
     expect_said(gate(scene + there + " --from /nowhere"),
                 3);  // no baseline, so not even looked for
-    reports::write_baseline(folder.path / "single_bushing.json", committed);
+    reports::write_baseline(folder.path / "single_bushing.json", as_committed);
     expect_said(gate(scene + there + " --from /nowhere"), 2);
     expect_said(gate(scene + " --from x " + scene), 2);
     expect_said(gate(scene + " --class none"), 2);

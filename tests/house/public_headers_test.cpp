@@ -15,19 +15,19 @@ namespace {
 namespace fs = std::filesystem;
 using elastocheck::support::text_of;
 
-const fs::path folder = fs::path(ELASTOCHECK_ROOT) / "include";
+const fs::path public_headers = fs::path(ELASTOCHECK_ROOT) / "include";
 
 TEST(PublicHeaders, AreAHandfulAndPullInNoInternals) {
     std::set<std::string> headers;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file()) headers.insert(fs::relative(entry.path(), folder));
+    for (const auto& entry : fs::recursive_directory_iterator(public_headers))
+        if (entry.is_regular_file()) headers.insert(fs::relative(entry.path(), public_headers));
     EXPECT_FALSE(headers.empty());
     EXPECT_LE(headers.size(), 15u);
 
     static const std::regex include(R"(^\s*#\s*include\s*(["<])([^">]+)[">])");
     static const std::regex standard("[a-z_]+");
     for (const std::string& header : headers) {
-        std::istringstream lines(text_of(folder / header));
+        std::istringstream lines(text_of(public_headers / header));
         std::smatch match;
         for (std::string line; std::getline(lines, line);)
             if (std::regex_search(line, match, include)) {

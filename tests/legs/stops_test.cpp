@@ -41,7 +41,7 @@ struct Stops : LegTest {
 };
 ELASTOCHECK_FOR(exact_legs, Stops);
 
-constexpr int counts[] = {1, 2, 3, 7, 40};
+constexpr int step_counts[] = {1, 2, 3, 7, 40};
 
 // z = F / k up to the clearance, then both springs share: F = k z + k_s (z - c). Soft to rigid
 // stops, any number of steps; 400 and -600 N are the loads at the knots.
@@ -49,7 +49,7 @@ TEST_P(Stops, AStopBearsWhatTheSpringDoesNot) {
     const double k = 20e3, c = 0.02, back = -0.03;
     for (const double k_s : {5e3, 300e3, 2e7, 2e9})
         for (const double to : {800., -1500., 400., -600., 3000., 1e5})
-            for (const int steps : counts)
+            for (const int steps : step_counts)
                 expect_heights(block({LinearRate{k}, stop(c, k_s), stop(back, k_s)}), to, steps,
                                [&](double F) {
                                    return F > k * c      ? (F + k_s * c) / (k + k_s)
@@ -62,7 +62,7 @@ TEST_P(Stops, AStopBearsWhatTheSpringDoesNot) {
 TEST_P(Stops, AStopWithoutClearanceOpensAndCloses) {
     const double k = 20e3, k_s = 300e3;
     for (const double to : {1000., -1000.})
-        for (const int steps : counts)
+        for (const int steps : step_counts)
             expect_heights(block({LinearRate{k}, stop(0, k_s)}), to, steps,
                            [&](double F) { return F > 0 ? F / (k + k_s) : F / k; });
 }
@@ -139,7 +139,7 @@ TEST_P(Stops, AFlatOrFallingPieceIsPassedWhereTheRestHoldsAndEndsTheBranchAlone)
     const double k = 20e3, k_t = 60e3, c = 0.01;
     for (const double after : {0., -15e3}) {
         const Curve tired{{c}, {{k_t * c, k_t, 0, 0}, {k_t * c, after, 0, 0}}};
-        for (const int steps : counts)
+        for (const int steps : step_counts)
             expect_heights(block({LinearRate{k}, tired}), 1500, steps, [&](double F) {
                 return F > (k + k_t) * c ? c + (F - (k + k_t) * c) / (k + after) : F / (k + k_t);
             });

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 Curve curve_of(const Scene& scene, const std::string& name) {
     return std::get<Curve>(element<AxialSpring>(scene, name).law);
 }
-double design_force(const AxialSpring& spring) {
+double force_as_drawn(const AxialSpring& spring) {
     return force(spring.law, 0.4 - spring.free_length);
 }
 
@@ -85,8 +85,8 @@ TEST(Stops, HaveCurvesOfPenetration) {
 TEST(Stops, MayBeClosedAtTheDesignPosition) {
     const Scene scene = laws(spring_with(
         "rate: 30, bump_stop: {clearance: -5, rate: 300}, rebound_stop: {clearance: 0, rate: 1}"));
-    EXPECT_DOUBLE_EQ(design_force(element<AxialSpring>(scene, "coil.bump_stop")), -1500);
-    EXPECT_EQ(design_force(element<AxialSpring>(scene, "coil.rebound_stop")), 0);
+    EXPECT_DOUBLE_EQ(force_as_drawn(element<AxialSpring>(scene, "coil.bump_stop")), -1500);
+    EXPECT_EQ(force_as_drawn(element<AxialSpring>(scene, "coil.rebound_stop")), 0);
 }
 
 // The open range of a stop is unbounded even if its closed range is bounded.

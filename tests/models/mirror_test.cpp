@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 const std::string whole = fixture("axle_by_hand");
 
-Scene parsed(const std::string& text) { return parse_scene(text, "axle.yaml"); }
+Scene parsed_axle(const std::string& text) { return parse_scene(text, "axle.yaml"); }
 
 template <class List>
 const auto& named(const List& list, const std::string& name) {
@@ -32,7 +32,7 @@ bool is_gauge(const std::string& what) {
 }
 
 TEST(Mirror, MakesTheTwinThatIsWrittenByHand) {
-    const auto mirrored = numbers(parsed(axle_scene)), by_hand = numbers(parsed(whole));
+    const auto mirrored = numbers(parsed_axle(axle_scene)), by_hand = numbers(parsed_axle(whole));
     ASSERT_EQ(mirrored.size(), by_hand.size());
     std::string worst;
     double largest = 0;
@@ -45,15 +45,15 @@ TEST(Mirror, MakesTheTwinThatIsWrittenByHand) {
             largest = difference, worst = mirrored[k].first;
     }
     EXPECT_LE(largest, 4e-16) << worst;
-    const Scene scene = parsed(axle_scene);
-    EXPECT_EQ(scene.hardpoints.size(), parsed(whole).hardpoints.size());
+    const Scene scene = parsed_axle(axle_scene);
+    EXPECT_EQ(scene.hardpoints.size(), parsed_axle(whole).hardpoints.size());
     EXPECT_EQ(named(scene.hardpoints, "ball_right").position, Vector3d(-0.021, -0.94, -0.174));
 }
 
 // Equal angles on both sides are a symmetric motion: a point p of the left arm rotated about the
 // left axis is the mirror image of S p rotated by the same angle about the right one.
 TEST(Mirror, EqualDrivesAreASymmetricMotion) {
-    const Scene scene = parsed(axle_scene);
+    const Scene scene = parsed_axle(axle_scene);
     const auto axis = [&](const char* name) {
         return std::get<Revolute>(named(scene.joints, name).kind).axis_j.u_local;
     };
@@ -73,7 +73,7 @@ TEST(Mirror, EqualDrivesAreASymmetricMotion) {
 // In ground axes a translational stiffness C = A K A' (of polar vectors) becomes S C S for any
 // choice of frame; a preload becomes S f, a moment -S m.
 TEST(Mirror, ReflectsABushingInGroundAxes) {
-    const Scene scene = parsed(axle_scene);
+    const Scene scene = parsed_axle(axle_scene);
     const Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
     for (const std::string name : {"mount", "block"}) {
         const auto& left = std::get<Bushing>(named(scene.elastics, name + "_left").kind);
@@ -110,7 +110,7 @@ TEST(Mirror, TurnsWholeWordsOnly) {
     std::string text = axle_scene;
     for (std::size_t at = 0; (at = text.find("rack", at)) != std::string::npos; at += 4)
         if (text.substr(at - 1, 1) != "\n") text.replace(at, 4, "leftover");
-    const Scene scene = parsed(text);
+    const Scene scene = parsed_axle(text);
     EXPECT_NO_THROW(named(scene.bodies, "leftover"));
     EXPECT_EQ(scene.bodies.size(), 5U);
 }

@@ -525,7 +525,7 @@ TEST(Stiffness, ThatIsIndefiniteOnlyInSiUnitsIsRefusedInAll) {
     K(0, 4) = K(4, 0) = 3e4;  // √(1e6 · 1e2) = 1e4 is the most that it may be
     for (const UnitsOfText& units : all_units)
         EXPECT_THROW(parsed(bench_with(K, units)), SceneError) << units.text;
-    const Matrix6 in_degrees = written(K, all_units[3]);
+    const Eigen::MatrixXd in_degrees = written(K, all_units[3]);
     EXPECT_GT(in_degrees.eigenvalues().real().minCoeff(), 0) << "as written it looks definite";
     K(0, 4) = K(4, 0) = 0.99e4;
     for (const UnitsOfText& units : all_units)

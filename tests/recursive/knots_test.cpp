@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-Method rung(const char* name) { return *find_method(name); }
+Method method_called(const char* name) { return *find_method(name); }
 
 // An arm of 1 m along x, hinged at the origin about y, on a spring of 20 kN/m (plus the curve along
 // the same line) from 0.6 m out on the arm to the ground 0.5 m below. A load, up to -`to`, acts on
@@ -134,7 +134,7 @@ TEST(Knots, StopsAreHitInOneStepOfFirstOrderAndLeaveTheRungsTheirOwnBehind) {
 
 TEST(Knots, OfACurveLeaveOneStepOfSecondOrderAndThirdWhereItIsCorrected) {
     for (const auto& [name, behind] : {std::pair{"tangent", 2}, {"midpoint", 2}, {"chord", 3}}) {
-        const Method method = rung(name);
+        const Method method = method_called(name);
         const Errors coarse = errors_near(with_curve, method, 400),
                      fine = errors_near(with_curve, method, 800);
         EXPECT_NEAR(order(coarse.worst, fine.worst), behind, 0.25) << name;
@@ -146,7 +146,7 @@ TEST(Knots, AdaptiveLandsOnThemAndHoldsTheToleranceInFewSteps) {
     for (const auto& [name, arm, most] :
          {std::tuple{"stop", with_stop, 16}, {"curve", with_curve, 50}})
         for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7}) {
-            Method method = rung("adaptive");
+            Method method = method_called("adaptive");
             method.kind = Adaptive{tolerance, tolerance};
             const Model model = arm.model();
             const auto path = solve(model, model.branches[0], {.method = method, .steps = 100});
@@ -175,8 +175,9 @@ TEST(Knots, AdaptiveWalksATableOfManyPoints) {
     f.pieces.back()[2] = f.pieces.back()[3] = 0;
     const Arm arm{reversed(f)};
     const Model model = arm.model();
-    const auto path = solve(model, model.branches[0], {.method = rung("adaptive"), .steps = 100});
-    EXPECT_LE(errors(arm, rung("adaptive"), 100).worst, 1e-5);
+    const auto path =
+        solve(model, model.branches[0], {.method = method_called("adaptive"), .steps = 100});
+    EXPECT_LE(errors(arm, method_called("adaptive"), 100).worst, 1e-5);
     const auto knots = std::ranges::count_if(f.knots, [&](double knot) {
         const double end = -Arm::out * std::sin(arm.angle(arm.to));
         return knot > 0 && knot < -end;
@@ -325,7 +326,7 @@ TEST(Formulation, OfEveryKindLeavesTheRungsTheirOrder) {
         const Model model = compile(scene);
         const auto last = [&](const char* name, int steps) {
             const auto path = solve(model, model.branches[0],
-                                    {.method = rung(name), .steps = steps, .record = 1});
+                                    {.method = method_called(name), .steps = steps, .record = 1});
             EXPECT_EQ(path.outcome, Outcome::converged)
                 << name_of(formulation) << " " << name << ": " << path.detail;
             return path.points.back().poses[0];

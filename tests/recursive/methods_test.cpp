@@ -19,7 +19,7 @@ bool sees_the_truth(const Method& method) { return !std::holds_alternative<Linea
 
 // Largest distance of any body's origin [m], or of the orientation of a body without an idle mode
 // [rad], over the recorded points. Along an idle mode the position is arbitrary.
-double apart(const Model& model, const EquilibriumPath& a, const EquilibriumPath& b) {
+double between(const Model& model, const EquilibriumPath& a, const EquilibriumPath& b) {
     EXPECT_EQ(a.points.size(), b.points.size());
     std::vector<bool> idle(model.bodies.size(), false);
     for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
@@ -55,7 +55,7 @@ TEST(Methods, EachRungHasItsOrderToTheTruth) {
                         solve(model, branch, {.method = method, .steps = steps, .record = 10});
                     EXPECT_EQ(path.outcome, Outcome::converged)
                         << name << " " << method.name << ": " << path.detail;
-                    return apart(model, path, exact);
+                    return between(model, path, exact);
                 };
                 // Fine enough for the asymptotic order, coarse enough to stay above round-off.
                 const int steps = method.formal_order == 2   ? 4000
@@ -109,7 +109,7 @@ TEST(Methods, AdaptiveKeepsItsToleranceAtAndBetweenItsSteps) {
                     model, branch,
                     {.method = {"adaptive", 3, Adaptive{tolerance, tolerance}}, .steps = 150});
                 ASSERT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
-                EXPECT_LE(apart(model, path, exact), tolerance + 1e-9)
+                EXPECT_LE(between(model, path, exact), tolerance + 1e-9)
                     << name << " " << branch.name << " " << tolerance;
             }
         }
@@ -137,7 +137,7 @@ TEST(Methods, WithEverythingFollowingTheSumReachesTheTruth) {
                    solve(model, model.branches[0], {.method = method, .steps = 200, .record = 10}),
                fine =
                    solve(model, model.branches[0], {.method = method, .steps = 400, .record = 10});
-    EXPECT_NEAR(std::log2(apart(model, coarse, exact) / apart(model, fine, exact)), 1, 0.1);
+    EXPECT_NEAR(std::log2(between(model, coarse, exact) / between(model, fine, exact)), 1, 0.1);
 }
 
 TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
@@ -160,7 +160,7 @@ TEST(Methods, FewStepsAreRoughOrRefusedButNeverQuietlyAbsurd) {
                     const auto path =
                         solve(model, branch, {.method = method, .steps = steps, .record = 1});
                     if (path.outcome != Outcome::converged) continue;
-                    const double share = apart(model, path, exact) / moved;
+                    const double share = between(model, path, exact) / moved;
                     EXPECT_LE(share, sees_the_truth(method) ? 0.5 : 2)
                         << name << " " << branch.name << " " << method.name << " " << steps;
                     if (sees_the_truth(method)) worst_share = std::max(worst_share, share);

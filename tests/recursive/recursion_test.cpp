@@ -148,7 +148,7 @@ std::vector<State<double>> equation_28(const Model& model, const Branch& branch,
                                inputs_at<double>(model, branch, branch.to * (k + 1) / N), q, f);
         Vector<double> rhs = Vector<double>::Zero(n + m);
         rhs.head(n) = f - stored;
-        const Vector<double> x = M.fullPivLu().solve(rhs);
+        const Vector<double> x = M.partialPivLu().solve(rhs);
         stored += M.topLeftCorner(n, n) * x.head(n);
         advance(q, x.head(n));
         path.push_back(q);

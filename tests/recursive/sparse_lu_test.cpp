@@ -41,11 +41,11 @@ std::vector<double> values_of(const Pattern& pattern, const Matrix<double>& A) {
             values.push_back(A(pattern.row[static_cast<std::size_t>(e)], j));
     return values;
 }
-void analyse(SparseLU<double>& lu, const Matrix<double>& A) {
+void analyse_dense(SparseLU<double>& lu, const Matrix<double>& A) {
     const Pattern pattern = pattern_of(A);
     recursive::analyse(lu, pattern, values_of(pattern, A).data());
 }
-double factorise(SparseLU<double>& lu, const Matrix<double>& A) {
+double factorise_dense(SparseLU<double>& lu, const Matrix<double>& A) {
     return recursive::factorise(lu, values_of(lu.order.pattern, A).data());
 }
 
@@ -56,10 +56,10 @@ TEST(SparseLU, SolvesWhatDenseFactorsSolve) {
         for (int m = 0; m <= n / 2; ++m) {
             Matrix<double> M = random_saddle_point(random, n, m);
             SparseLU<double> lu;
-            analyse(lu, M);
+            analyse_dense(lu, M);
             for (int again = 0; again < 5; ++again) {  // other values in the same places
                 M = (M.array() * (1 + 0.3 * Matrix<double>::Random(n + m, n + m).array())).matrix();
-                ASSERT_GT(factorise(lu, M), 0);
+                ASSERT_GT(factorise_dense(lu, M), 0);
                 const Vector<double> b = Vector<double>::Random(n + m);
                 Vector<double> x(n + m);
                 solve(lu, b.data(), x.data());
@@ -104,10 +104,10 @@ TEST(SparseLU, FillsInNothingWhereNothingNeedBeOfAnySize) {
         arrow(0, 0) = n;
         for (const auto& A : {chain, arrow}) {
             SparseLU<double> lu;
-            analyse(lu, A);
+            analyse_dense(lu, A);
             EXPECT_EQ(fill_in(lu), 0u) << n;
             EXPECT_EQ(lu.L.size() + lu.U.size(), static_cast<std::size_t>(2 * (n - 1))) << n;
-            ASSERT_GT(factorise(lu, A), 0);
+            ASSERT_GT(factorise_dense(lu, A), 0);
             const Vector<double> x = Vector<double>::Random(n), b = A * x;
             Vector<double> y(n);
             solve(lu, b.data(), y.data());
@@ -139,11 +139,11 @@ TEST(SparseLU, SolvesLargeSaddlePointsAsDenseFactorsDo) {
     for (const auto& [n, m] : {std::pair{50, 20}, {200, 60}, {400, 150}}) {
         Matrix<double> M = sparse_saddle_point(random, n, m);
         SparseLU<double> lu;
-        analyse(lu, M);
+        analyse_dense(lu, M);
         EXPECT_LE(lu.L.size() + lu.U.size(), static_cast<std::size_t>(40 * (n + m)));
         for (int again = 0; again < 3; ++again) {
             M = (M.array() * (1 + 0.1 * Matrix<double>::Random(n + m, n + m).array())).matrix();
-            ASSERT_GT(factorise(lu, M), 0);
+            ASSERT_GT(factorise_dense(lu, M), 0);
             const Vector<double> b = Vector<double>::Random(n + m);
             Vector<double> x(n + m);
             solve(lu, b.data(), x.data());
@@ -161,8 +161,8 @@ TEST(SparseLU, TheUnknownsThatAreWantedAreThoseOfTheWholeSolution) {
     for (const auto& [n, m] : {std::pair{8, 3}, {200, 60}}) {
         const Matrix<double> M = sparse_saddle_point(random, n, m);
         SparseLU<double> lu;
-        analyse(lu, M);
-        ASSERT_GT(factorise(lu, M), 0);
+        analyse_dense(lu, M);
+        ASSERT_GT(factorise_dense(lu, M), 0);
         Vector<double> e(n + m), x(n + m);
         for (int j = 0; j < n + m; j += 3) {
             e.setZero();
@@ -186,8 +186,8 @@ TEST(SparseLU, WhatStaysInOnePlaceIsSoughtThereAlone) {
     for (int i = 0; i + 1 < n; i += 2) A(i, i + 1) = A(i + 1, i) = 1;
     for (int i = 1; i + 1 < n; i += 2) A(i, i + 1) = A(i + 1, i) = 1e-300;  // in the pattern
     SparseLU<double> lu;
-    analyse(lu, A);
-    ASSERT_GT(factorise(lu, A), 0);
+    analyse_dense(lu, A);
+    ASSERT_GT(factorise_dense(lu, A), 0);
     const int wanted[] = {1000, 1001};
     double x[2];
     solve_unit(lu, 1000, wanted, 2, x);
@@ -201,14 +201,14 @@ TEST(SparseLU, ALargeOrderIsChosenAnewWhenAPivotShrinks) {
     const int n = 300, m = 90;
     const Matrix<double> M = sparse_saddle_point(random, n, m);
     SparseLU<double> lu;
-    analyse(lu, M);
+    analyse_dense(lu, M);
     const Vector<double> b = Vector<double>::Random(n + m);
     Vector<double> x(n + m);
     for (int k = 0; k < n; k += 7) {
         Matrix<double> other = M;
         other(lu.order.row[static_cast<std::size_t>(k)],
               lu.order.col[static_cast<std::size_t>(k)]) *= 1e-14;
-        ASSERT_GT(factorise(lu, other), 0);
+        ASSERT_GT(factorise_dense(lu, other), 0);
         solve(lu, b.data(), x.data());
         EXPECT_LE((other * x - b).norm(), 1e-12 * other.norm() * x.norm()) << k;
     }
@@ -229,7 +229,7 @@ TEST(SparseLU, ASingularMatrixSpoilsNoneThatFollows) {
         recursive::analyse(lu, pattern, std::vector<double>(pattern.entries(), 0.0).data());
         EXPECT_EQ(recursive::factorise(lu, std::vector<double>(pattern.entries(), 0.0).data()), 0);
         for (int again = 0; again < 2; ++again) {
-            ASSERT_GT(factorise(lu, A), 0);
+            ASSERT_GT(factorise_dense(lu, A), 0);
             const Vector<double> b = Vector<double>::Ones(n);
             Vector<double> x(n);
             solve(lu, b.data(), x.data());
@@ -242,12 +242,12 @@ TEST(SparseLU, ChoosesAnewWhenAPivotShrinks) {
     Matrix<double> A(3, 3);
     A << 4, 1, 0, -1, 3, 1, 0, -1, 2;  // regular for any non-negative diagonal with one zero
     SparseLU<double> lu;
-    analyse(lu, A);
+    analyse_dense(lu, A);
     for (double pivot = 1; pivot > 1e-17; pivot /= 10) {
         for (int k = 0; k < 3; ++k) {  // for each position in the order
             Matrix<double> B = A;
             B(k, k) *= pivot;
-            ASSERT_GT(factorise(lu, B), 0);
+            ASSERT_GT(factorise_dense(lu, B), 0);
             const Vector<double> b = Vector<double>::Ones(3);
             Vector<double> x(3);
             solve(lu, b.data(), x.data());
@@ -261,8 +261,8 @@ TEST(SparseLU, KeepsItsOrderWhileItServes) {
     std::mt19937 random(2);
     const Matrix<double> M = random_saddle_point(random, 12, 5);
     SparseLU<double> lu;
-    analyse(lu, M);
-    for (int k = 0; k < 100; ++k) factorise(lu, (1 + 0.01 * k) * M);
+    analyse_dense(lu, M);
+    for (int k = 0; k < 100; ++k) factorise_dense(lu, (1 + 0.01 * k) * M);
     EXPECT_EQ(lu.orders, 1);
 }
 
@@ -270,24 +270,24 @@ TEST(SparseLU, SaysSingularAndNotFinite) {
     Matrix<double> A(3, 3);
     A << 1, 2, 0, 2, 4, 0, 0, 0, 1;
     SparseLU<double> lu;
-    analyse(lu, A);
-    EXPECT_EQ(factorise(lu, A), 0);
+    analyse_dense(lu, A);
+    EXPECT_EQ(factorise_dense(lu, A), 0);
     A(1, 1) = 5;
-    EXPECT_GT(factorise(lu, A), 0.01);
+    EXPECT_GT(factorise_dense(lu, A), 0.01);
     for (const double bad :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         A(2, 2) = bad;
-        EXPECT_TRUE(std::isnan(factorise(lu, A)));
+        EXPECT_TRUE(std::isnan(factorise_dense(lu, A)));
     }
     A(2, 2) = 1;
-    EXPECT_GT(factorise(lu, A), 0.01);
+    EXPECT_GT(factorise_dense(lu, A), 0.01);
 }
 
 TEST(SparseLU, AnOrderServesOtherArithmetics) {
     std::mt19937 random(5);
     const Matrix<double> M = random_saddle_point(random, 14, 6);
     SparseLU<double> lu;
-    analyse(lu, M);
+    analyse_dense(lu, M);
     SparseLU<long double> other;
     recursive::analyse(other, lu.order);
     const std::vector<double> values = values_of(lu.order.pattern, M);
@@ -305,8 +305,8 @@ TEST(SparseLU, KnowsTheSignAndSizeOfTheDeterminant) {
     for (int trial = 0; trial < 20; ++trial) {
         const Matrix<double> M = random_saddle_point(random, 8, 3);
         SparseLU<double> lu;
-        analyse(lu, M);
-        factorise(lu, M);
+        analyse_dense(lu, M);
+        factorise_dense(lu, M);
         const double det = M.fullPivLu().determinant();
         EXPECT_EQ(lu.orientation, det < 0 ? -1 : 1);
         EXPECT_NEAR(log_determinant(lu), std::log2(std::abs(det)), 1e-9);

@@ -102,7 +102,7 @@ Matrix<Long> differences(const Case& c) {
 }
 
 // Largest difference of any entry, relative to the largest entry.
-double apart(const Matrix<Long>& a, const Matrix<Long>& b) {
+double largest_difference(const Matrix<Long>& a, const Matrix<Long>& b) {
     const Long size = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
     return size > 0 ? static_cast<double>((a - b).cwiseAbs().maxCoeff() / size) : 0;
 }
@@ -111,10 +111,11 @@ void expect_derivative(const Case& c, const std::string& what, double limit = 1e
     Eigen::Index row = 0, column = 0;
     const Matrix<Long> T = tangent<Long>(c), D = differences(c);
     (T - D).cwiseAbs().maxCoeff(&row, &column);
-    EXPECT_LE(apart(T, D), limit) << what << ": worst at (" << row << ", " << column
-                                  << "): " << static_cast<double>(T(row, column)) << " instead of "
-                                  << static_cast<double>(D(row, column));
-    EXPECT_LE(apart(tangent<double>(c).cast<Long>(), T), 1e-11)
+    EXPECT_LE(largest_difference(T, D), limit)
+        << what << ": worst at (" << row << ", " << column
+        << "): " << static_cast<double>(T(row, column)) << " instead of "
+        << static_cast<double>(D(row, column));
+    EXPECT_LE(largest_difference(tangent<double>(c).cast<Long>(), T), 1e-11)
         << what << ": double is not the same as long double";
 }
 
@@ -338,7 +339,8 @@ TEST(Tangent, WithNothingStoredIsTheStiffnessOfThePaper) {
         c.model.elastics.push_back({"bushing", e});
         const Matrix<double> K =
             stiffness<double>(c.model, inputs_of<double>(c), state_of<double>(c.poses));
-        EXPECT_LE(apart(tangent<double>(c).cast<Long>(), K.cast<Long>()), 1e-13) << i << " " << j;
+        EXPECT_LE(largest_difference(tangent<double>(c).cast<Long>(), K.cast<Long>()), 1e-13)
+            << i << " " << j;
     }
 }
 

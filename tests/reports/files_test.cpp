@@ -95,8 +95,9 @@ TEST(Append, AddsToARegularFileAndToNothingElse) {
 TEST(ReadWhole, ReadsFilesAndNoDevices) {
     const Folder folder;
     EXPECT_EQ(read_whole(folder.write("f", "x")), "x");
-    for (const auto& odd : {std::filesystem::path("/dev/zero"), folder.path, folder.path / "none"})
-        EXPECT_THROW(read_whole(odd), FileError) << odd;
+    for (const auto& strange :
+         {std::filesystem::path("/dev/zero"), folder.path, folder.path / "none"})
+        EXPECT_THROW(read_whole(strange), FileError) << strange;
 }
 
 TEST(ReadWhole, RefusesWhatIsLargerThanItsKindAsSoonAsItShows) {

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string scene = scenes + "/single_bushing.yaml";
+const std::string bushing = scenes + "/single_bushing.yaml";
 
 // ---- --json
 
@@ -28,8 +28,8 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
     const Folder folder;
     const std::string chain = folder.write("chain.yaml", chain_of(15));
     for (const std::string& command :
-         {"inspect " + scene, "solve --steps=4 " + scene, "compare --steps=4 " + scene,
-          "converge " + scene + " --steps=4,8,16,32,64", "trade " + chain}) {
+         {"inspect " + bushing, "solve --steps=4 " + bushing, "compare --steps=4 " + bushing,
+          "converge " + bushing + " --steps=4,8,16,32,64", "trade " + chain}) {
         const json said = document(command);
         EXPECT_EQ(said["schema"], "elastocheck/result/3") << command;
         EXPECT_EQ(said["scenes"].size(), 1u) << command;
@@ -38,7 +38,7 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
                                                  : "Body on one bushing");
         EXPECT_TRUE(said["reproduce"].get<std::string>().starts_with("elastocheck ")) << command;
     }
-    EXPECT_EQ(document("gate " + scene)["verdict"], "passed");
+    EXPECT_EQ(document("gate " + bushing)["verdict"], "passed");
     const json templates = document("new");
     EXPECT_EQ(templates["schema"], "elastocheck/templates/1");
     std::size_t files = 0;
@@ -51,21 +51,22 @@ TEST(Json, EveryCommandPrintsOneDocumentAndNothingElse) {
 TEST(Json, OfACommandThatAlsoWritesIsWhatItWrites) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
-    const Said said = expect_says("compare " + scene + " --steps 4 --json -o " + out, 0);
+    const Said said = expect_says("compare " + bushing + " --steps 4 --json -o " + out, 0);
     EXPECT_EQ(said.out, text_of(out + "/result.json"));
     EXPECT_TRUE(contains(said.err, "Written: ")) << said.err;
     const std::string csv = (folder.path / "c.csv").string();
-    EXPECT_EQ(document("solve " + scene + " --steps 4 -o " + csv)["scenes"][0]["branches"].size(),
+    EXPECT_EQ(document("solve " + bushing + " --steps 4 -o " + csv)["scenes"][0]["branches"].size(),
               2u);
-    EXPECT_EQ(text_of(csv), elastocheck_says("solve " + scene + " --steps 4").out);
+    EXPECT_EQ(text_of(csv), elastocheck_says("solve " + bushing + " --steps 4").out);
 }
 
 TEST(Json, OfSolveHoldsTheNumbersOfTheCsv) {
     const json part = document(
-        "solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
-    const auto cells = cells_of(
-        elastocheck_says("solve " + scene + " --steps 4 --method equilibrium --channels 'centre_*'")
-            .out);
+        "solve " + bushing + " --steps 4 --method equilibrium --channels 'centre_*'")["scenes"][0];
+    const auto cells =
+        cells_of(elastocheck_says("solve " + bushing +
+                                  " --steps 4 --method equilibrium --channels 'centre_*'")
+                     .out);
     std::size_t row = 1;
     for (const auto& branch : part["branches"]) {
         const auto& leg = branch["legs"][0];
@@ -117,7 +118,7 @@ TEST(Json, KeepsTheExitCodeAndSaysErrorsAsEver) {
 
 TEST(Json, OfTheGateHoldsEveryNumberThatMovedAndWhatChanged) {
     const Folder folder;
-    const std::string own = folder.write("own.yaml", text_of(scene));
+    const std::string own = folder.write("own.yaml", text_of(bushing));
     ASSERT_EQ(elastocheck_says("gate " + own + " --accept --reason first").code, 0);
     const Said text = elastocheck_says("gate " + own + " --set bushings.mount.rates.x=3e5");
     const json said = document("gate " + own + " --set bushings.mount.rates.x=3e5", 1);
@@ -152,7 +153,7 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
          {"compare S -o -", "solve S -o -", "solve S -o-", "solve S --method series --rates -",
           "converge S --output=-", "trade S -o -", "report S -o -", "report --from - -o out",
           "gate S --junit -", "gate S --summary=-", "gate S --baseline -", "inspect -"}) {
-        const std::string given = std::regex_replace(arguments, std::regex("\\bS\\b"), scene);
+        const std::string given = std::regex_replace(arguments, std::regex("\\bS\\b"), bushing);
         const Said said =
             expect_said(support::says("cd " + folder.path.string() +
                                       " && env -u CI " ELASTOCHECK_COMMAND " " + given),
@@ -363,7 +364,7 @@ struct Report {
     Folder folder;
     std::string document = (folder.path / "in/result.json").string();
     Report() {
-        expect_says("compare " + scene + " --steps 4 -o " + (folder.path / "in").string(), 0);
+        expect_says("compare " + bushing + " --steps 4 -o " + (folder.path / "in").string(), 0);
     }
     Said draws(const std::string& options, const std::string& environment = "") const {
         return support::says("env -u CI -u BROWSER " + environment +

@@ -42,7 +42,7 @@ std::string head_of(const std::string& text) {
     return head;
 }
 
-std::string refusal(const std::string& text, const std::string& file) {
+std::string refusal_of_file(const std::string& text, const std::string& file) {
     try {
         importer::import_text(text, file, {});
     } catch (const SceneError& error) {
@@ -169,7 +169,8 @@ TEST(Chrono, AMisspeltKeyIsNeverSilent) {
     };
     for (const auto& entry : fs::directory_iterator(folder / "samples")) {
         const std::string name = entry.path().filename().string();
-        if (entry.path().extension() != ".json" || !refusal(sample(name), name).empty()) continue;
+        if (entry.path().extension() != ".json" || !refusal_of_file(sample(name), name).empty())
+            continue;
         const std::string text = sample(name);
         for (std::size_t colon = text.find(':'); colon != text.npos;
              colon = text.find(':', colon + 1)) {
@@ -344,7 +345,7 @@ TEST(Chrono, SaysWhatIsWrongAndWhere) {
     support::expect_refusals(folder / "mistakes/double_wishbone.mistakes",
                              sample("generic__DoubleWishbone.json"), "model.json",
                              [](const std::string& text) {
-                                 const std::string said = refusal(text, "model.json");
+                                 const std::string said = refusal_of_file(text, "model.json");
                                  return said.empty() ? "accepted" : said;
                              });
 }

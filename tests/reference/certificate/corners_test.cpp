@@ -35,7 +35,7 @@ struct Slider {
             k, c, k_s);
     }
 };
-struct On {
+struct OnSlider {
     Model model;
     Branch branch;
     // Closed form of the state of slider `other`.
@@ -53,7 +53,7 @@ struct On {
         return certify_branch(model, branch, states);
     }
 };
-On on(const Slider& slider) {
+OnSlider on_slider(const Slider& slider) {
     const Model model = compile(parse_scene(slider.scene(), "test.yaml"));
     const Branch way = ways(model.branches.front()).front();
     return {on_branch(model, way), way};
@@ -63,7 +63,7 @@ TEST(CertifyBranch, GoesThroughAStopThatClosesHoweverStiffItIs) {
     for (const double k_s : {2., 400., 2e4, 2e6})
         for (const double c : {0., 0.3, 1., 4.99}) {
             const Slider slider{20, k_s, c};
-            const Tube tube = on(slider).tube(slider);
+            const Tube tube = on_slider(slider).tube(slider);
             EXPECT_EQ(tube.answer, Answer::proved) << k_s << " " << c << ": " << tube.detail;
             EXPECT_EQ(tube.to, 100) << k_s << " " << c;
             EXPECT_LE(tube.width.length, 1e-9) << k_s << " " << c;
@@ -72,7 +72,7 @@ TEST(CertifyBranch, GoesThroughAStopThatClosesHoweverStiffItIs) {
 
 TEST(CertifyBranch, ItsCurveIsThatOfTheStopThatIsThere) {
     const Slider slider;
-    const On way = on(slider);
+    const OnSlider way = on_slider(slider);
     // Just before the corner the stop has no effect.
     EXPECT_EQ(way.tube(slider, 0.9999, 19.998).answer, Answer::proved);
     for (const Slider& other :
@@ -89,7 +89,7 @@ TEST(CertifyBranch, ItsCurveIsThatOfTheStopThatIsThere) {
 TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
     for (const double k_n : {25., 40., 1000.}) {
         const Slider slider;
-        On way = on(slider);
+        OnSlider way = on_slider(slider);
         int found = 0;
         for (auto& elastic : way.model.elastics)
             if (auto* spring = std::get_if<AxialSpring>(&elastic.kind))
@@ -104,7 +104,7 @@ TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
         EXPECT_NEAR(tube.to, 20, 1e-5) << k_n;
     }
     // Slightly less than the holding stiffness: soft, and the branch continues.
-    On soft = on({20, 400, 1});
+    OnSlider soft = on_slider({20, 400, 1});
     for (auto& elastic : soft.model.elastics)
         if (auto* curve = std::get_if<Curve>(&std::get<AxialSpring>(elastic.kind).law))
             for (auto& piece : curve->pieces) piece[1] *= -10. / 400;
@@ -114,7 +114,7 @@ TEST(CertifyBranch, ACornerWhereTheCurveTurnsBackIsNotGoneThrough) {
 TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
     for (const double k_s : {400., 2e4, 2e6}) {
         const Slider slider{20, k_s, 1};
-        const On way = on(slider);
+        const OnSlider way = on_slider(slider);
         for (const double by : {0., 1e-12, -1e-12, 1e-9, -1e-9, 1e-3, -1e-3}) {
             const Certificate c = certify(way.model, way.branch, way.state(20 + by, slider));
             EXPECT_EQ(c.answer, Answer::proved) << k_s << " " << by << ": " << c.detail;
@@ -133,7 +133,7 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
 }
 
 // An arm on one bushing that is soft at first in all directions, and at its corner in some.
-On cornered(const Formulation& formulation) {
+OnSlider cornered(const Formulation& formulation) {
     const Model model = compile(parse_scene(
         "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
         "points: {o: [0, 0, 0], p: [300, 100, 0]}\nbodies: {arm: {origin: p}}\n"
@@ -143,7 +143,7 @@ On cornered(const Formulation& formulation) {
         "branches: {up: {load: push, to: 600, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n",
         "test.yaml"));
     Branch way = ways(model.branches.front()).front();
-    On at{on_branch(model, way), way};
+    OnSlider at{on_branch(model, way), way};
     auto& bushing = std::get<Bushing>(at.model.elastics[0].kind);
     bushing.formulation = formulation;
     const auto K = std::get<LinearStiffness>(bushing.law).K;
@@ -167,7 +167,7 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
             for (const bool conjugate : {true, false})
                 for (const bool offset : {true, false}) {
                     if (frame == F::Frame::middle && !conjugate) continue;
-                    const On at = cornered({frame, angles, conjugate, offset});
+                    const OnSlider at = cornered({frame, angles, conjugate, offset});
                     const System plain = make_system(at.model, at.branch),
                                  apart = make_system(at.model, at.branch, Corners::apart);
                     ASSERT_EQ(apart.apart.size(), 6U);
@@ -195,7 +195,7 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
 }
 
 TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
-    const On at = cornered({});
+    const OnSlider at = cornered({});
     std::vector<double> loads;
     for (int k = 0; k <= 60; ++k) loads.push_back(10. * k);
     const EquilibriumPath path = equilibrium::solve(at.model, at.branch, loads);

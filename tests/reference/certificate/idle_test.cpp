@@ -17,16 +17,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct On {
+struct AtIdle {
     Model model;
     Branch branch;
 };
-On on(const std::string& scene) {
+AtIdle at_idle(const std::string& scene) {
     const Model model = compile(parse_scene(scene, "test.yaml"));
     const Branch way = ways(model.branches.front()).front();
     return {on_branch(model, way), way};
 }
-Equilibrium solved(const On& way, double a) {
+Equilibrium solved(const AtIdle& way, double a) {
     const auto path = equilibrium::solve(way.model, way.branch, std::span(&a, 1));
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     return path.points.empty() ? Equilibrium{} : path.points[0];
@@ -34,8 +34,8 @@ Equilibrium solved(const On& way, double a) {
 
 // A body on one bushing in a turned frame, pulled along the frame's z.
 const Vector3d along = Vector3d(1, 2, 3).normalized();
-On hung(double stiff, double soft, double load) {
-    return on(fmt::format(
+AtIdle hung(double stiff, double soft, double load) {
+    return at_idle(fmt::format(
         "elastocheck: 1\nname: soft\nunits: {{length: m, angle: rad, force: N}}\npoints: {{o: [0, "
         "0, 0]}}\n"
         "bodies: {{b: {{origin: o}}}}\nbushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: "
@@ -47,7 +47,7 @@ On hung(double stiff, double soft, double load) {
         "branches: {{pull: {{load: f, to: {}, steps: 10}}}}\nprobes: {{tip: {{on: b, at: o}}}}\n",
         stiff, stiff, soft, load));
 }
-Certificate at(const On& way, double load, double distance) {
+Certificate at(const AtIdle& way, double load, double distance) {
     Equilibrium state;
     state.load = load;
     state.poses = {{distance * along, Eigen::Quaterniond::Identity()}};
@@ -57,7 +57,7 @@ Certificate at(const On& way, double load, double distance) {
 TEST(CertificateIdle, ASoftMotionIsNotIdleHoweverStiffItsNeighboursAre) {
     for (const double soft : {1e-4, 1e-3, 1., 1e3})
         for (const double stiff : {1e5, 1e9}) {
-            const On way = hung(stiff, soft, 1e-2 * soft);
+            const AtIdle way = hung(stiff, soft, 1e-2 * soft);
             EXPECT_EQ(at(way, 0, 0).detail.find("idle"), std::string::npos);
             for (const double share : {1., 0.5}) {
                 const double load = share * 1e-2 * soft;
@@ -77,7 +77,7 @@ TEST(CertificateIdle, ASoftMotionIsNotIdleHoweverStiffItsNeighboursAre) {
 
 // Without rate and load every position along the motion is an equilibrium.
 TEST(CertificateIdle, AMotionWithoutAnyRateIsIdleWhereNothingLoadsIt) {
-    const On way = hung(1e9, 0, 1e-6);
+    const AtIdle way = hung(1e9, 0, 1e-6);
     for (const double distance : {0., 0.3}) {
         const Certificate c = at(way, 0, distance);
         EXPECT_EQ(c.answer, Answer::proved) << c.detail;
@@ -92,12 +92,12 @@ TEST(CertificateIdle, AMotionWithoutAnyRateIsIdleWhereNothingLoadsIt) {
 // A pendulum on a point: its spin about the vertical is idle, its swing is resisted by the load
 // alone.
 TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
-    const On way =
-        on("elastocheck: 1\nname: pendulum\nunits: {length: m, angle: rad, force: N}\n"
-           "points: {o: [0, 0, 0], p: [0, 0, -1]}\nbodies: {b: {origin: o}}\n"
-           "bushings: {k: {bodies: [ground, b], at: o, rates: [1e9, 1e9, 1e9]}}\n"
-           "loads: {f: {on: b, at: p, force: [0, 0, -1]}}\n"
-           "branches: {pull: {load: f, to: 1, steps: 2}}\nprobes: {tip: {on: b, at: p}}\n");
+    const AtIdle way = at_idle(
+        "elastocheck: 1\nname: pendulum\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {o: [0, 0, 0], p: [0, 0, -1]}\nbodies: {b: {origin: o}}\n"
+        "bushings: {k: {bodies: [ground, b], at: o, rates: [1e9, 1e9, 1e9]}}\n"
+        "loads: {f: {on: b, at: p, force: [0, 0, -1]}}\n"
+        "branches: {pull: {load: f, to: 1, steps: 2}}\nprobes: {tip: {on: b, at: p}}\n");
     for (const double tilt : {0., 1e-8, 1e-6}) {
         Equilibrium state;
         state.load = 1;
@@ -113,17 +113,17 @@ TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
 // Upright column on a ball joint with a torsion spring. Its load is 1e-9 m off its axis, which
 // determines the direction of buckling.
 TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGivesIt) {
-    const On way =
-        on("elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n"
-           "points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}\nbodies: {b: "
-           "{origin: "
-           "middle}}\n"
-           "joints: {j: {type: spherical, bodies: [b, ground], at: foot}}\n"
-           "bushings: {k: {bodies: [b, ground], at: foot, rates: [0, 0, 0], rotational_rates: "
-           "[1000, 1000, "
-           "1000]}}\n"
-           "loads: {f: {on: b, at: head, force: [0, 0, -1]}}\n"
-           "branches: {press: {load: f, to: 6000, steps: 20}}\nprobes: {tip: {on: b, at: head}}\n");
+    const AtIdle way = at_idle(
+        "elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n"
+        "points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}\nbodies: {b: "
+        "{origin: "
+        "middle}}\n"
+        "joints: {j: {type: spherical, bodies: [b, ground], at: foot}}\n"
+        "bushings: {k: {bodies: [b, ground], at: foot, rates: [0, 0, 0], rotational_rates: "
+        "[1000, 1000, "
+        "1000]}}\n"
+        "loads: {f: {on: b, at: head, force: [0, 0, -1]}}\n"
+        "branches: {press: {load: f, to: 6000, steps: 20}}\nprobes: {tip: {on: b, at: head}}\n");
     const Equilibrium state = solved(way, 6000);
     const Certificate right = certify(way.model, way.branch, state);
     ASSERT_EQ(right.answer, Answer::proved) << right.detail;
@@ -148,7 +148,7 @@ TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly)
                     law && law->K(3, 3) == 0)
                     law->K(0, 0) *= 1 + more;
         const Branch way = ways(model.branches.front()).front();
-        const On of{on_branch(model, way), way};
+        const AtIdle of{on_branch(model, way), way};
         // The state of the isotropic law is also that of the other, except for the load on its
         // spin.
         Model round = compile(support::scene("mcpherson"));
@@ -162,15 +162,15 @@ TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly)
 
 // Two hinges on one axis are redundant; tilted against each other by 1e-10 rad they lock the arm.
 TEST(CertificateIdle, RowsThatAreNearlyTheSameAreNotRedundant) {
-    On way =
-        on("elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
-           "points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}\n"
-           "bodies: {arm: {origin: p}}\n"
-           "joints: {a: {type: revolute, bodies: [arm, ground], at: o, axis: y},\n"
-           "         b: {type: revolute, bodies: [arm, ground], at: q, axis: y}}\n"
-           "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}\n"
-           "loads: {push: {on: arm, at: p, force: [0, 0, 1]}}\n"
-           "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n");
+    AtIdle way = at_idle(
+        "elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
+        "points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}\n"
+        "bodies: {arm: {origin: p}}\n"
+        "joints: {a: {type: revolute, bodies: [arm, ground], at: o, axis: y},\n"
+        "         b: {type: revolute, bodies: [arm, ground], at: q, axis: y}}\n"
+        "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}\n"
+        "loads: {push: {on: arm, at: p, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n");
     const Equilibrium state = solved(way, 500);
     ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
     for (auto& constraint : way.model.constraints)
@@ -192,7 +192,7 @@ TEST(CertificateIdle, AModelThatIsTooLargeIsNotTriedAndSaysSo) {
             "rotational_rates: [1e5, 1e5, 1e5]}}\n",
             k, k == 0 ? "ground" : fmt::format("b{}", k - 1), k, k);
     }
-    const On way = on(
+    const AtIdle way = at_idle(
         "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
         "0]" +
         points + "}\nbodies:\n" + bodies + "bushings:\n" + bushings +

@@ -17,7 +17,7 @@ using Angles = Formulation::Angles;
 
 constexpr Frame frames[] = {Frame::on_i, Frame::on_j, Frame::middle};
 constexpr Angles measures[] = {Angles::rotation_vector, Angles::cardan, Angles::projected};
-constexpr std::pair<BodyId, BodyId> pairs[] = {{0, 1}, {1, 0}, {0, ground}, {ground, 1}};
+constexpr std::pair<BodyId, BodyId> pairs_of_bodies[] = {{0, 1}, {1, 0}, {0, ground}, {ground, 1}};
 
 SpatialLaw random_law(Random& random, bool curved) {
     if (!curved) {
@@ -31,17 +31,17 @@ SpatialLaw random_law(Random& random, bool curved) {
     return law;
 }
 
-struct Case {
+struct Formulated {
     std::string name;
     Model model;  // as compiled
 };
 
-std::vector<Case> cases(Random& random) {
-    std::vector<Case> all;
+std::vector<Formulated> cases(Random& random) {
+    std::vector<Formulated> all;
     for (const Frame frame : frames)
         for (const Angles measure : measures)
             for (const bool curved : {false, true})
-                for (const auto& [i, j] : pairs) {
+                for (const auto& [i, j] : pairs_of_bodies) {
                     Bushing b{{i, random.vector(), random.rotation(1)},
                               {j, random.vector(), random.rotation(1)},
                               random_law(random, curved),
@@ -72,7 +72,7 @@ struct Places {
     std::vector<Pose> centre;
     VectorXd x;
 };
-Places inside(Random& random, const Case& one, double size) {
+Places inside(Random& random, const Formulated& one, double size) {
     const auto& b = std::get<Bushing>(one.model.elastics[0].kind);
     for (;;) {
         Places places{
@@ -86,7 +86,7 @@ Places inside(Random& random, const Case& one, double size) {
     }
 }
 
-Potential potential_at(const Case& one, Chart& chart, const VectorXd& x) {
+Potential potential_at(const Formulated& one, Chart& chart, const VectorXd& x) {
     move_to(chart, x);
     return potential(one.model, nothing_prescribed(one.model), chart);
 }
