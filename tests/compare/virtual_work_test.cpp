@@ -152,10 +152,10 @@ double taken_up(const Bushing& e, const Vector6& driven, const Equilibrium& stat
         return rates.dr[b] + turning(m.body).cross(state.poses[b].p * m.s_local);
     };
     const Eigen::Quaterniond A = pose(state.poses, e.i.body).p * e.i.A_local;
-    const Vector3d D =
+    const Vector3d span =
         position(state.poses, e.j.body, e.j.s_local) - position(state.poses, e.i.body, e.i.s_local);
     Vector3d apart = moving(e.j) - moving(e.i);
-    if (e.formulation.offset_moment) apart -= turning(e.i.body).cross(D);
+    if (e.formulation.offset_moment) apart -= turning(e.i.body).cross(span);
     return (A * stress.head<3>()).dot(apart) +
            (A * stress.tail<3>()).dot(turning(e.j.body) - turning(e.i.body));
 }
