@@ -310,7 +310,8 @@ void find_redundant(const std::vector<int>& joint_of_row, const Repeated& repeat
         std::ranges::stable_sort(shares, std::greater{}, &std::pair<int, double>::second);
     }
     for (Redundancy& r : result.redundant) {
-        const auto [first, end] = std::ranges::equal_range(joint_of_row, r.joint);
+        const auto [first, end] =
+            std::equal_range(joint_of_row.begin(), joint_of_row.end(), r.joint);
         const auto own = Phi.segment(first - joint_of_row.begin(), end - first);
         r.contradicts = !(own.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, result.length));
         // Rows are computed from differences of coordinates, and their directions vary with the

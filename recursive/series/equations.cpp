@@ -430,7 +430,8 @@ void row_of(Order o, PlaneAngleSeries& t, const V3& fixed, const V3& of_cosine, 
 //   ω = θ_x' (1, 0, 0) + θ_y' (0, c, s) + θ_z' (sin θ_y, -s cos θ_y, c cos θ_y)
 //   H = (1, s tan θ_y, -c tan θ_y;  0, c, s;  0, -s / cos θ_y, c / cos θ_y)
 void cardan(BushingSeries& t, Order o) {
-    auto& [x, y, z] = t.angles->axis;
+    auto& axis = t.angles->axis;
+    PlaneAngleSeries &x = axis[0], &y = axis[1], &z = axis[2];
     const Matrix3Series& B = t.angles->B;
     linear(o, x.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(2, 2), -of(B)(1, 2)}; });
     linear(o, x.z, [&](auto of) { return of(B)(0, 2); });
@@ -449,7 +450,8 @@ void cardan(BushingSeries& t, Order o) {
 //      -c_z B_20/r_z, -s_z B_20/r_z, 1)
 // from δB = ω̃ B, r the length of the two entries that define the angle.
 void projected(BushingSeries& t, Order o) {
-    auto& [x, y, z] = t.angles->axis;
+    auto& axis = t.angles->axis;
+    PlaneAngleSeries &x = axis[0], &y = axis[1], &z = axis[2];
     const Matrix3Series& B = t.angles->B;
     linear(o, x.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(2, 2), -of(B)(1, 2)}; });
     linear(o, y.xy, [&](auto of) -> Eigen::Vector2d { return {of(B)(2, 2), of(B)(0, 2)}; });
@@ -468,7 +470,8 @@ void plane_angles(BushingSeries& t, Order o) {
         cardan(t, o);
     else
         projected(t, o);
-    const auto& [x, y, z] = t.angles->axis;
+    const auto& axis = t.angles->axis;
+    const PlaneAngleSeries &x = axis[0], &y = axis[1], &z = axis[2];
     linear(o, t.theta, [&](auto of) -> V3 { return {of(x.angle), of(y.angle), of(z.angle)}; });
 }
 // Σ row_n M'_n
@@ -479,7 +482,8 @@ void moment_of_plane_angles(BushingSeries& t, Order o) {
                [&](auto of) { return of(t.moment_local)[static_cast<Eigen::Index>(n)]; });
         product(o, each.moment, each.row, each.share, scale);
     }
-    const auto& [x, y, z] = t.angles->axis;
+    const auto& axis = t.angles->axis;
+    const PlaneAngleSeries &x = axis[0], &y = axis[1], &z = axis[2];
     linear(o, t.moment_i,
            [&](auto of) -> V3 { return t.E_i * (of(x.share) + of(y.share) + of(z.share)); });
 }

@@ -200,14 +200,17 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
     for (const auto wanted : compare::tolerance_classes)
         if (forced == name(wanted)) kind = wanted, scene.differs = "--class";
     compare::Baseline baseline = was.baseline;
-    const auto misnamed = std::ranges::partition(baseline.limits, [&](const compare::Limit& limit) {
-        return std::ranges::any_of(is.baseline.accepted.series,
-                                   [&](const auto& series) { return is_of(limit, series); });
-    });
+    auto& limits = baseline.limits;
+    const auto misnamed =
+        std::partition(limits.begin(), limits.end(), [&](const compare::Limit& limit) {
+            return std::ranges::any_of(is.baseline.accepted.series,
+                                       [&](const auto& series) { return is_of(limit, series); });
+        });
     std::vector<std::string> unknown;
-    for (const auto& limit : misnamed)
-        unknown.push_back(what_is_there(limit, is.baseline.accepted));
-    baseline.limits.erase(misnamed.begin(), misnamed.end());
+    std::transform(
+        misnamed, limits.end(), std::back_inserter(unknown),
+        [&](const compare::Limit& limit) { return what_is_there(limit, is.baseline.accepted); });
+    limits.erase(misnamed, limits.end());
     scene.verdict = compare::judge(baseline, is.baseline.accepted, kind);
     std::ranges::copy(unknown, std::back_inserter(scene.verdict.reasons));
     scene.changed = compare::changes(was.numbers, is.numbers);

@@ -211,11 +211,12 @@ json figures_json(const compare::Measurement& measurement) {
                 if (place < s.values.size()) values.push_back(shown(s.values[place], s.unit));
             }
             const auto [owner, output] = owner_and_output(s.channel);
-            const auto same = std::ranges::find_if(lines, [&](const FigureLine& line) {
-                const auto [other, of_other] = owner_and_output(line.channels.front());
-                return !owner.empty() && !other.empty() && output == of_other &&
-                       s.unit == line.unit && values == line.values;
-            });
+            const auto same = std::ranges::find_if(
+                lines, [&, &owner = owner, &output = output](const FigureLine& line) {
+                    const auto [other, of_other] = owner_and_output(line.channels.front());
+                    return !owner.empty() && !other.empty() && output == of_other &&
+                           s.unit == line.unit && values == line.values;
+                });
             if (same == lines.end())
                 lines.push_back({{s.channel}, s.unit, values});
             else

@@ -284,9 +284,10 @@ void report_unread(Conversion& c) {
                                 {s.line, std::string(argument) + " of " + s.place().what});
                 continue;
             }
-            const auto known = std::ranges::find_if(without_influence, [&](const auto& some) {
-                return is_in(some.arguments, argument);
-            });
+            const auto known =
+                std::ranges::find_if(without_influence, [&argument = argument](const auto& some) {
+                    return is_in(some.arguments, argument);
+                });
             if (known == std::end(without_influence)) {
                 c.miss(s, fmt::format("{}: not used in combination with the other arguments",
                                       argument));

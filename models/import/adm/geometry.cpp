@@ -13,6 +13,8 @@
 
 namespace elastocheck::importer::adm {
 
+using Eigen::Vector3d;
+
 Vector3d vector(const std::vector<double>& v) {
     return v.empty() ? Vector3d::Zero() : Vector3d(v[0], v[1], v[2]);
 }
@@ -20,7 +22,6 @@ Vector3d vector(const std::vector<double>& v) {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 struct Named {
     std::string_view name;

@@ -136,7 +136,7 @@ void Suspension::report_unread() {
     // (reason, key) -> " of part, part"
     std::map<std::pair<std::string_view, std::string>, std::string> omitted;
     for (const auto& [object, value, path, key] : unread) {
-        const auto known = std::ranges::find_if(without_influence, [&](const auto& some) {
+        const auto known = std::ranges::find_if(without_influence, [&key = key](const auto& some) {
             return std::ranges::find(some.keys, key) != some.keys.end();
         });
         if (known != std::end(without_influence)) {
@@ -151,7 +151,7 @@ void Suspension::report_unread() {
             found != file_.accesses->looked_for.end())
             allowed.assign(found->second.begin(), found->second.end());
         const bool is_known = std::ranges::find(allowed, key) != allowed.end();
-        std::erase_if(allowed, [&](const std::string& name) {
+        std::erase_if(allowed, [&object = object](const std::string& name) {
             return std::ranges::find(object->keys, name) != object->keys.end();
         });
         for (const auto& some : without_influence)
