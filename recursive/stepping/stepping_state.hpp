@@ -346,6 +346,8 @@ bool has_diverged(SteppingState<Real>& s) {
     return s.swings >= guard::swings || too_long || !(turn <= Real(guard::largest_turn));
 }
 
+// Whether the smallest pivot is above rounding, relative to the largest. False for NaN. It holds of a
+// matrix scaled to entries near one: factorise_at() scales anew before it reports a singular one.
 template <class Real>
 bool is_regular(const SteppingState<Real>& s, Real pivot_ratio) {
     return pivot_ratio > std::numeric_limits<Real>::epsilon() * Real(s.n() + s.m());
