@@ -7,7 +7,6 @@
 
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
-#include "tests/models/constraint_values.hpp"
 #include "tests/models/fixtures.hpp"
 
 namespace elastocheck {
@@ -324,67 +323,6 @@ TEST(OnBranch, ATwoWayBranchIsNoneThatALegWalks) {
     EXPECT_FALSE(stands_on(model, model.branches[0]));
     for (const Branch& way : ways(model.branches[0]))
         EXPECT_TRUE(stands_on(on_branch(model, way), way));
-}
-
-// ---- Shipped mechanism scenes: the closed forms in their heads satisfy their constraints.
-
-Model shipped_on_first_branch(const std::string& name) {
-    const Model model = compile(read_scene(std::string(ELASTOCHECK_SCENES) + "/" + name + ".yaml"));
-    return on_branch(model, ways(model.branches.at(0)).back());
-}
-
-// Largest constraint value of the model at these poses, with its driven joint at `value`.
-double worst_constraint(const Model& model, const Poses& poses, double value) {
-    const auto& motion = std::get<Motion>(model.branches.at(0).drivers.at(0).what);
-    const int driven = model.joints.at(static_cast<std::size_t>(motion.joint)).driven;
-    std::vector<ConstraintKind> kinds;
-    for (const Constraint& constraint : model.constraints) kinds.push_back(constraint.kind);
-    ConstraintKind& kind = kinds.at(static_cast<std::size_t>(driven));
-    if (auto* plane = std::get_if<PointInPlane>(&kind)) plane->offset += value;
-    if (auto* angle = std::get_if<DirectionAtAngle>(&kind)) angle->angle += value;
-    return Phi(kinds, poses).cwiseAbs().maxCoeff();
-}
-
-Quaterniond about_y(double angle) { return Quaterniond(AngleAxisd(angle, Vector3d::UnitY())); }
-
-constexpr double degree = std::numbers::pi / 180;
-
-TEST(SliderCrank, MovesAsItsHeadSays) {
-    const Model model = shipped_on_first_branch("slider_crank");
-    const double r = 0.06, l = 0.15;
-    for (int phi = 0; phi <= 360; ++phi) {
-        const double a = phi * degree;
-        const double x = r * std::cos(a) + std::sqrt(l * l - std::pow(r * std::sin(a), 2));
-        const Poses poses{{Vector3d::Zero(), about_y(a)},
-                          {Vector3d(x, 0, 0), Quaterniond::Identity()}};
-        EXPECT_LE(worst_constraint(model, poses, a), 1e-15) << phi;
-        EXPECT_GT(worst_constraint(model, poses, a + 0.01), 1e-3) << "the drive holds the angle";
-    }
-}
-
-TEST(FourBar, MovesAsItsHeadSays) {
-    const Model model = shipped_on_first_branch("four_bar");
-    const double a = 0.04, b = std::hypot(0.1, 0.04), c = 0.08;
-    const Vector3d D(0.1, 0, 0);
-    for (int phi = 0; phi <= 360; ++phi) {
-        const double angle = phi * degree;
-        const Vector3d B = a * Vector3d(std::sin(angle), 0, std::cos(angle)), f = D - B;
-        const double d = f.norm(), u = (b * b - c * c + d * d) / (2 * d);
-        const Vector3d n = Vector3d(-f.z(), 0, f.x()) / d;
-        const Vector3d C = B + u / d * f + std::sqrt(b * b - u * u) * n;
-        const double rocker = std::atan2(C.x() - D.x(), C.z());
-        EXPECT_NEAR((C - D).norm(), c, 1e-15);
-        const Poses poses{{Vector3d::Zero(), about_y(angle)}, {D, about_y(rocker)}};
-        EXPECT_LE(worst_constraint(model, poses, angle), 1e-15) << phi;
-    }
-}
-
-TEST(ArchDriven, ItsApexIsWhereTheGuideSays) {
-    const Model model = shipped_on_first_branch("arch_driven");
-    for (int z = 120; z >= -160; --z) {
-        const Poses poses{{Vector3d(0, 0, z * 1e-3), Quaterniond::Identity()}};
-        EXPECT_LE(worst_constraint(model, poses, (z - 80) * 1e-3), 1e-15) << z;
-    }
 }
 
 }  // namespace

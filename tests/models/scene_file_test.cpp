@@ -224,31 +224,6 @@ TEST(Units, TheSameSceneInAnyUnitsIsTheSameScene) {
         }
 }
 
-TEST(Units, EveryQuantityIsConvertedByItsOwnUnit) {
-    const Scene scene = parsed(scene_in("mm", "deg"));
-    EXPECT_DOUBLE_EQ(k_of(element<AxialSpring>(scene, "free")), 28e3);
-    EXPECT_DOUBLE_EQ(element<AxialSpring>(scene, "free").free_length, 0.75);
-    const auto full = element<Bushing>(scene, "full");
-    EXPECT_DOUBLE_EQ(K_of(full)(0, 0), 1e6);
-    EXPECT_DOUBLE_EQ(K_of(full)(0, 4), 250);
-    EXPECT_DOUBLE_EQ(K_of(full)(4, 0), 250);
-    EXPECT_DOUBLE_EQ(K_of(full)(3, 1), -250);
-    EXPECT_DOUBLE_EQ(K_of(full)(5, 5), 2100);
-    expect_near(element<Bushing>(scene, "rates").preload,
-                (Vector6() << 1, 2, 3, 4, 5, 6).finished(), 1e-15);
-    expect_near(std::get<DeadMoment>(scene.static_loads[1].kind).m, Vector3d(0, 7, 0), 1e-15);
-    // `mixed` is driven by a force, so its moment per newton is a length. `moment` is driven by a
-    // moment.
-    EXPECT_EQ(scene.branches[1].to, -2000);
-    EXPECT_EQ(std::get<DeadForce>(load_of(scene.branches[1].drivers[0]).kind).f,
-              Vector3d(0.6, 0, 0.8));
-    expect_near(std::get<DeadMoment>(load_of(scene.branches[1].drivers[1]).kind).m,
-                Vector3d(0.1, 0, 0.2), 1e-16);
-    EXPECT_DOUBLE_EQ(scene.branches[2].to, 90);
-    EXPECT_EQ(std::get<DeadMoment>(load_of(scene.branches[2].drivers[0]).kind).m,
-              Vector3d(0, 0.6, 0.8));
-}
-
 TEST(Units, OneMomentServesBothKindsOfBranch) {
     const auto with = [](const std::string& length, double arm, double to) {
         return parsed(
@@ -606,23 +581,6 @@ TEST(Text, IsUtf8AndNothingElse) {
 TEST(Text, NamesMayBeOfAnyLanguage) {
     const Scene scene = parsed(replaced(bench_scene, "  tip:", "  Längslenker 2-a+b.c:"));
     EXPECT_EQ(scene.probes.at(0).name, "Längslenker 2-a+b.c");
-}
-
-TEST(Text, ThousandsOfBodiesAreFine) {
-    const int count = 4000;
-    std::string text =
-        "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
-        "0]}\n";
-    text += "bodies:\n";
-    for (int n = 0; n < count; ++n) text += fmt::format("  b{}: {{origin: o}}\n", n);
-    text += "joints:\n  j0: {type: spherical, bodies: [b0, ground], at: o}\n";
-    for (int n = 1; n < count; ++n)
-        text += fmt::format("  j{}: {{type: spherical, bodies: [b{}, b{}], at: o}}\n", n, n, n - 1);
-    text +=
-        "loads: {f: {on: b0, at: o, force: [0, 0, 1]}}\nbranches: {up: {load: f, to: 1, steps: "
-        "1}}\n";
-    text += "probes: {p: {on: b0, at: o}}\n";
-    EXPECT_EQ(parsed(text).bodies.size(), static_cast<std::size_t>(count));
 }
 
 // ---- Files.
