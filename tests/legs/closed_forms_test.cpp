@@ -110,6 +110,28 @@ TEST_P(ClosedForms, Pendulum) {
     });
 }
 
+TEST_P(ClosedForms, SliderCrank) {
+    expect(support::scene("slider_crank"), 0.21, 40, [](double a) -> std::vector<Vector3d> {
+        const double r = 0.06, l = 0.15, height = r * std::sin(a);
+        return {Vector3d(r * std::cos(a), 0, -height),
+                (r * std::cos(a) + std::sqrt(l * l - height * height)) * X};
+    });
+}
+
+TEST_P(ClosedForms, FourBar) {
+    expect(support::scene("four_bar"), 0.1, 40, [](double angle) -> std::vector<Vector3d> {
+        const double b = std::hypot(0.1, 0.04), c = 0.08;
+        const Vector3d B = 0.04 * Vector3d(std::sin(angle), 0, std::cos(angle)), f = 0.1 * X - B;
+        const double d = f.norm(), u = (b * b - c * c + d * d) / (2 * d);
+        return {B, B + u / d * f + std::sqrt(b * b - u * u) * Vector3d(-f.z(), 0, f.x()) / d};
+    });
+}
+
+TEST_P(ClosedForms, ArchDriven) {
+    expect(support::scene("arch_driven"), 0.3, 40,
+           [](double travel) { return std::vector<Vector3d>{(0.08 + travel) * Z}; });
+}
+
 // A pendulum without any element, held by its weight: tan θ = F / W. Its spin is idle.
 TEST_P(ClosedForms, AHangingPendulumIsHeldByItsWeight) {
     if (leg().kind == Leg::recursive) GTEST_SKIP() << "loads an idle mode as drawn";

@@ -5,7 +5,6 @@
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/recursive.hpp"
 #include "tests/legs/legs.hpp"
-#include "tests/support/quadrature.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::legs {
@@ -251,87 +250,7 @@ TEST_P(Drivers, TravelAndLoadMeetAtTheSameStates) {
     }
 }
 
-// ---- Work.
-
-double stored(const Model& model, const Equilibrium& state) {
-    const auto pose = [&](BodyId b) {
-        return b == ground ? Pose{} : state.poses[static_cast<std::size_t>(b)];
-    };
-    double U = 0;
-    for (const auto& elastic : model.elastics) {
-        if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {
-            const double x = (position(state, spring->j) - position(state, spring->i)).norm() -
-                             spring->free_length;
-            U += std::get<LinearRate>(spring->law).k * x * x / 2;
-            continue;
-        }
-        const auto& b = std::get<Bushing>(elastic.kind);
-        const Quaterniond A_i = pose(b.i.body).p * b.i.A_local,
-                          A_j = pose(b.j.body).p * b.j.A_local;
-        const Eigen::AngleAxisd turn(A_i.conjugate() * A_j);
-        Vector6 e;
-        e << A_i.conjugate() * (position(state, {b.j.body, b.j.s_local}) -
-                                position(state, {b.i.body, b.i.s_local})),
-            turn.angle() * turn.axis();
-        U += e.dot(std::get<LinearStiffness>(b.law).K * e) / 2 + b.preload.dot(e);
-    }
-    return U;
-}
-
-// ∫ (effort of the driver) da is the energy stored: a jack, ∂U/∂ℓ₀ = -u'(ℓ - ℓ₀), ∂U/∂a = bᵀ e of a
-// preload b. The work is Boole's rule on 64 steps, whose error is below 1e-9.
-TEST_P(Drivers, TheWorkOfADriverIsTheEnergyStored) {
-    struct Case {
-        Scene scene;
-        Driver driver;
-        double to;
-        std::function<void(Scene&, double)> set;  // the scene with the driver's input at a
-    };
-    const Scene strut = support::scene("chrono_mcpherson"), jacked = with_jack(strut),
-                mount = support::scene("single_bushing");
-    Vector6 direction;
-    direction << 300, -200, 500, 10, -20, 5;
-    const auto nothing = [](Scene&, double) {};
-    const Case cases[] = {
-        {jacked, motion_of(jacked, "jack", 1), 0.09, nothing},
-        {jacked, motion_of(jacked, "jack", 1), -0.1, nothing},
-        {strut,
-         {FreeLength{0}, 0, 1},
-         0.03,
-         [](Scene& s, double a) { std::get<AxialSpring>(s.elastics[0].kind).free_length += a; }},
-        {mount, {Preload{0, direction}, 0, 1}, 2, [&](Scene& s, double a) {
-             bushing_of(s.elastics[0]).preload += a * direction;
-         }}};
-    constexpr int steps = 64;
-    for (const auto& [scene, driver, to, set] : cases) {
-        const OneWay side = driven(scene, {driver}, to);
-        const auto path = solved(leg(), side, steps);
-        ASSERT_EQ(path.points.size(), steps + 1u);
-        const auto at = [&](double a) {
-            Scene now = scene;
-            set(now, a);
-            return compile(now);
-        };
-        const double h = 1e-3 * to;
-        double work = 0;
-        for (int k = 0; k <= steps; ++k) {
-            const Equilibrium& state = path.points[static_cast<std::size_t>(k)];
-            // ∂U/∂a at fixed poses is quadratic in a for every driver of elements here.
-            const double effort =
-                std::holds_alternative<Motion>(driver.what)
-                    ? state.reactions.back().force.z()
-                    : (stored(at(state.load + h), state) - stored(at(state.load - h), state)) /
-                          (2 * h);
-            const double weight[] = {k == 0 || k == steps ? 7. : 14., 32, 12, 32};
-            work += to / steps * 2 / 45 * weight[k % 4] * effort;
-        }
-        const double U = stored(at(to), path.points.back()) - stored(at(0), path.points.front());
-        EXPECT_GT(std::abs(U), 1e-3);
-        EXPECT_NEAR(work / U, 1, 1e-9) << to;
-    }
-}
-
-// ---- Elements.
+// ---- Elements. That the work of a driver is the energy stored: tests/compare/virtual_work_test.cpp.
 
 // Two springs in line under a weight: k₁ (z - a) + k₂ z = -W.
 TEST_P(Drivers, AFreeLengthShiftsABlockByItsShareOfTheRates) {

@@ -19,16 +19,9 @@ using Frame = Formulation::Frame;
 
 // ---- The stated laws.
 
-Real force(const Curve& f, Real x) {
-    std::size_t k = 0;
-    while (k < f.knots.size() && static_cast<Real>(f.knots[k]) <= x) ++k;
-    const auto& c = f.pieces[k];
-    const Real h = x - static_cast<Real>(f.knots[k == 0 ? 0 : k - 1]);
-    return c[0] + h * (c[1] + h * (c[2] + h * c[3]));
-}
 Real force(const ScalarLaw& law, Real x) {
     const auto* line = std::get_if<LinearRate>(&law);
-    return line != nullptr ? static_cast<Real>(line->k) * x : force(std::get<Curve>(law), x);
+    return line != nullptr ? static_cast<Real>(line->k) * x : stated_force(std::get<Curve>(law), x);
 }
 // ∫₀ˣ f by Simpson's rule from knot to knot, which is exact for cubics.
 Real energy(const ScalarLaw& law, Real x) {

@@ -40,8 +40,9 @@ std::vector<Leg> legs_by_every_method() {
 EquilibriumPath solve(const Leg& leg, const OneWay& side, int steps) {
     if (leg.kind == Leg::recursive)
         return rec::solve(side.model, side.branch, {.method = leg.method, .steps = steps});
-    std::vector<double> values;
-    for (int k = 0; k <= steps; ++k) values.push_back(side.branch.to * k / steps);
+    return solve(leg, side, every_point(side.branch, steps));
+}
+EquilibriumPath solve(const Leg& leg, const OneWay& side, std::span<const double> values) {
     return leg.kind == Leg::energy ? reference::energy::solve(side.model, side.branch, values)
                                    : reference::equilibrium::solve(side.model, side.branch, values);
 }
@@ -79,33 +80,16 @@ EquilibriumPath solved(const Leg& leg, const OneWay& side, int steps, double bal
                        {NAN,
                         {side.model.bodies.size(), Pose{none}},
                         {side.model.joints.size(), Wrench{none, none}}});
+    if (!leg.exact()) return path;
     Worst geometry, forces;
-    if (leg.exact())
-        for (const auto& state : path.points) {
-            const Residuals left = residuals(leg, side, state);
-            geometry.see(std::fmax(left.length, left.direction), state.load);
-            forces.see(std::fmax(left.force, left.moment), state.load);
-        }
+    for (const auto& state : path.points) {
+        const Residuals left = residuals(leg, side, state);
+        geometry.see(std::fmax(left.length, left.direction), state.load);
+        forces.see(std::fmax(left.force, left.moment), state.load);
+    }
     EXPECT_TRUE(within(geometry, 1e-10));
     EXPECT_TRUE(within(forces, leg.wider(balance)));
     return path;
-}
-
-Bushing bushing(const Marker& i, const Marker& j, const Vector3d& rates,
-                const Vector3d& rotational) {
-    LinearStiffness law;
-    law.K.diagonal() << rates, rotational;
-    return {i, j, law};
-}
-
-Scene hinged_bar(const Vector3d& tip, const Vector3d& axis, double k_R) {
-    Scene s;
-    s.name = "hinged bar";
-    s.bodies = {{"bar", {}}};
-    s.joints = {{"hinge", Revolute{{0}, {ground}, {0, axis}, {ground, axis}}}};
-    s.elastics = {{"torsion", bushing({0}, {ground}, Vector3d::Zero(), Vector3d::Constant(k_R))}};
-    s.probes = {{"tip", {0, tip}}};
-    return s;
 }
 
 Scene block(const std::vector<ScalarLaw>& laws) {
@@ -144,12 +128,6 @@ Scene with_rack(Scene s) {
     return s;
 }
 
-Vector3d position(const Equilibrium& state, const Point& p) {
-    if (p.body == ground) return p.s_local;
-    const Pose& pose = state.poses.at(static_cast<std::size_t>(p.body));
-    return pose.r + pose.p * p.s_local;
-}
-
 std::size_t joint_named(const Model& model, const std::string& name) {
     for (std::size_t k = 0; k < model.joints.size(); ++k)
         if (model.joints[k].name == name) return k;
@@ -164,15 +142,6 @@ double distance(const Equilibrium& a, const Equilibrium& b, BodyId idle) {
             worst = std::max({worst, (a.poses[k].r - b.poses[k].r).norm(),
                               a.poses[k].p.angularDistance(b.poses[k].p)});
     return worst;
-}
-
-Matrix6 Random::stiffness() {
-    const Matrix6 root = Matrix6::NullaryExpr([&] { return (*this)(); });
-    Vector6 units;
-    units << Vector3d::Constant(400), Vector3d::Constant(30);
-    const Matrix6 K = units.asDiagonal() * (root * root.transpose() + 0.3 * Matrix6::Identity()) *
-                      units.asDiagonal();
-    return (K + K.transpose()) / 2;
 }
 
 }  // namespace elastocheck::legs

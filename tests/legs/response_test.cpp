@@ -7,7 +7,6 @@ namespace elastocheck::legs {
 namespace {
 
 using Eigen::VectorXd;
-using support::apart, support::at_wheel, support::bare, support::stacked;
 
 struct LinearResponse : LegTest {
     Equilibrium end_of(const OneWay& side) const { return solved(leg(), side, 1).points.back(); }
@@ -207,6 +206,15 @@ TEST_P(LinearResponse, AnOffsetThatASecondJointHoldsIsInconsistent) {
     const Response response = respond(side, {0, {side.model.bodies[0].design}, {}, 0}, Motion{1});
     EXPECT_EQ(response.outcome, Outcome::inconsistent_constraints);
     EXPECT_TRUE(contains(response.detail, "moving 'jack'")) << response.detail;
+}
+
+TEST_P(LinearResponse, RedundantJointsThatAgreeChangeNothing) {
+    Scene once = support::scene("pinned_bar"), twice = once;
+    twice.joints.push_back(
+        {"second hinge", Revolute{{0, 0.3 * Y}, {ground, 0.3 * Y}, {0, Y}, ground_y}});
+    const Equilibrium state = end_of(side_of(once));
+    const UnitWrench lift{{0, 0.8 * X}, {0.2, 1, 1}, {1, 2, 3}};
+    EXPECT_LE(apart(one(side_of(twice), state, lift), one(side_of(once), state, lift)), 1e-12);
 }
 
 TEST_P(LinearResponse, WhatIsNotFiniteOrNotOfTheModelIsRefused) {

@@ -7,25 +7,6 @@
 namespace elastocheck::legs {
 namespace {
 
-// f = 0 up to the clearance c, k (x - c) beyond; reversed for c < 0.
-Curve stop(double c, double k) {
-    const std::array<double, 4> open{}, closed{0, k, 0, 0};
-    return c >= 0 ? Curve{{c}, {open, closed}} : Curve{{c}, {closed, open}};
-}
-
-// f and its slopes at the knots, cubics between, linear outside.
-Curve through(const std::vector<double>& x, const std::vector<double>& f,
-              const std::vector<double>& slope) {
-    Curve curve{x, {{f[0], slope[0], 0, 0}}};
-    for (std::size_t k = 0; k + 1 < x.size(); ++k) {
-        const double h = x[k + 1] - x[k], chord = (f[k + 1] - f[k]) / h;
-        curve.pieces.push_back({f[k], slope[k], (3 * chord - 2 * slope[k] - slope[k + 1]) / h,
-                                (slope[k] + slope[k + 1] - 2 * chord) / (h * h)});
-    }
-    curve.pieces.push_back({f.back(), slope.back(), 0, 0});
-    return curve;
-}
-
 struct Stops : LegTest {
     void expect_heights(const Scene& scene, double to, int steps,
                         const std::function<double(double)>& z, double limit = 1e-14) const {
@@ -87,14 +68,8 @@ TEST_P(Stops, ASpringFollowsItsCurve) {
         }
         for (std::size_t k = 0; k + 1 < x.size(); ++k)  // f increases over every piece
             slope[k] = std::min(slope[k], 1.5 * (f[k + 1] - f[k]) / (x[k + 1] - x[k]));
-        const Curve curve = through(x, f, slope);
-        const auto force = [&](double z) {
-            std::size_t k = 0;
-            while (k < x.size() && z >= x[k]) ++k;
-            const auto& c = curve.pieces[k];
-            const double h = z - x[k == 0 ? 0 : k - 1];
-            return c[0] + h * (c[1] + h * (c[2] + h * c[3]));
-        };
+        const Curve curve = hermite(x, f, slope);
+        const auto force = [&](double z) { return stated_force(curve, z); };
         Scene scene = block({curve});
         for (const double to : {force(0.07), force(-0.07)})
             expect_heights(
