@@ -1,38 +1,8 @@
 // Interval proofs of whole branches as one curve, and of limit points.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "compare/comparison/legs.hpp"
-#include "elastocheck/compile.hpp"
-#include "elastocheck/equilibrium.hpp"
-#include "elastocheck/trim.hpp"
-#include "models/branch.hpp"
-#include "reference/certificate/certificate.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/reference/certificate/sides.hpp"
 
 namespace elastocheck::reference::certificate {
 namespace {
-
-using Eigen::Vector3d;
-
-struct Walked {
-    Model model;
-    Branch branch;
-    std::vector<Equilibrium> points;
-};
-std::vector<Walked> walked(const std::string& scene, int points) {
-    const Model model = compile(compare::trim(support::scene(scene)).scene);
-    std::vector<Walked> all;
-    for (const auto& branch : model.branches)
-        for (const auto& way : compare::sides_of(model, branch, points)) {
-            compare::SolverSettings solver;
-            solver.leg = compare::Leg::equilibrium;
-            const EquilibriumPath path = compare::walk(way, solver);
-            EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
-            all.push_back({way.model, way.branch, path.points});
-        }
-    return all;
-}
 
 TEST(CertifyBranch, TheWholeMcPhersonBranchIsOneCurveWithinAMillionthOfAMillimetre) {
     for (const auto& walk : walked("mcpherson", 300)) {
@@ -76,23 +46,18 @@ struct Arch {
         return std::sqrt(l * l - b * b);
     }
 };
-struct OnArch {
-    Model model;
-    Branch branch;
+struct OnArch : Side {
+    using Side::Side;
     Equilibrium at(double z, double load) const {
-        Equilibrium state;
-        state.load = load;
-        state.poses = {model.bodies[0].design};
+        Equilibrium state = drawn(load);
         state.poses[0].r[2] = z;
-        state.reactions.resize(model.joints.size());
         return state;
     }
 };
 OnArch arch() {
-    const Model model = compile(support::scene("two_spring_arch"));
-    Branch way = model.branches.front();
-    way.to = -1500;
-    return {on_branch(model, way), way};
+    Model model = compile(support::scene("two_spring_arch"));
+    model.branches.front().to = -1500;
+    return OnArch(model);
 }
 
 TEST(CertifyLimitPoint, TheArchsLimitIsEnclosedToTheLastDigits) {
@@ -139,15 +104,13 @@ TEST(Certificate, PointsOfTheArchAreProvedUpToTheirLimit) {
         for (const bool standing : {true, false}) {
             // The error of the closed form in doubles is an ulp of the load over the remaining
             // stiffness.
-            const Certificate c =
-                certify(on.model, on.branch, on.at(height(load, standing), load), {.length = 1e-7});
+            const Certificate c = on.certify(on.at(height(load, standing), load), {.length = 1e-7});
             EXPECT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
             EXPECT_EQ(c.stable, standing) << share;
         }
     }
     // No equilibrium beyond the limit.
-    const Certificate past =
-        certify(on.model, on.branch, on.at(Arch::limit_height(), limit * (1 + 1e-6)));
+    const Certificate past = on.certify(on.at(Arch::limit_height(), limit * (1 + 1e-6)));
     EXPECT_EQ(past.answer, Answer::excluded) << past.detail;
 }
 
@@ -160,7 +123,7 @@ TEST(Certificate, OfTheArchNoneIsSaidToBeAloneFartherThanItIs) {
         const double load = limit * (1 - share), high = height(load, true),
                      low = height(load, false);
         for (const double z : {high, low}) {
-            const Certificate c = certify(on.model, on.branch, on.at(z, load), {.length = 1e-7});
+            const Certificate c = on.certify(on.at(z, load), {.length = 1e-7});
             ASSERT_EQ(c.answer, Answer::proved) << share << ": " << c.detail;
             EXPECT_LT(c.unique.length, 0.51 * (high - low)) << share;
             EXPECT_GT(c.unique.length, 0.02 * (high - low)) << share;
@@ -178,7 +141,7 @@ TEST(Certificate, AllThreeEquilibriaOfTheArchAreProvedEachByItself) {
     }();
     const double heights[] = {height(load, true), height(load, false), below};
     for (int k = 0; k < 3; ++k) {
-        const Certificate c = certify(on.model, on.branch, on.at(heights[k], load));
+        const Certificate c = on.certify(on.at(heights[k], load));
         EXPECT_EQ(c.answer, Answer::proved) << k << c.detail;
         EXPECT_EQ(c.stable, k != 1) << k;
         for (int other = 0; other < 3; ++other)

@@ -1,16 +1,6 @@
 // Interval proofs at corners: stops that close, at a point and along a branch.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "compare/comparison/legs.hpp"
-#include "elastocheck/compile.hpp"
-#include "elastocheck/equilibrium.hpp"
-#include "elastocheck/read_scene.hpp"
-#include "elastocheck/trim.hpp"
-#include "models/branch.hpp"
-#include "reference/certificate/certificate.hpp"
 #include "reference/certificate/state.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/reference/certificate/sides.hpp"
 
 namespace elastocheck::reference::certificate {
 namespace {
@@ -35,16 +25,12 @@ struct Slider {
             k, c, k_s);
     }
 };
-struct OnSlider {
-    Model model;
-    Branch branch;
+struct OnSlider : Side {
+    using Side::Side;
     // Closed form of the state of slider `other`.
     Equilibrium state(double F, const Slider& other) const {
-        Equilibrium state;
-        state.load = F;
-        state.poses = {model.bodies[0].design};
+        Equilibrium state = drawn(F);
         state.poses[0].r[2] += 1e-3 * other.at(F);
-        state.reactions.resize(model.joints.size());
         return state;
     }
     Tube tube(const Slider& other, double step = 10, double last = 100) const {
@@ -53,11 +39,7 @@ struct OnSlider {
         return certify_branch(model, branch, states);
     }
 };
-OnSlider on_slider(const Slider& slider) {
-    const Model model = compile(parse_scene(slider.scene(), "test.yaml"));
-    const Branch way = ways(model.branches.front()).front();
-    return {on_branch(model, way), way};
-}
+OnSlider on_slider(const Slider& slider) { return OnSlider(slider.scene()); }
 
 TEST(CertifyBranch, GoesThroughAStopThatClosesHoweverStiffItIs) {
     for (const double k_s : {2., 400., 2e4, 2e6})
@@ -116,7 +98,7 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
         const Slider slider{20, k_s, 1};
         const OnSlider way = on_slider(slider);
         for (const double by : {0., 1e-12, -1e-12, 1e-9, -1e-9, 1e-3, -1e-3}) {
-            const Certificate c = certify(way.model, way.branch, way.state(20 + by, slider));
+            const Certificate c = way.certify(way.state(20 + by, slider));
             EXPECT_EQ(c.answer, Answer::proved) << k_s << " " << by << ": " << c.detail;
             // 1e-9 N beyond the corner a stop of 2e9 N/m is compressed by 5e-19 m: doubles cannot
             // resolve the side.
@@ -126,24 +108,20 @@ TEST(Certificate, APointOnTheCornerIsProvedAndOneBesideItIsNot) {
         for (const double by : {1e-8, -1e-8, 1e-6, -1e-6}) {
             Equilibrium wrong = way.state(20, slider);
             wrong.poses[0].r[2] += by;
-            const Certificate c = certify(way.model, way.branch, wrong);
+            const Certificate c = way.certify(wrong);
             EXPECT_EQ(c.answer, Answer::excluded) << k_s << " " << by << ": " << c.detail;
         }
     }
 }
 
 // An arm on one bushing that is soft at first in all directions, and at its corner in some.
-OnSlider cornered(const Formulation& formulation) {
-    const Model model = compile(parse_scene(
+Side cornered(const Formulation& formulation) {
+    Side at(
         "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
         "points: {o: [0, 0, 0], p: [300, 100, 0]}\nbodies: {arm: {origin: p}}\n"
         "bushings: {b: {bodies: [arm, ground], at: o, rates: [100, 200, 300], rotational_rates: "
-        "[7e5, 5e5, "
-        "4e5]}}\nloads: {push: {on: arm, at: p, force: [0.3, 0.2, 1]}}\n"
-        "branches: {up: {load: push, to: 600, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n",
-        "test.yaml"));
-    Branch way = ways(model.branches.front()).front();
-    OnSlider at{on_branch(model, way), way};
+        "[7e5, 5e5, 4e5]}}\nloads: {push: {on: arm, at: p, force: [0.3, 0.2, 1]}}\n"
+        "branches: {up: {load: push, to: 600, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n");
     auto& bushing = std::get<Bushing>(at.model.elastics[0].kind);
     bushing.formulation = formulation;
     const auto K = std::get<LinearStiffness>(bushing.law).K;
@@ -167,13 +145,11 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
             for (const bool conjugate : {true, false})
                 for (const bool offset : {true, false}) {
                     if (frame == F::Frame::middle && !conjugate) continue;
-                    const OnSlider at = cornered({frame, angles, conjugate, offset});
+                    const Side at = cornered({frame, angles, conjugate, offset});
                     const System plain = make_system(at.model, at.branch),
                                  apart = make_system(at.model, at.branch, Corners::apart);
                     ASSERT_EQ(apart.apart.size(), 6U);
-                    Equilibrium state;
-                    state.load = 70;
-                    state.poses = {at.model.bodies[0].design};
+                    Equilibrium state = at.drawn(70);
                     state.poses[0].r += Eigen::Vector3d(2e-3, 5e-5, -3e-4);
                     state.poses[0].p = Eigen::Quaterniond(Eigen::AngleAxisd(
                                            0.3, Eigen::Vector3d(1, -2, 0.02).normalized())) *
@@ -195,7 +171,7 @@ TEST(CertificateEquations, SetApartALawDoesWhatItDoesInItsPlace) {
 }
 
 TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
-    const OnSlider at = cornered({});
+    const Side at = cornered({});
     std::vector<double> loads;
     for (int k = 0; k <= 60; ++k) loads.push_back(10. * k);
     const EquilibriumPath path = equilibrium::solve(at.model, at.branch, loads);
@@ -204,7 +180,7 @@ TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
     EXPECT_EQ(tube.answer, Answer::proved) << tube.detail;
     EXPECT_GE(tube.corners, 3);
     for (const auto& point : path.points) {
-        const Certificate c = certify(at.model, at.branch, point);
+        const Certificate c = at.certify(point);
         EXPECT_EQ(c.answer, Answer::proved) << point.load << c.detail;
         EXPECT_TRUE(c.stable) << point.load;
     }
@@ -212,7 +188,7 @@ TEST(CertifyBranch, GoesThroughTheCornersOfABushingOneAfterTheOther) {
 
 // Every piece would have to cross the corner, without end.
 TEST(CertifyBranch, AWayThatStaysOnACornerIsProvedOrGivenUp) {
-    const Model model = compile(parse_scene(R"(
+    const Side at(R"(
 elastocheck: 1
 name: corner at rest
 units: {length: mm, angle: deg, force: N}
@@ -234,13 +210,11 @@ branches:
   up: {load: vertical, to: 300, steps: 10}
 probes:
   centre: {on: plate, at: head}
-)",
-                                            "zero.yaml"));
-    const Branch way = ways(model.branches.front()).front();
-    const Model there = on_branch(model, way);
-    const auto path = equilibrium::solve(there, way, std::vector<double>{0, 100, 200, 300});
+)");
+    const auto path =
+        equilibrium::solve(at.model, at.branch, std::vector<double>{0, 100, 200, 300});
     ASSERT_EQ(path.outcome, Outcome::converged);
-    const Tube tube = certify_branch(there, way, path.points);
+    const Tube tube = certify_branch(at.model, at.branch, path.points);
     EXPECT_TRUE(tube.answer == Answer::proved ||
                 tube.detail.find("stays on a knot") != tube.detail.npos)
         << tube.detail;
@@ -251,23 +225,15 @@ struct Proved {
 };
 Proved prove_every_way(const std::vector<std::string>& scenes) {
     Proved count;
-    for (const auto& scene : scenes) {
-        const Model model = compile(compare::trim(support::scene(scene)).scene);
-        for (const auto& branch : model.branches)
-            for (const auto& way : compare::sides_of(model, branch, 4)) {
-                compare::SolverSettings solver;
-                solver.leg = compare::Leg::equilibrium;
-                const EquilibriumPath path = compare::walk(way, solver);
-                EXPECT_EQ(path.outcome, Outcome::converged)
-                    << scene << " " << way.name << path.detail;
-                const Tube tube = certify_branch(way.model, way.branch, path.points);
-                EXPECT_LE(tube.width.length, 1e-9) << scene << " " << way.name;
-                ++count.ways;
-                EXPECT_EQ(tube.answer, Answer::proved)
-                    << scene << " '" << way.name << "': " << tube.detail;
-                count.with_corners += static_cast<int>(tube.corners > 0);
-            }
-    }
+    for (const auto& scene : scenes)
+        for (const auto& walk : walked(scene, 4)) {
+            const Tube tube = certify_branch(walk.model, walk.branch, walk.points);
+            EXPECT_EQ(tube.answer, Answer::proved)
+                << scene << " '" << walk.branch.name << "': " << tube.detail;
+            EXPECT_LE(tube.width.length, 1e-9) << scene << " " << walk.branch.name;
+            ++count.ways;
+            count.with_corners += static_cast<int>(tube.corners > 0);
+        }
     return count;
 }
 

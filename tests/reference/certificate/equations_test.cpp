@@ -1,37 +1,11 @@
 // Equations of the certificate: exact stored numbers, redundant joints, knots, formulations,
 // followers.
-#include <gtest/gtest.h>
-
-#include <fmt/format.h>
-
-#include "compare/comparison/legs.hpp"
-#include "elastocheck/compile.hpp"
-#include "elastocheck/equilibrium.hpp"
-#include "elastocheck/read_scene.hpp"
-#include "models/branch.hpp"
-#include "reference/certificate/certificate.hpp"
 #include "reference/certificate/stability.hpp"
 #include "reference/certificate/state.hpp"
+#include "tests/reference/certificate/sides.hpp"
 
 namespace elastocheck::reference::certificate {
 namespace {
-
-using Eigen::Vector3d;
-
-struct On {
-    Model model;
-    Branch branch;
-    Equilibrium solved(double a) const {
-        const auto path = equilibrium::solve(model, branch, std::span(&a, 1));
-        EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
-        return path.points.empty() ? Equilibrium{} : path.points[0];
-    }
-};
-On on(const std::string& scene) {
-    const Model model = compile(parse_scene(scene, "test.yaml"));
-    const Branch way = ways(model.branches.front()).front();
-    return {on_branch(model, way), way};
-}
 
 std::string swing(const std::string& joints, const std::string& elements = "") {
     return "elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
@@ -54,7 +28,7 @@ bool holds_product(const Interval& x, double a, double b) {
 }
 
 TEST(CertificateEquations, WhatADriverMovesIsNotRoundedBeforehand) {
-    On way = on(swing(hinge, "bushings: {b: {bodies: [arm, ground], at: p, rates: [1, 1, 1]}}"));
+    Side way(swing(hinge, "bushings: {b: {bodies: [arm, ground], at: p, rates: [1, 1, 1]}}"));
     Vector6 direction;
     direction << 0.1, 0.7, -1. / 3, 3e-5, 1e7 / 3, 0.3;
     way.branch.drivers.push_back({Preload{0, direction}, 0.3, 1. / 7});
@@ -69,9 +43,9 @@ TEST(CertificateEquations, WhatADriverMovesIsNotRoundedBeforehand) {
 }
 
 TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradictionsAreNot) {
-    On way = on(swing(hinge + ", " + hinge_again));
+    Side way(swing(hinge + ", " + hinge_again));
     const Equilibrium state = way.solved(500);
-    const Certificate c = certify(way.model, way.branch, state);
+    const Certificate c = way.certify(state);
     EXPECT_EQ(c.answer, Answer::proved) << c.detail;
     EXPECT_NE(c.detail.find("are redundant"), std::string::npos) << c.detail;
     EXPECT_GT(c.gap, 0);
@@ -83,25 +57,25 @@ TEST(CertificateEquations, JointsThatHoldTwiceAreProvedWithTheirGapAndContradict
         if (auto* points = std::get_if<CoincidentPoints>(&constraint.kind))
             if (points->j.s_local[1] > 0.1 || points->i.s_local[1] > 0.05)
                 points->j.s_local[1] += 1e-6;
-    const Certificate apart = certify(way.model, way.branch, state);
+    const Certificate apart = way.certify(state);
     EXPECT_EQ(apart.answer, Answer::excluded) << apart.detail;
 }
 
 // A rod on a ball joint, held by two springs at its other end, is free to spin about the line
 // between. Its origin lies beside that line.
 TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExcluded) {
-    On way =
-        on("elastocheck: 1\nname: rod\nunits: {length: mm, angle: deg, force: N}\n"
-           "points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, "
-           "-400, 100]}\n"
-           "bodies: {rod: {origin: q}}\njoints: {ball: {type: spherical, bodies: [rod, ground], "
-           "at: o}}\n"
-           "springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},\n"
-           "          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}\n"
-           "loads: {push: {on: rod, at: p, force: [0, 0, 1]}}\n"
-           "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: rod, at: p}}\n");
+    const Side way(
+        "elastocheck: 1\nname: rod\nunits: {length: mm, angle: deg, force: N}\n"
+        "points: {o: [0, 0, 0], p: [300, 0, 0], q: [150, 80, 0], s: [300, 100, 400], t: [300, "
+        "-400, 100]}\n"
+        "bodies: {rod: {origin: q}}\njoints: {ball: {type: spherical, bodies: [rod, ground], "
+        "at: o}}\n"
+        "springs: {a: {bodies: [rod, ground], from: p, to: s, rate: 30},\n"
+        "          b: {bodies: [rod, ground], from: p, to: t, rate: 20}}\n"
+        "loads: {push: {on: rod, at: p, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: rod, at: p}}\n");
     const Equilibrium state = way.solved(300);
-    const Certificate c = certify(way.model, way.branch, state);
+    const Certificate c = way.certify(state);
     ASSERT_EQ(c.answer, Answer::proved) << c.detail;
     EXPECT_NE(c.detail.find("idle motion of 'rod' as in the state"), std::string::npos) << c.detail;
     const Pose& design = way.model.bodies[0].design;
@@ -114,7 +88,7 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
         spun.poses[0].p = turn * rod.p;
         if (origin_too)
             spun.poses[0].r = straight ? Vector3d(rod.r + angle * axis.cross(rod.r)) : turn * rod.r;
-        return certify(way.model, way.branch, spun);
+        return way.certify(spun);
     };
     for (const double angle : {1e-6, 1e-3, 0.3, -2.}) {
         // Each is another equilibrium with its own spin.
@@ -140,14 +114,14 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
 // A stop that the load just closes: at its knot, where the slopes jump, and on both sides.
 TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
     const auto stopped = [](double rate) {
-        return on(swing(
+        return Side(swing(
             hinge,
             fmt::format("springs: {{coil: {{bodies: [arm, ground], from: p, to: t, rate: 30}}}}\n"
                         "stops: {{s: {{bodies: [arm, ground], from: p, to: t, bump: {{clearance: "
                         "10, rate: {}}}}}}}",
                         rate)));
     };
-    On way = stopped(500);
+    const Side way = stopped(500);
     // Load at which the spring is 10 mm shorter, by bisection.
     double low = 0, high = 1000;
     const auto gap = [&](const Equilibrium& state) {
@@ -161,13 +135,13 @@ TEST(CertificateEquations, AStateOnTheKnotOfAStopIsProvedAndABranchOverIt) {
         (gap(way.solved((low + high) / 2)) > 0 ? low : high) = (low + high) / 2;
     bool said = false;
     for (const double by : {0., 1e-13, -1e-13, 1e-10, -1e-10, 1e-3, -1e-3}) {
-        const Certificate c = certify(way.model, way.branch, way.solved(low * (1 + by)));
+        const Certificate c = way.certify(way.solved(low * (1 + by)));
         EXPECT_EQ(c.answer, Answer::proved) << by << c.detail;
         EXPECT_TRUE(c.stable) << by;
         said = said || c.detail.find("on a knot") != std::string::npos;
     }
     EXPECT_TRUE(said);
-    const auto tube_of = [](const On& of) {
+    const auto tube_of = [](const Side& of) {
         std::vector<Equilibrium> states;
         for (int k = 0; k <= 10; ++k) states.push_back(of.solved(100. * k));
         return certify_branch(of.model, of.branch, states);
@@ -186,7 +160,7 @@ TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) 
             for (const bool conjugate : {true, false})
                 for (const bool offset : {true, false}) {
                     if (frame == F::Frame::middle && !conjugate) continue;
-                    On way = on(swing(
+                    Side way(swing(
                         "",
                         "bushings: {b: {bodies: [arm, ground], at: o, rates: [1000, 2000, 3000], "
                         "rotational_rates: [7e5, 5e5, 4e5]}}"));
@@ -196,7 +170,7 @@ TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) 
                     bushing.j.A_local = Eigen::Quaterniond(0.9, 0.3, 0.1, -0.2).normalized();
                     bushing.undeformed << 1e-3, -2e-3, 0, 0.1, 0.2, -0.1;
                     for (const double a : {0., 300., 1000.}) {
-                        const Certificate c = certify(way.model, way.branch, way.solved(a));
+                        const Certificate c = way.certify(way.solved(a));
                         EXPECT_EQ(c.answer, Answer::proved) << a << c.detail;
                         proved += c.answer == Answer::proved;
                     }
@@ -205,13 +179,13 @@ TEST(CertificateEquations, EveryFormulationIsTheOneThatTheEquilibriumLegSolves) 
 }
 
 TEST(CertificateEquations, WhereATableEndsNothingIsProved) {
-    On way = on(swing(hinge));
+    Side way(swing(hinge));
     auto& spring = std::get<AxialSpring>(way.model.elastics[0].kind);
     const Equilibrium state = way.solved(500);
-    ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
+    ASSERT_EQ(way.certify(state).answer, Answer::proved);
     spring.law = Curve{
         {-1e-6, 1e-6}, {{0., 30e3, 0., 0.}, {-0.03, 30e3, 0., 0.}, {0.03, 30e3, 0., 0.}}, false};
-    const Certificate c = certify(way.model, way.branch, state);
+    const Certificate c = way.certify(state);
     EXPECT_EQ(c.answer, Answer::open);
     EXPECT_NE(c.detail.find("ends here"), std::string::npos) << c.detail;
 }

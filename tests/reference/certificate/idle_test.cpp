@@ -1,41 +1,15 @@
 // Certificates of soft, idle and nearly redundant models: only structurally idle motions and
 // redundant rows are held, never soft motions, however stiff their neighbours are.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "elastocheck/compile.hpp"
-#include "elastocheck/energy.hpp"
-#include "elastocheck/equilibrium.hpp"
-#include "elastocheck/read_scene.hpp"
-#include "models/branch.hpp"
-#include "reference/certificate/certificate.hpp"
 #include "reference/certificate/statement/system.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/reference/certificate/sides.hpp"
 
 namespace elastocheck::reference::certificate {
 namespace {
 
-using Eigen::Vector3d;
-
-struct AtIdle {
-    Model model;
-    Branch branch;
-};
-AtIdle at_idle(const std::string& scene) {
-    const Model model = compile(parse_scene(scene, "test.yaml"));
-    const Branch way = ways(model.branches.front()).front();
-    return {on_branch(model, way), way};
-}
-Equilibrium solved(const AtIdle& way, double a) {
-    const auto path = equilibrium::solve(way.model, way.branch, std::span(&a, 1));
-    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
-    return path.points.empty() ? Equilibrium{} : path.points[0];
-}
-
 // A body on one bushing in a turned frame, pulled along the frame's z.
 const Vector3d along = Vector3d(1, 2, 3).normalized();
-AtIdle hung(double stiff, double soft, double load) {
-    return at_idle(fmt::format(
+Side hung(double stiff, double soft, double load) {
+    return Side(fmt::format(
         "elastocheck: 1\nname: soft\nunits: {{length: m, angle: rad, force: N}}\npoints: {{o: [0, "
         "0, 0]}}\n"
         "bodies: {{b: {{origin: o}}}}\nbushings: {{k: {{bodies: [ground, b], at: o, frame: {{z: "
@@ -47,17 +21,17 @@ AtIdle hung(double stiff, double soft, double load) {
         "branches: {{pull: {{load: f, to: {}, steps: 10}}}}\nprobes: {{tip: {{on: b, at: o}}}}\n",
         stiff, stiff, soft, load));
 }
-Certificate at(const AtIdle& way, double load, double distance) {
+Certificate at(const Side& way, double load, double distance) {
     Equilibrium state;
     state.load = load;
     state.poses = {{distance * along, Eigen::Quaterniond::Identity()}};
-    return certify(way.model, way.branch, state);
+    return way.certify(state);
 }
 
 TEST(CertificateIdle, ASoftMotionIsNotIdleHoweverStiffItsNeighboursAre) {
     for (const double soft : {1e-4, 1e-3, 1., 1e3})
         for (const double stiff : {1e5, 1e9}) {
-            const AtIdle way = hung(stiff, soft, 1e-2 * soft);
+            const Side way = hung(stiff, soft, 1e-2 * soft);
             EXPECT_EQ(at(way, 0, 0).detail.find("idle"), std::string::npos);
             for (const double share : {1., 0.5}) {
                 const double load = share * 1e-2 * soft;
@@ -77,7 +51,7 @@ TEST(CertificateIdle, ASoftMotionIsNotIdleHoweverStiffItsNeighboursAre) {
 
 // Without rate and load every position along the motion is an equilibrium.
 TEST(CertificateIdle, AMotionWithoutAnyRateIsIdleWhereNothingLoadsIt) {
-    const AtIdle way = hung(1e9, 0, 1e-6);
+    const Side way = hung(1e9, 0, 1e-6);
     for (const double distance : {0., 0.3}) {
         const Certificate c = at(way, 0, distance);
         EXPECT_EQ(c.answer, Answer::proved) << c.detail;
@@ -92,7 +66,7 @@ TEST(CertificateIdle, AMotionWithoutAnyRateIsIdleWhereNothingLoadsIt) {
 // A pendulum on a point: its spin about the vertical is idle, its swing is resisted by the load
 // alone.
 TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
-    const AtIdle way = at_idle(
+    const Side way(
         "elastocheck: 1\nname: pendulum\nunits: {length: m, angle: rad, force: N}\n"
         "points: {o: [0, 0, 0], p: [0, 0, -1]}\nbodies: {b: {origin: o}}\n"
         "bushings: {k: {bodies: [ground, b], at: o, rates: [1e9, 1e9, 1e9]}}\n"
@@ -103,7 +77,7 @@ TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
         state.load = 1;
         state.poses = {{Vector3d(0, 0, -1e-9),
                         Eigen::Quaterniond(Eigen::AngleAxisd(tilt, Vector3d::UnitX()))}};
-        const Certificate c = certify(way.model, way.branch, state);
+        const Certificate c = way.certify(state);
         EXPECT_EQ(c.answer, tilt > 1e-7 ? Answer::excluded : Answer::proved)
             << tilt << ": " << c.detail;
         EXPECT_GE(c.error.angle, 0.99 * tilt);  // the distance from the vertical
@@ -113,7 +87,7 @@ TEST(CertificateIdle, AMotionThatALoadAloneResistsIsNotIdle) {
 // Upright column on a ball joint with a torsion spring. Its load is 1e-9 m off its axis, which
 // determines the direction of buckling.
 TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGivesIt) {
-    const AtIdle way = at_idle(
+    const Side way(
         "elastocheck: 1\nname: column\nunits: {length: m, angle: rad, force: N}\n"
         "points: {foot: [0, 0, 0], middle: [0, 0, 0.25], head: [1e-9, 0, 0.5]}\nbodies: {b: "
         "{origin: "
@@ -124,8 +98,8 @@ TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGiv
         "1000]}}\n"
         "loads: {f: {on: b, at: head, force: [0, 0, -1]}}\n"
         "branches: {press: {load: f, to: 6000, steps: 20}}\nprobes: {tip: {on: b, at: head}}\n");
-    const Equilibrium state = solved(way, 6000);
-    const Certificate right = certify(way.model, way.branch, state);
+    const Equilibrium state = way.solved(6000);
+    const Certificate right = way.certify(state);
     ASSERT_EQ(right.answer, Answer::proved) << right.detail;
     for (const double turn : {1e-4, 1e-6}) {
         Equilibrium turned = state;
@@ -133,7 +107,7 @@ TEST(CertificateIdle, TheDirectionInWhichAColumnBucklesIsNotIdleWhereAnOffsetGiv
         turned.poses[0] = {by * state.poses[0].r, by * state.poses[0].p * by.conjugate()};
         for (auto& reaction : turned.reactions)
             reaction = {by * reaction.force, by * reaction.moment};
-        EXPECT_NE(certify(way.model, way.branch, turned).answer, Answer::proved) << turn;
+        EXPECT_NE(way.certify(turned).answer, Answer::proved) << turn;
     }
 }
 
@@ -147,13 +121,10 @@ TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly)
                 if (auto* law = std::get_if<LinearStiffness>(&bushing->law);
                     law && law->K(3, 3) == 0)
                     law->K(0, 0) *= 1 + more;
-        const Branch way = ways(model.branches.front()).front();
-        const AtIdle of{on_branch(model, way), way};
         // The state of the isotropic law is also that of the other, except for the load on its
         // spin.
-        Model round = compile(support::scene("mcpherson"));
-        const Equilibrium state = solved({on_branch(round, way), way}, 1000);
-        const Certificate c = certify(of.model, of.branch, state, {1e-3, 1e-3, 1e3, 1e3});
+        const Equilibrium state = Side(compile(support::scene("mcpherson"))).solved(1000);
+        const Certificate c = Side(model).certify(state, {1e-3, 1e-3, 1e3, 1e3});
         EXPECT_EQ(c.detail.find("idle motion") != std::string::npos, more == 0)
             << more << ": " << c.detail;
         EXPECT_EQ(c.answer == Answer::proved && c.held > 0, more == 0) << more << ": " << c.detail;
@@ -162,7 +133,7 @@ TEST(CertificateIdle, ASpinIsIdleUnderALawThatIsRoundAndNotUnderOneThatIsNearly)
 
 // Two hinges on one axis are redundant; tilted against each other by 1e-10 rad they lock the arm.
 TEST(CertificateIdle, RowsThatAreNearlyTheSameAreNotRedundant) {
-    AtIdle way = at_idle(
+    Side way(
         "elastocheck: 1\nname: swing\nunits: {length: mm, angle: deg, force: N}\n"
         "points: {o: [0, 0, 0], q: [0, 200, 0], p: [300, 100, 0], t: [300, 100, 400]}\n"
         "bodies: {arm: {origin: p}}\n"
@@ -171,13 +142,13 @@ TEST(CertificateIdle, RowsThatAreNearlyTheSameAreNotRedundant) {
         "springs: {coil: {bodies: [arm, ground], from: p, to: t, rate: 30, preload: 100}}\n"
         "loads: {push: {on: arm, at: p, force: [0, 0, 1]}}\n"
         "branches: {up: {load: push, to: 1000, steps: 10}}\nprobes: {tip: {on: arm, at: p}}\n");
-    const Equilibrium state = solved(way, 500);
-    ASSERT_EQ(certify(way.model, way.branch, state).answer, Answer::proved);
+    const Equilibrium state = way.solved(500);
+    ASSERT_EQ(way.certify(state).answer, Answer::proved);
     for (auto& constraint : way.model.constraints)
         if (auto* row = std::get_if<PerpendicularDirections>(&constraint.kind);
             row && constraint.joint == 1)
             row->i.u_local += 1e-10 * Vector3d(1, 0, 0.5);
-    const Certificate locked = certify(way.model, way.branch, state);
+    const Certificate locked = way.certify(state);
     EXPECT_NE(locked.answer, Answer::proved) << locked.detail;
 }
 
@@ -192,7 +163,7 @@ TEST(CertificateIdle, AModelThatIsTooLargeIsNotTriedAndSaysSo) {
             "rotational_rates: [1e5, 1e5, 1e5]}}\n",
             k, k == 0 ? "ground" : fmt::format("b{}", k - 1), k, k);
     }
-    const AtIdle way = at_idle(
+    const Side way(
         "elastocheck: 1\nname: chain\nunits: {length: m, angle: rad, force: N}\npoints: {o: [0, 0, "
         "0]" +
         points + "}\nbodies:\n" + bodies + "bushings:\n" + bushings +
@@ -200,13 +171,10 @@ TEST(CertificateIdle, AModelThatIsTooLargeIsNotTriedAndSaysSo) {
                     "branches: {{up: {{load: f, to: 1, steps: 1}}}}\nprobes: {{tip: {{on: b{0}, "
                     "at: p{0}}}}}\n",
                     n - 1));
-    Equilibrium drawn, next;
-    for (const auto& body : way.model.bodies) drawn.poses.push_back(body.design);
-    next = drawn;
-    next.load = 1;
+    const Equilibrium drawn = way.drawn(0), next = way.drawn(1);
     const std::string why =
         fmt::format("not tried: {} unknowns, proofs are tried up to {}", 7 * n, most_unknowns);
-    const Certificate c = certify(way.model, way.branch, drawn);
+    const Certificate c = way.certify(drawn);
     EXPECT_EQ(c.answer, Answer::open);
     EXPECT_EQ(c.detail, why);
     const std::vector<Equilibrium> states{drawn, next};

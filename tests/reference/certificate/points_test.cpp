@@ -1,52 +1,18 @@
 // Interval proofs of points of the built-in scenes, by every leg: correct points are proved, wrong
 // ones are not.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include "compare/comparison/legs.hpp"
-#include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
-#include "elastocheck/equilibrium.hpp"
-#include "elastocheck/trim.hpp"
-#include "models/branch.hpp"
-#include "reference/certificate/certificate.hpp"
-#include "tests/support/scenes.hpp"
+#include "tests/reference/certificate/sides.hpp"
 
 namespace elastocheck::reference::certificate {
 namespace {
 
-using Eigen::Vector3d;
-
-// A model, one side of its branch, and the result of a leg.
-struct Walked {
-    compare::BranchSide way;
-    compare::Leg leg;
-    std::vector<Equilibrium> points;
-};
-std::vector<Walked> walked(const std::string& scene, int points,
-                           const std::vector<compare::Leg>& legs) {
-    const Model model = compile(compare::trim(support::scene(scene)).scene);
-    std::vector<Walked> all;
-    for (const auto& branch : model.branches)
-        for (const auto& way : compare::sides_of(model, branch, points))
-            for (const auto leg : legs) {
-                compare::SolverSettings solver;
-                solver.leg = leg;
-                const EquilibriumPath path = compare::walk(way, solver);
-                if (compare::is_not_applicable(path.outcome)) continue;
-                EXPECT_EQ(path.outcome, Outcome::converged)
-                    << scene << " " << way.name << " " << path.detail;
-                all.push_back({way, leg, path.points});
-            }
-    return all;
-}
 const std::vector<compare::Leg> exact_legs{compare::Leg::equilibrium, compare::Leg::energy,
                                            compare::Leg::series};
 
 std::string at(const std::string& scene, const Walked& walk, const Equilibrium& state,
                const Certificate& c) {
-    return fmt::format("{} '{}' by {} at {}: {}: {}", scene, walk.way.name, compare::name(walk.leg),
-                       state.load, name(c.answer), c.detail);
+    return fmt::format("{} '{}' by {} at {}: {}: {}", scene, walk.branch.name,
+                       compare::name(walk.leg), state.load, name(c.answer), c.detail);
 }
 
 // Residuals of the legs at the centre of the box, relative to the acting forces: the certificate
@@ -63,7 +29,7 @@ TEST(Certificate, EveryPointOfEveryBuiltInSceneIsProvedWhicheverLegFoundIt) {
     for (const auto& scene : support::scene_names())
         for (const auto& walk : walked(scene, 1, exact_legs))
             for (const auto& state : walk.points) {
-                const Certificate c = certify(walk.way.model, walk.way.branch, state);
+                const Certificate c = certify(walk.model, walk.branch, state);
                 ASSERT_EQ(c.answer, Answer::proved) << at(scene, walk, state, c);
                 EXPECT_LE(c.error.length, 1e-9) << at(scene, walk, state, c);
                 EXPECT_GT(c.unique.length, c.error.length) << at(scene, walk, state, c);
@@ -78,41 +44,32 @@ TEST(Certificate, TheOtherLegsEquationsHoldAtTheCentreOfTheBox) {
     for (const auto& scene : support::scene_names())
         for (const auto& walk : walked(scene, 1, {compare::Leg::equilibrium}))
             for (const auto& state : walk.points) {
-                const Certificate c = certify(walk.way.model, walk.way.branch, state);
+                const Certificate c = certify(walk.model, walk.branch, state);
                 const auto where = at(scene, walk, state, c);
                 ASSERT_EQ(c.centre.poses.size(), state.poses.size()) << where;
                 // Rounding of the stiffest element: about 1e10 N/m times an ulp of a metre.
-                expect_met(equilibrium::residuals(walk.way.model, walk.way.branch, c.centre), 1e4,
-                           1, where);
-                if (!support::has_potential(support::scene(scene))) continue;
-                expect_met(energy::residuals(walk.way.model, walk.way.branch, c.centre), 1e4, 1,
+                expect_met(equilibrium::residuals(walk.model, walk.branch, c.centre), 1e4, 1,
                            where);
+                if (!support::has_potential(support::scene(scene))) continue;
+                expect_met(energy::residuals(walk.model, walk.branch, c.centre), 1e4, 1, where);
             }
 }
 
 // ---- Wrong points
 
-struct Point {
-    Model model;
-    Branch branch;
+struct OnMcPherson : Side {
     Equilibrium state;
+    explicit OnMcPherson(double share)
+        : Side(compile(support::scene("mcpherson"))), state(solved(share * branch.to)) {}
 };
-Point mcpherson(double share) {
-    const Model model = compile(support::scene("mcpherson"));
-    const Branch way = ways(model.branches.front()).front();
-    Model on = on_branch(model, way);
-    const double a = share * way.to;
-    auto path = equilibrium::solve(on, way, std::span(&a, 1));
-    return {std::move(on), way, path.points.at(0)};
-}
 
 TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
-    const Point p = mcpherson(0.4);
-    ASSERT_EQ(certify(p.model, p.branch, p.state).answer, Answer::proved);
+    const OnMcPherson p(0.4);
+    ASSERT_EQ(p.certify(p.state).answer, Answer::proved);
     const auto excluded = [&](const std::string& what, const auto& change) {
         Equilibrium wrong = p.state;
         change(wrong);
-        const Certificate c = certify(p.model, p.branch, wrong);
+        const Certificate c = p.certify(wrong);
         EXPECT_EQ(c.answer, Answer::excluded) << what << ": " << name(c.answer) << " " << c.detail;
         return c;
     };
@@ -148,8 +105,8 @@ TEST(Certificate, AWrongPointIsExcludedAndSaysHowFarTheNextOneIs) {
 
 // A spun strut is another equilibrium; a load on the spin has none.
 TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
-    const Point p = mcpherson(0.4);
-    const Certificate before = certify(p.model, p.branch, p.state);
+    const OnMcPherson p(0.4);
+    const Certificate before = p.certify(p.state);
     EXPECT_NE(before.detail.find("idle motion of 'strut'"), std::string::npos) << before.detail;
     EXPECT_GT(before.held, 0);
     EXPECT_LT(before.held, 1e-9);
@@ -167,7 +124,7 @@ TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
                                     0.3, across[0].cross(across[1]).normalized()));
         }
     EXPECT_GT(strut.p.angularDistance(p.state.poses[2].p), 0.29);
-    const Certificate after = certify(p.model, p.branch, spun);
+    const Certificate after = p.certify(spun);
     EXPECT_EQ(after.answer, Answer::proved) << after.detail;
 
     Model pushed = p.model;
@@ -185,16 +142,16 @@ TEST(Certificate, AnIdleMotionStandsWhereTheStateHasItButMustNotBePushed) {
 }
 
 TEST(Certificate, AStateThatIsNotOfTheModelIsRefusedAndNaNIsOpen) {
-    const Point p = mcpherson(0.1);
+    const OnMcPherson p(0.1);
     Equilibrium short_of = p.state;
     short_of.poses.pop_back();
-    EXPECT_THROW(certify(p.model, p.branch, short_of), std::invalid_argument);
+    EXPECT_THROW(p.certify(short_of), std::invalid_argument);
     Equilibrium nan = p.state;
     nan.poses[0].r[1] = std::nan("");
-    EXPECT_EQ(certify(p.model, p.branch, nan).answer, Answer::open);
+    EXPECT_EQ(p.certify(nan).answer, Answer::open);
     nan = p.state;
     nan.reactions[0].force[0] = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(certify(p.model, p.branch, nan).answer, Answer::open);
+    EXPECT_EQ(p.certify(nan).answer, Answer::open);
 }
 
 }  // namespace

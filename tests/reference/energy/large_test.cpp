@@ -23,13 +23,10 @@ Scene chain(int n, bool hinged) {
             {fmt::format("b{}", b), {Vector3d(b * h, 0, 0), Eigen::Quaterniond::Identity()}});
         const BodyId i = b == 0 ? ground : b - 1;
         const Vector3d at(b == 0 ? 0 : h, 0, 0);
-        Matrix6 K = Matrix6::Zero();
-        K.diagonal() << Vector3d::Constant(hinged ? 0 : 1e6 * n),
-            hinged ? Vector3d(0, k, 0) : Vector3d(k, k, k);
-        const Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
         scene.elastics.push_back(
             {fmt::format("k{}", b),
-             Bushing{{i, at, axes}, {b, Vector3d::Zero(), axes}, LinearStiffness{K}}});
+             support::bushing({i, at}, {b}, Vector3d::Constant(hinged ? 0 : 1e6 * n),
+                              hinged ? Vector3d(0, k, 0) : Vector3d(k, k, k))});
         if (hinged)
             scene.joints.push_back({fmt::format("j{}", b), Revolute{{i, at},
                                                                     {b, Vector3d::Zero()},
@@ -38,8 +35,8 @@ Scene chain(int n, bool hinged) {
     }
     const Point tip{n - 1, Vector3d(h, 0, 0)};
     scene.probes.push_back({"tip", tip});
-    scene.branches.push_back(
-        load_branch("up", {{"force", DeadForce{tip, Vector3d::UnitZ()}}}, 50, 5));
+    scene.branches = {load_branch(DeadForce{tip, Vector3d::UnitZ()}, 50)};
+    scene.branches[0].name = "up", scene.branches[0].steps = 5;
     return scene;
 }
 
@@ -69,7 +66,7 @@ TEST(LargeScenes, WorkIsForeseenWithinAFactorOfFour) {
     for (const auto& all : models) {
         const Branch branch = ways(all.branches[0]).front();
         const Model model = on_branch(all, branch);
-        const auto values = sweep(branch);
+        const auto values = every_point(branch);
         const Cost cost = cost_of(model, values.size());
         const Counts counts = solve(model, branch, values).counts;
         // Besides the evaluations in charts, a state takes one and another for its Hessian.
@@ -95,7 +92,8 @@ TEST(LargeScenes, WorkGrowsWithTheCubeAndJointsCostMoreThanBushings) {
 
 TEST(LargeScenes, AreNotAskedAndSayHowMuchItWouldTake) {
     for (const bool hinged : {false, true}) {
-        const auto path = solve(chain(1000, hinged), 0, sweep(chain(1000, hinged).branches[0]));
+        const auto path =
+            solve(chain(1000, hinged), 0, every_point(chain(1000, hinged).branches[0]));
         EXPECT_EQ(path.outcome, Outcome::too_large);
         EXPECT_TRUE(path.points.empty());
         EXPECT_EQ(path.counts.evaluations, 0);

@@ -8,14 +8,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-// f as defined in include/elastocheck/mechanism.hpp.
-double force(const Curve& curve, double x) {
-    std::size_t k = 0;
-    while (k < curve.knots.size() && x >= curve.knots[k]) ++k;
-    const double t = x - curve.knots[k == 0 ? 0 : k - 1];
-    const auto& c = curve.pieces[k];
-    return c[0] + c[1] * t + c[2] * t * t + c[3] * t * t * t;
-}
+double force(const Curve& curve, double x) { return support::stated_force(curve, x); }
 
 // ∫ f from a to b by Simpson's rule between knots, where it is exact; at jumps the one-sided values
 // are used.
