@@ -59,6 +59,7 @@ Scene with_curves(Scene scene) {
     return scene;
 }
 
+// Whether the points are recorded at the end only, or visited.
 TEST(Allocation, NoStepOfAnyMethodAllocates) {
     std::vector<std::pair<std::string, Scene>> scenes;
     for (const char* name :
@@ -68,40 +69,27 @@ TEST(Allocation, NoStepOfAnyMethodAllocates) {
                         with_curves(support::scene("chrono_mcpherson")));
     for (const auto& [name, scene] : scenes) {
         const Model model = compile(scene);
-        for (const auto& method : methods) {
-            if (!has_steps(method)) continue;
-            const auto count = [&](int steps) {
-                const long before = allocations;
-                const auto path = solve(model, model.branches[1],
-                                        {.method = method, .steps = steps, .record = 1});
-                EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
-                return allocations - before;
-            };
-            (void)count(50);
-            const long few = count(50), many = count(1000);
-            EXPECT_GT(few, 0) << "nothing is counted";
-            EXPECT_EQ(few, many) << name << " " << method.name;
-        }
-    }
-}
-
-TEST(Allocation, NoPointThatSomebodyVisitsAllocates) {
-    const Model model = compile(support::scene("chrono_mcpherson"));
-    for (const auto& method : methods) {
-        if (!has_steps(method)) continue;
-        int visited = 0;
-        const auto count = [&](int steps) {
-            visited = 0;
-            const long before = allocations;
-            const auto path = solve(model, model.branches[1], {.method = method, .steps = steps},
-                                    [&](const Equilibrium&) { ++visited; });
-            EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
-            return allocations - before;
-        };
-        (void)count(50);
-        const long few = count(50), many = count(1000);
-        EXPECT_EQ(visited, 1001);
-        EXPECT_EQ(few, many) << method.name;
+        for (const auto& method : methods)
+            for (const bool visits : {false, true}) {
+                if (!has_steps(method)) continue;
+                int visited = 0;
+                const auto count = [&](int steps) {
+                    visited = 0;
+                    const Options options{
+                        .method = method, .steps = steps, .record = visits ? 0 : 1};
+                    const long before = allocations;
+                    const auto path = visits ? solve(model, model.branches[1], options,
+                                                     [&](const Equilibrium&) { ++visited; })
+                                             : solve(model, model.branches[1], options);
+                    EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
+                    return allocations - before;
+                };
+                (void)count(50);
+                const long few = count(50), many = count(1000);
+                EXPECT_GT(few, 0) << "nothing is counted";
+                EXPECT_EQ(few, many) << name << " " << method.name;
+                EXPECT_EQ(visited, visits ? 1001 : 0);
+            }
     }
 }
 

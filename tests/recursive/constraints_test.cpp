@@ -30,7 +30,7 @@ std::vector<JointKind> every_joint(BodyId i, BodyId j, Random& r) {
             Angle{u(i), u(j), u(j), r(-4, 4)}};
 }
 
-Model model_of(const JointKind& joint, int bodies) {
+Model model_with(const JointKind& joint, int bodies) {
     Model model;
     model.bodies.resize(static_cast<std::size_t>(bodies));
     for (const auto& kind : lower(joint, model.bodies)) model.constraints.push_back({0, kind});
@@ -42,7 +42,7 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
     for (const auto& [i, j] : {std::pair<BodyId, BodyId>{0, 1}, {1, 0}, {0, ground}, {ground, 0}}) {
         for (int trial = 0; trial < 20; ++trial) {
             for (const auto& joint : every_joint(i, j, random)) {
-                const Model model = model_of(joint, 2);
+                const Model model = model_with(joint, 2);
                 const State<double> q = random.state(2);
                 const auto Phi_q =
                     constraint_jacobian<double>(model, inputs_as_drawn<double>(model), q);
@@ -67,18 +67,11 @@ TEST(Constraints, JacobianIsTheDerivativeForEveryJointAtRandomPoses) {
     }
 }
 
-TEST(Constraints, JointsLeaveTheFreedomTheirNameSays) {
-    Random random;
-    const int rows[] = {3, 5, 4, 4, 5, 3, 6, 1, 1, 2, 1, 2, 1};
-    for (const auto& joint : every_joint(0, 1, random))
-        EXPECT_EQ(constraint_rows(model_of(joint, 2)), rows[joint.index()]);
-}
-
 TEST(Constraints, RigidMotionOfTheWholeChangesNothing) {
     Random random;
     for (int trial = 0; trial < 20; ++trial) {
         for (const auto& joint : every_joint(0, 1, random)) {
-            const Model model = model_of(joint, 2);
+            const Model model = model_with(joint, 2);
             std::vector<Pose> poses{random.pose(), random.pose()};
             const Vector<double> before = constraint_values<double>(
                 model, inputs_as_drawn<double>(model), state_of<double>(poses));

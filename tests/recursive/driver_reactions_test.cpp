@@ -9,8 +9,6 @@
 #include "elastocheck/read_scene.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
-#include "recursive/linear_response.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -43,6 +41,8 @@ constexpr Kind kinds[] = {
     {"moment in a torsion spring", "drive: torsion_springs.bar.preload_moment, to: 100000"},
     {"travel of the wheel", "drive: travel, to: 40"},
     {"travel of the contact patch", "drive: patch_travel, to: 40"},
+    {"length and held travel, angle and load",
+     "drive: joints.rod, to: 15, hold: {travel: 30, springs.coil.free_length: 8}"},
     {.name = "road under a tyre",
      .branch = "drive: tyres.t.road, to: 30",
      .tyre = "tyres: {t: {rate: 200, preload: 2000}}\n"},
@@ -140,25 +140,6 @@ TEST(Driver, EveryKindByEveryMethodMeetsTheReactionsOfTheEquilibriumLeg) {
             EXPECT_GE(off.of, 1000) << kind.name;
             EXPECT_LE(off.most, rung.share * off.of) << kind.name << ", " << rung.name;
         }
-    }
-}
-
-// Against central differences of states with a slightly shorter and a slightly longer rod.
-TEST(Respond, ToALengthUnderLoadIsTheDerivativeOfItsBranch) {
-    const Model whole = driven(kinds[3]);
-    const Branch& branch = whole.branches[0];
-    const Model model = on_branch(whole, branch);
-    const double h = 1e-5, points[] = {0, 0.01 - h, 0.01, 0.01 + h};
-    const auto path = reference::equilibrium::solve(model, branch, points);
-    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-    const Disturbance longer = std::get<Motion>(branch.drivers[0].what);
-    const Response response =
-        linear_response(model, branch, path.points[2], {&longer, 1}, find_method("series").value());
-    ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        const Eigen::Vector3d dr =
-            (path.points[3].poses[b].r - path.points[1].poses[b].r) / (2 * h);
-        EXPECT_LE((response.increments[0][b].dr - dr).norm(), 1e-6) << b;
     }
 }
 

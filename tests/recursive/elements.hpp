@@ -5,10 +5,7 @@
 
 namespace elastocheck::recursive {
 
-// Zero force before x = clearance, constant rate behind.
-inline Curve stop(double clearance, double rate) {
-    return {{clearance}, {{0, 0, 0, 0}, {0, rate, 0, 0}}, true};
-}
+using support::stop;
 
 // Continuous curve with five knots within ± reach, a kink at each of them, and forces of the size
 // `force`.

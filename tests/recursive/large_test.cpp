@@ -10,6 +10,7 @@
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/diagnosis/loops.hpp"
 #include "recursive/series/path.hpp"
+#include "tests/recursive/walks.hpp"
 #include "tests/support/cantilever.hpp"
 
 namespace elastocheck::recursive {
@@ -187,27 +188,7 @@ TEST(Large, JointsThatRepeatEachOtherAreHeldLoopByLoop) {
 }
 
 TEST(Large, LoopsAreWhatNoSingleBodyDivides) {
-    // ground - a - b - ground is a loop; c is attached to b; d and e form a loop with c; ground
-    // separates them from f.
-    const char* text = R"(elastocheck: 1
-name: loops
-units: {length: m, angle: rad, force: N}
-points: {o: [0, 0, 0], p: [1, 0, 0], q: [1, 1, 0], r: [0, 1, 0], s: [2, 1, 0], t: [2, 2, 0], u: [1, 2, 0], v: [-1, 0, 0]}
-bodies: {a: {origin: p}, b: {origin: q}, c: {origin: s}, d: {origin: t}, e: {origin: u}, f: {origin: v}}
-joints:
-  ga: {type: spherical, bodies: [a, ground], at: o}
-  ab: {type: spherical, bodies: [a, b], at: p}
-  bg: {type: spherical, bodies: [b, ground], at: r}
-  bc: {type: spherical, bodies: [b, c], at: q}
-  cd: {type: spherical, bodies: [c, d], at: s}
-  de: {type: spherical, bodies: [d, e], at: t}
-  ec: {type: spherical, bodies: [e, c], at: u}
-  fg: {type: spherical, bodies: [f, ground], at: v}
-loads: {push: {on: c, at: s, force: [1, 0, 0]}}
-branches: {push: {load: push, to: 1, steps: 2}}
-probes: {end: {on: c, at: s}}
-)";
-    const Model model = compile(parse_scene(text, "loops"), Detail::everything);
+    const Model model = model_of("loops", {}, Detail::everything);
     const std::vector<int> loop = loops(model);
     ASSERT_EQ(model.joints.size(), 8u);
     ASSERT_EQ(loop.size(), 24u);

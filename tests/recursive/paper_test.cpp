@@ -27,9 +27,7 @@ TEST(Paper, TheSweepIsItsLoopOnEveryScene) {
             if (std::ranges::any_of(branch.drivers, [](const Driver& d) { return d.start != 0; }))
                 continue;
             ++compared;
-            std::vector<bool> idle(model.bodies.size(), false);  // idle rotation is not compared
-            for (const auto& mode : diagnose(model).idle)
-                idle[static_cast<std::size_t>(mode.body)] = true;
+            const auto idle = idle_bodies(model, diagnose(model));
             const auto sweep = solve(model, branch, {.steps = N});
             const auto loop = paper(model, branch, N);
             ASSERT_EQ(sweep.points.size(), loop.size()) << name << ": " << sweep.detail;

@@ -1,11 +1,9 @@
 // Linear response of the recursion by each method: the paper's first step, one matrix, idle modes.
 #include "recursive/linear_response.hpp"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -56,50 +54,6 @@ TEST(Respond, ThePublishedAnswerIsTheFirstStepOfThePublishedSweep) {
     }
 }
 
-// A slider on x between two springs: one of rate k along x without force, one across at the
-// distance l with the tension T. The taut spring has the transverse stiffness T/l, which is not in
-// (19):
-//
-//   published 1/k,   consistent 1/(k + T/l)
-struct Taut {
-    double k = 2000, l = 0.25, T = 900, rate = 5e4;
-    Scene scene() const {
-        Scene s;
-        s.bodies = {{"slider", {}}};
-        const Direction x{ground, Vector3d::UnitX()}, own_x{0, Vector3d::UnitX()};
-        s.joints = {
-            {"guide", Translational{{0, Vector3d::Zero()}, {ground, Vector3d::Zero()}, own_x, x}}};
-        s.elastics = {
-            {"along",
-             AxialSpring{{ground, {-0.3, 0, 0}}, {0, Vector3d::Zero()}, LinearRate{k}, 0.3}},
-            {"across",
-             AxialSpring{
-                 {ground, {0, -l, 0}}, {0, Vector3d::Zero()}, LinearRate{rate}, l - T / rate}}};
-        s.branches = {
-            {"pull",
-             0,
-             100,
-             10,
-             ParameterUnit::newton,
-             {{Load{"pull", DeadForce{{0, Vector3d::Zero()}, Vector3d::UnitX()}}, 0, 1}}}};
-        s.probes = {{"slider", {0, Vector3d::Zero()}}};
-        return s;
-    }
-};
-
-TEST(Respond, OnlyTheConsistentTangentKnowsThatTheTautSpringIsStiffAcross) {
-    const Taut taut;
-    const OneWay way = way_of(taut.scene(), "pull", 1);
-    const Equilibrium state{0, {way.model.bodies[0].design}, {}, 0};
-    const UnitWrench pull{{0, Vector3d::Zero()}, Vector3d::UnitX()};
-    for (const Method& method : methods) {
-        const bool linear = std::holds_alternative<Linear>(method.kind);
-        EXPECT_NEAR(one(way, state, pull, method)[0] * (linear ? taut.k : taut.k + taut.T / taut.l),
-                    1, 1e-14)
-            << method.name;
-    }
-}
-
 TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
     const OneWay way = way_of("double_wishbone", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
@@ -129,8 +83,6 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
               1e-13);
 }
 
-// ---- Idle modes, redundant joints, invalid input.
-
 TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
     const OneWay way = way_of("chrono_mcpherson", "jounce", 1);
     const Equilibrium state = end_of(way.model, way.branch);
@@ -148,53 +100,6 @@ TEST(Respond, WhatLeavesTheIdleModeAloneIsAnsweredWithTheLeastOfIt) {
             along += at.value() * dq[at.index()] * (at.index() % 6 < 3 ? 1 : L * L);
         EXPECT_LE(std::abs(along), 1e-9 * dq.norm()) << method;
     }
-}
-
-// A bar on a hinge, or on the same hinge twice.
-Scene hinged(bool twice) {
-    Scene s;
-    s.bodies = {{"bar", {}}};
-    const Direction y{ground, Vector3d::UnitY()}, own_y{0, Vector3d::UnitY()};
-    const Revolute hinge{{0, Vector3d::Zero()}, {ground, Vector3d::Zero()}, own_y, y};
-    s.joints = {{"hinge", hinge}};
-    const Point along{0, {0, 0.3, 0}}, along_ground{ground, {0, 0.3, 0}};
-    if (twice) s.joints.push_back({"again", Revolute{along, along_ground, own_y, y}});
-    s.elastics = {
-        {"spring", AxialSpring{{ground, {0.5, 0, -0.4}}, {0, {0.5, 0, 0}}, LinearRate{3e4}, 0.4}}};
-    s.branches = {{"lift",
-                   0,
-                   800,
-                   10,
-                   ParameterUnit::newton,
-                   {{Load{"lift", DeadForce{{0, {0.8, 0, 0}}, Vector3d::UnitZ()}}, 0, 1}}}};
-    s.probes = {{"end", {0, {0.8, 0, 0}}}};
-    return s;
-}
-
-TEST(Respond, JointsThatSayTheSameTwiceChangeNothing) {
-    const OneWay once = way_of(hinged(false), "lift", 1), twice = way_of(hinged(true), "lift", 1);
-    ASSERT_EQ(diagnose(twice.model).redundant.size(), 1u);
-    const Equilibrium state = end_of(once.model, once.branch);
-    const UnitWrench lift{{0, {0.8, 0, 0}}, Vector3d(0.2, 1, 1), Vector3d(1, 2, 3)};
-    for (const char* method : {"published", "series"}) {
-        const auto answer = [&](const OneWay& way) { return one(way, state, lift, rung(method)); };
-        EXPECT_LE(apart(answer(twice), answer(once)), 1e-13) << method;
-    }
-}
-
-TEST(Respond, AStateThatIsNoLongerStiffHasNoAnswer) {
-    // A strut across under 1024 N, whose geometric stiffness -4096 N/m cancels the rate along:
-    // exact in binary.
-    const OneWay way = way_of(Taut{4096, 0.25, -1024, 65536}.scene(), "pull", 1);
-    const Equilibrium state{0, {way.model.bodies[0].design}, {}, 0};
-    const Disturbance pull = UnitWrench{{0, Vector3d::Zero()}, Vector3d::UnitX()};
-    const Response response =
-        linear_response(way.model, way.branch, state, {&pull, 1}, rung("series"));
-    EXPECT_EQ(response.outcome, Outcome::singular);
-    EXPECT_TRUE(response.increments.empty());
-    EXPECT_NE(response.detail.find("is not unique"), std::string::npos) << response.detail;
-    EXPECT_NEAR(one(way, state, pull, rung("published"))[0] * 4096, 1, 1e-14)
-        << "which knows of no pressure";
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
@@ -52,80 +51,50 @@ Driver push(double start, double rate) {
 }
 double moved(const Equilibrium& point) { return point.poses[slider].r.x() - 1; }
 
-// f = k (x - c) for x > c, else 0.
-Curve stop(double c, double k) { return {{c}, {{0, 0, 0, 0}, {0, k, 0, 0}}}; }
 // f = below · x for x < 0, above · x for x > 0.
 Curve bent(double below, double above) { return {{0}, {{0, below, 0, 0}, {0, above, 0, 0}}}; }
 
-double value(const Curve& f, double x) {
-    std::size_t piece = 0;
-    while (piece < f.knots.size() && x >= f.knots[piece]) ++piece;
-    const double t = x - f.knots[piece == 0 ? 0 : piece - 1];
-    const auto& c = f.pieces[piece];
-    return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-}
-// Hermite interpolant with the given slopes, linear outside.
-Curve hermite(const std::vector<double>& x, const std::vector<double>& f,
-              const std::vector<double>& slope) {
-    Curve curve{x, {{f[0], slope[0], 0, 0}}};
-    for (std::size_t k = 0; k + 1 < x.size(); ++k) {
-        const double h = x[k + 1] - x[k], s = (f[k + 1] - f[k]) / h;
-        curve.pieces.push_back({f[k], slope[k], (3 * s - 2 * slope[k] - slope[k + 1]) / h,
-                                (slope[k] + slope[k + 1] - 2 * s) / (h * h)});
-    }
-    curve.pieces.push_back({f.back(), slope.back(), 0, 0});
-    return curve;
-}
 // Distance from the curve's inverse, to first order [m].
 double off(const Curve& f, double x, double force) {
-    const double h = 1e-7, slope = (value(f, x + h) - value(f, x - h)) / (2 * h);
-    return std::abs((value(f, x) - force) / slope);
+    const double h = 1e-7,
+                 slope =
+                     (support::stated_force(f, x + h) - support::stated_force(f, x - h)) / (2 * h);
+    return std::abs((support::stated_force(f, x) - force) / slope);
 }
 Curve rising() {
-    return hermite({-0.03, -0.01, 0, 0.005, 0.02, 0.04}, {-2000, -300, 0, 100, 900, 4000},
-                   {120e3, 40e3, 22e3, 25e3, 90e3, 200e3});
+    return support::hermite({-0.03, -0.01, 0, 0.005, 0.02, 0.04}, {-2000, -300, 0, 100, 900, 4000},
+                            {120e3, 40e3, 22e3, 25e3, 90e3, 200e3});
 }
 
-TEST(SeriesPieces, ABodyOnACurveMovesByItsInverse) {
+// An expansion ends where the knot is, and each knot crossed is counted once; the one at the start is
+// not. That a body moves by the inverse of its curve is tested in tests/legs (Stops).
+TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
     for (const double to : {6000.0, -4000.0}) {
         const OneWay w =
             walked(on_the_x_axis({along_x("spring", rising())}), loaded(to, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        int knots = 0;
-        for (const auto& expansion : path.expansions) knots += expansion.knots;
-        // each knot crossed is counted once; the one at the start is not
-        EXPECT_EQ(knots, to > 0 ? 3 : 2);
-        double worst = 0;
-        const auto sampled = sample(w.model, path, w.branch, 400);
-        ASSERT_EQ(sampled.points.size(), 401u);
-        for (const auto& point : sampled.points)
-            worst = std::max(worst, off(rising(), moved(point), point.load));
-        EXPECT_LE(worst, 1e-12) << to;  // 1e-9 mm
+        std::vector<double> met;
+        for (std::size_t k = 0; k + 1 < path.expansions.size(); ++k)
+            if (path.expansions[k].knots > 0)
+                met.push_back(path.expansions[k + 1].start[slider].r.x() - 1);
+        const std::vector<double> knots =
+            to > 0 ? std::vector{0.005, 0.02, 0.04} : std::vector{-0.01, -0.03};
+        ASSERT_EQ(met.size(), knots.size());
+        for (std::size_t k = 0; k < knots.size(); ++k)
+            EXPECT_NEAR(met[k], knots[k], to > 0 ? 1e-15 : 1e-12);
+        for (const auto& point : sample(w.model, path, w.branch, 40).points)
+            EXPECT_LE(off(rising(), moved(point), point.load), 1e-12) << to;  // 1e-9 mm
     }
-}
-
-TEST(SeriesPieces, AnExpansionEndsWhereTheKnotIs) {
-    const OneWay w =
-        walked(on_the_x_axis({along_x("spring", rising())}), loaded(6000, {push(0, 1)}));
-    const Path path = follow(w.model, w.branch);
-    std::vector<double> met;
-    for (std::size_t k = 0; k + 1 < path.expansions.size(); ++k)
-        if (path.expansions[k].knots > 0)
-            met.push_back(path.expansions[k + 1].start[slider].r.x() - 1);
-    ASSERT_EQ(met.size(), 3u);
-    EXPECT_NEAR(met[0], 0.005, 1e-15);
-    EXPECT_NEAR(met[1], 0.02, 1e-15);
-    EXPECT_NEAR(met[2], 0.04, 1e-15);
 }
 
 TEST(SeriesPieces, TwoStopsThatCloseAtOnceArePassedAtOnce) {
     // ... two knots at the same place within rounding.
     for (const double apart : {-1e-17, 0.0, 1e-17, 1e-15, 1e-12, 1e-9}) {
-        const OneWay w = walked(
-            on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("left", stop(0.03, 1e5)),
-                           along_x("right", stop(0.03 + apart, 2e5))}),
-            loaded(2000, {push(0, 1)}));
+        const OneWay w = walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
+                                               along_x("left", support::stop(0.03, 1e5)),
+                                               along_x("right", support::stop(0.03 + apart, 2e5))}),
+                                loaded(2000, {push(0, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << apart << path.detail;
         EXPECT_LE(path.expansions.size(), std::abs(apart) < 1e-13 ? 2u : 3u) << apart;
@@ -225,25 +194,11 @@ TEST(SeriesPieces, AKnotThatIsGrazedIsNotGoneOver) {
         EXPECT_LE(path.expansions.size(), 9u) << deep;
         for (const auto& point : sample(w.model, path, w.branch, 240).points) {
             const double x = -0.06 + point.load, l = std::hypot(h, x);
-            const double force = value(f, l - free_length) * x / l;  // of the jack along x
+            const double force =
+                support::stated_force(f, l - free_length) * x / l;  // of the jack along x
             EXPECT_NEAR(point.reactions[1].force.x(), force, 2e-8) << deep << " " << x;
         }
     }
-}
-
-TEST(SeriesPieces, FromAKnotAMotionBeginsAcrossTheSpring) {
-    // The stretch starts as x² / 2h: its first coefficient is zero.
-    const double h = 0.1;
-    for (const double to : {0.05, -0.05})
-        for (const auto& f : {bent(200e3, 4e3), bent(4e3, 200e3)}) {
-            const OneWay w = walked(beside_the_rail(h, f, h, 0), jacked(to));
-            const Path path = follow(w.model, w.branch);
-            ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-            for (const auto& point : sample(w.model, path, w.branch, 100).points) {
-                const double x = point.load, l = std::hypot(h, x);
-                EXPECT_NEAR(point.reactions[1].force.x(), value(f, l - h) * x / l, 2e-7);
-            }
-        }
 }
 
 // ---- A non-monotone curve: f rises to 100 N at 10 mm, falls to 50 at 20 mm, rises again.
@@ -259,7 +214,7 @@ TEST(SeriesPieces, ArcLengthGoesOnThroughTheTurnsOfACurve) {
     EXPECT_NEAR(path.limits[1], 50, 1e-10);
     const auto sampled = sample(w.model, path, w.branch, 70);
     for (const auto& point : sampled.points)
-        EXPECT_NEAR(value(falling(), moved(point)), point.load, 1e-9);
+        EXPECT_NEAR(support::stated_force(falling(), moved(point)), point.load, 1e-9);
     EXPECT_NEAR(sampled.points.back().load, 200, 1e-9);
 }
 
@@ -274,104 +229,13 @@ TEST(SeriesPieces, WhatIsHeldSettlesOverKnotsToo) {
     }
     // Exactly to a knot, and on from there, in both directions.
     for (const double to : {300.0, -300.0}) {
-        const OneWay w = walked(
-            on_the_x_axis({along_x("spring", LinearRate{20e3}), along_x("stop", stop(0.03, 3e5))}),
-            loaded(to, {push(600, 1)}));
+        const OneWay w = walked(on_the_x_axis({along_x("spring", LinearRate{20e3}),
+                                               along_x("stop", support::stop(0.03, 3e5))}),
+                                loaded(to, {push(600, 1)}));
         const Path path = follow(w.model, w.branch);
         ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
         for (const auto& point : sample(w.model, path, w.branch, 30).points)
             EXPECT_NEAR(moved(point), 0.03 + point.load / (to > 0 ? 320e3 : 20e3), 1e-12) << to;
-    }
-}
-
-// ---- Formulations along a branch: an arm on two bushings of any formulation, rotated by tenths of
-// a radian.
-
-TEST(SeriesFormulations, EveryOneHoldsInItsOwnFullEquations) {
-    using Frame = Formulation::Frame;
-    using Angles = Formulation::Angles;
-    Random random;
-    Matrix6<double> K = Matrix6<double>::Zero();
-    K.diagonal() << 2e5, 3e5, 1e5, 300, 200, 400;
-    for (const Frame frame : {Frame::on_i, Frame::on_j, Frame::middle})
-        for (const Angles angles : {Angles::rotation_vector, Angles::cardan, Angles::projected})
-            for (const bool conjugate : {true, false})
-                for (const bool offset_moment : {true, false}) {
-                    if (!conjugate && frame == Frame::middle) continue;
-                    Scene scene;
-                    scene.bodies = {
-                        {"arm", {Eigen::Vector3d(0.2, 0, 0), Eigen::Quaterniond::Identity()}}};
-                    for (const double side : {-0.1, 0.1}) {
-                        Bushing e{{ground, Eigen::Vector3d(0, side, 0), random.rotation(0.3)},
-                                  {0, Eigen::Vector3d(-0.2, side, 0), random.rotation(0.3)},
-                                  LinearStiffness{K + 1e-2 * random.stiffness()}};
-                        e.formulation = {frame, angles, conjugate, offset_moment};
-                        e.undeformed = Vector6<double>::Constant(1e-3);
-                        scene.elastics.push_back({"bushing", e});
-                    }
-                    scene.probes = {{"tip", {0, Eigen::Vector3d(0.2, 0, 0)}}};
-                    const Load load{"tip", DeadForce{{0, Eigen::Vector3d(0.2, 0, 0)},
-                                                     Eigen::Vector3d(0, 0.2, 1)}};
-                    const OneWay w = walked(scene, loaded(300, {{load, 0, 1}}));
-                    const Path path = follow(w.model, w.branch);
-                    const std::string what = std::to_string(static_cast<int>(frame)) +
-                                             std::to_string(static_cast<int>(angles)) +
-                                             (conjugate ? "" : " free") +
-                                             (offset_moment ? "" : " offset");
-                    ASSERT_EQ(path.outcome, Outcome::converged) << what << path.detail;
-                    const auto sampled = sample(w.model, path, w.branch, 20);
-                    ASSERT_EQ(sampled.points.size(), 21u);
-                    for (const auto& point : sampled.points) {
-                        const auto left = recursive::residuals(w.model, w.branch, point);
-                        EXPECT_LE(std::max(left.force, left.moment), 1e-9 * 300)
-                            << what << point.load;
-                    }
-                }
-}
-
-// n bodies along x, connected to each other and to ground by beams of length L between their
-// origins.
-Scene chain(int n, double L) {
-    Scene scene;
-    Matrix6<double> K = Matrix6<double>::Zero();
-    const double EA = 8e7, EI = 2.4e3, GJ = 1.8e3;
-    K.diagonal() << EA / L, 12 * EI / (L * L * L), 12 * EI / (L * L * L), GJ / L, EI / L, EI / L;
-    for (int b = 0; b < n; ++b)
-        scene.bodies.push_back(
-            {"b" + std::to_string(b),
-             {Eigen::Vector3d((b + 1) * L, 0, 0), Eigen::Quaterniond::Identity()}});
-    for (int b = 0; b < n; ++b) {
-        const Eigen::Vector3d half(L / 2, 0, 0);
-        Bushing e{{b == 0 ? ground : b - 1, half}, {b, -half}, LinearStiffness{K}};
-        e.formulation.frame = Formulation::Frame::middle;
-        scene.elastics.push_back({"beam", e});
-    }
-    scene.probes = {{"tip", {n - 1, Eigen::Vector3d::Zero()}}};
-    return scene;
-}
-
-TEST(SeriesFormulations, AChainOfBeamsHoldsInItsFullEquations) {
-    const int n = 5;
-    const Eigen::Vector3d at = Eigen::Vector3d::Zero();
-    for (const LoadKind& kind : {LoadKind(DeadForce{{n - 1, at}, Eigen::Vector3d(0, 0.3, 1)}),
-                                 LoadKind(FollowerForce{{n - 1, at}, Eigen::Vector3d(0, 0.3, 1)}),
-                                 LoadKind(FollowerMoment{n - 1, Eigen::Vector3d(0.4, 0, 1)})}) {
-        const OneWay w = walked(chain(n, 0.2), loaded(3000, {{Load{"tip", kind}, 0, 1}}));
-        // A beam has 4e8 N/m along itself: at the usual 1e-12 m the error would be 2e-9 of the
-        // load.
-        const Path path = follow(w.model, w.branch, {.tolerance = 1e-13});
-        ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
-        const auto sampled = sample(w.model, path, w.branch, 50);
-        ASSERT_EQ(sampled.points.size(), 51u);
-        double turned = 0;
-        for (const auto& point : sampled.points) {
-            const auto left = recursive::residuals(w.model, w.branch, point);
-            EXPECT_LE(std::max(left.force, left.moment), 1e-9 * 3000)
-                << kind.index() << " at " << point.load;
-            turned = std::max(turned,
-                              point.poses.back().p.angularDistance(Eigen::Quaterniond::Identity()));
-        }
-        EXPECT_GT(turned, 0.3) << kind.index();
     }
 }
 

@@ -1,6 +1,8 @@
 // Branch sides of a model with the model active on each, the distance of two states, and the scenes
-// of tests/recursive/found.
+// of tests/recursive/found (regressions) and tests/recursive/scenes.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -9,6 +11,7 @@
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
+#include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 
@@ -34,16 +37,41 @@ inline OneWay walked(const Scene& scene, const Branch& branch) {
     return {on_branch(model, model.branches[0]), model.branches[0]};
 }
 
-inline Model found(const std::string& name) {
+inline Model found(const std::string& name, const std::vector<Setting>& settings = {}) {
     const std::filesystem::path scenes = ELASTOCHECK_SCENES;
-    return compile(read_scene(scenes / "../../tests/recursive/found" / (name + ".yaml")));
+    return compile(read_scene(scenes / "../../tests/recursive/found" / (name + ".yaml"), settings));
+}
+inline Model model_of(const std::string& name, const std::vector<Setting>& settings = {},
+                      Detail detail = Detail::required) {
+    const std::filesystem::path scenes = ELASTOCHECK_SCENES;
+    return compile(read_scene(scenes / "../../tests/recursive/scenes" / (name + ".yaml"), settings),
+                   detail);
+}
+
+// Outcome of every method on the first branch: one of `expected`, with `words` in its detail.
+inline void expect_of_every_method(const Model& model, std::initializer_list<Outcome> expected,
+                                   const char* words = "") {
+    for (const auto& method : methods) {
+        const auto path = solve(model, model.branches[0], {.method = method});
+        EXPECT_NE(std::ranges::find(expected, path.outcome), expected.end())
+            << method.name << ": " << name(path.outcome) << " " << path.detail;
+        EXPECT_NE(path.detail.find(words), std::string::npos) << method.name << path.detail;
+    }
+}
+
+// Bodies that an idle mode moves: their position along it is arbitrary.
+inline std::vector<bool> idle_bodies(const Model& model, const Diagnosis& diagnosis) {
+    std::vector<bool> idle(model.bodies.size(), false);
+    for (const auto& mode : diagnosis.idle)
+        for (std::size_t b = 0; b < idle.size(); ++b)
+            if (mode.dq.segment<6>(6 * static_cast<Eigen::Index>(b)).norm() > 1e-6) idle[b] = true;
+    return idle;
 }
 
 // Largest distance of origins, and of points 0.1 m beside them [m]; for bodies with idle rotation
 // origins only.
 inline double apart(const Model& model, const Equilibrium& a, const Equilibrium& b) {
-    std::vector<bool> idle(model.bodies.size(), false);
-    for (const auto& mode : diagnose(model).idle) idle[static_cast<std::size_t>(mode.body)] = true;
+    const auto idle = idle_bodies(model, diagnose(model));
     double worst = 0;
     for (std::size_t body = 0; body < idle.size(); ++body)
         worst = std::max({worst, (a.poses[body].r - b.poses[body].r).norm(),
