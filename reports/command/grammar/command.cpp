@@ -1,8 +1,22 @@
 #include "reports/command/grammar/command.hpp"
 
+#include "models/overloaded.hpp"
 #include "models/reader/document/limits.hpp"
 
 namespace elastocheck::reports {
+
+Value value_of(const Option& option) {
+    return std::visit(overloaded{[](const Flag&) {
+                                     return Value{Value::Kind::none, "", {}, {}};
+                                 },
+                                 [](const Text& text) { return text.value; },
+                                 [](const TextList& list) { return list.value; },
+                                 [](const Integer&) { return Value{.name = "INT"}; },
+                                 [](const IntegerList&) { return Value{.name = "INT"}; },
+                                 [](const RealNumber&) { return Value{.name = "FLOAT"}; },
+                                 [](const Settings*) { return Value{.name = "PATH=VALUE"}; }},
+                      option.target);
+}
 
 Option scene_option(std::string& file) {
     return {"SCENE", Text{&file, a_file("*.yaml")}, "scene file (YAML)", true};
@@ -25,7 +39,7 @@ Option keep_all_option(bool& wanted) {
 
 Option every_option(int& every) {
     return {"--every", Integer{&every, 1, reader::most_steps},
-            "only every N-th step's point of each way from the start, and the last"};
+            "only every N-th step's point of each side from the start, and the last"};
 }
 
 Option output_option(std::string& folder, const std::string& description) {

@@ -1,6 +1,6 @@
 // A command of the program as data: name, help text, options with the variables that they set, and
 // the function that runs it. The parser with its --help (parse.hpp), shell completion and the
-// manual (grammar.hpp) use this description.
+// manual page use this description.
 #pragma once
 
 #include <functional>
@@ -26,16 +26,19 @@ struct Value {
         similar_words,  // `words` are offered; the command checks
     };
     Kind kind = Kind::text;
-    std::string pattern = {};  // "*.yaml"
+    std::string name = "TEXT";  // in --help
+    std::string pattern = {};   // "*.yaml"
     std::vector<std::string> words = {};
 };
-inline Value a_file(std::string pattern) { return {Value::Kind::file, std::move(pattern), {}}; }
-inline Value a_folder() { return {Value::Kind::folder, {}, {}}; }
+inline Value a_file(std::string pattern) {
+    return {Value::Kind::file, "FILE", std::move(pattern), {}};
+}
+inline Value a_folder() { return {Value::Kind::folder, "FOLDER", {}, {}}; }
 inline Value one_of(std::vector<std::string> words) {
-    return {Value::Kind::words, {}, std::move(words)};
+    return {Value::Kind::words, "WORD", {}, std::move(words)};
 }
 inline Value such_as(std::vector<std::string> words) {
-    return {Value::Kind::similar_words, {}, std::move(words)};
+    return {Value::Kind::similar_words, "WORD", {}, std::move(words)};
 }
 
 // Variables set by options. Each outlives the parsing, usually as a member of a request that `run`
@@ -73,6 +76,7 @@ struct Option {
     std::string description;
     bool required = false;
 };
+Value value_of(const Option& option);
 
 struct Command {
     std::string name, description;

@@ -2,230 +2,155 @@
 
 #include <fmt/format.h>
 
-#include "reports/text/escape.hpp"
+#include <algorithm>
+#include <stdexcept>
+
+#include "reports/command/grammar/parse.hpp"
+#include "reports/files/subprocess.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-std::string names_of(const std::vector<OptionGrammar>& options) {
-    std::string names;
-    for (const auto& option : options) {
-        if (!option.brief.empty()) names += option.brief + " ";
-        names += option.name + " ";
-    }
-    if (!names.empty()) names.pop_back();
-    return names;
+constexpr const char* bash = R"sh(# bash completion of elastocheck. Made by `elastocheck completion bash`.
+_elastocheck() {
+    local word=${COMP_WORDS[COMP_CWORD]} offers
+    [ "$word" != = ] || word= # --option=value comes as three words
+    offers=$("$1" complete "${COMP_LINE:0:COMP_POINT}" 2>/dev/null)
+    case $offers in
+    # Folders to walk through, and the files of a pattern.
+    :folders) compopt -o filenames; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    :files*)
+        compopt -o filenames
+        mapfile -t COMPREPLY < <(compgen -d -- "$word"; compgen -f -X "!${offers#:files }" -- "$word")
+        ;;
+    *) mapfile -t COMPREPLY < <(compgen -W "$(cut -f 1 <<< "$offers")" -- "$word") ;
+;
+esac
 }
+complete -F _elastocheck elastocheck
+)sh";
 
-std::string names_of(const std::vector<CommandGrammar>& commands) {
-    std::string names;
-    for (const auto& command : commands) names += (names.empty() ? "" : " ") + command.name;
-    return names;
-}
-
-// ---- bash: one function, a case for each option that takes a value and each command.
-
-// Statement that sets COMPREPLY for a value.
-std::string bash_offer(const Value& value) {
-    switch (value.kind) {
-        case Value::Kind::words:
-        case Value::Kind::similar_words:
-            return fmt::format("_elastocheck_words {}",
-                               for_shell(fmt::format("{}", fmt::join(value.words, " "))));
-        case Value::Kind::file: return "_elastocheck_files " + for_shell(value.pattern);
-        case Value::Kind::folder: return "_elastocheck_files /";
-        default: return ":";
-    }
-}
-
-std::string bash(const Grammar& grammar) {
-    std::string values, commands;
-    for (const auto& command : grammar.commands) {
-        for (const auto& option : command.options)
-            if (option.value.kind != Value::Kind::none)
-                values += fmt::format(
-                    "        '{0} {1}'{2}) {3}; return ;;\n", command.name, option.name,
-                    option.brief.empty() ? ""
-                                         : fmt::format(" | '{} {}'", command.name, option.brief),
-                    bash_offer(option.value));
-        commands += fmt::format(
-            "        {}) options={}; offer={} ;;\n", command.name,
-            for_shell(names_of(command.options)),
-            for_shell(command.positionals.empty() ? ":"
-                                                  : bash_offer(command.positionals.front().value)));
-    }
-    return fmt::format(R"(# bash completion of {0}. Made by `{0} completion bash`.
-_elastocheck_words() {{
-    mapfile -t COMPREPLY < <(compgen -W "$1" -- "$word")
-}}
-# Folders to walk through, and the files of a pattern; of / folders alone.
-_elastocheck_files() {{
-    compopt -o filenames
-    mapfile -t COMPREPLY < <(compgen -d -- "$word"; [ "$1" = / ] || compgen -f -X "!$1" -- "$word")
-}}
-_elastocheck() {{
-    local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command= options= offer= k
-    COMPREPLY=()
-    # --option=value comes as three words.
-    if [ "$word" = = ]; then
-        word=
-    elif [ "$before" = = ]; then
-        before=${{COMP_WORDS[COMP_CWORD - 2]}}
-    fi
-    for ((k = 1; k < COMP_CWORD; ++k)); do
-        case ${{COMP_WORDS[k]}} in
-        -*) ;;
-        *)
-            command=${{COMP_WORDS[k]}}
-            break
-            ;;
-        esac
-    done
-    if [ -z "$command" ]; then
-        _elastocheck_words {1}
-        return
-    fi
-    case "$command $before" in
-{2}    esac
-    case $command in
-{3}    esac
-    case $word in
-    -*) _elastocheck_words "$options" ;;
-    *) eval "$offer" ;;
+constexpr const char* zsh = R"sh(#compdef elastocheck
+# zsh completion of elastocheck. Made by `elastocheck completion zsh`.
+_elastocheck() {
+    local -a offers
+    offers=("${(@f)$($words[1] complete "${(j: :)words[1,CURRENT]}" 2>/dev/null)}")
+    compset -P '*='
+    case $offers[1] in
+    :folders) _files -/ ;;
+    :files*) _files -g "${offers[1]#:files }" ;;
+    *)
+        offers=("${(@)offers//:/\\:}")
+        offers=("${(@)offers/$'\t'/:}")
+        _describe elastocheck offers
+        ;;
     esac
-}}
-complete -F _elastocheck {0}
-)",
-                       grammar.name,
-                       for_shell(names_of(grammar.commands) + " " + names_of(grammar.options)),
-                       values, commands);
 }
-
-// ---- zsh: _arguments of each command.
-
-// Escapes brackets, colons and backslashes for a specification of _arguments.
-std::string zsh_text(std::string_view words) {
-    std::string safe;
-    for (const char c : words) {
-        if (c == '[' || c == ']' || c == ':' || c == '\\') safe += '\\';
-        safe += c;
-    }
-    return safe;
-}
-
-std::string zsh_action(const OptionGrammar& option) {
-    const std::string tag = zsh_text(option.value_name.empty() ? option.name : option.value_name);
-    switch (option.value.kind) {
-        case Value::Kind::none: return "";
-        case Value::Kind::words:
-        case Value::Kind::similar_words:
-            return fmt::format(":{}:({})", tag, fmt::join(option.value.words, " "));
-        case Value::Kind::file:
-            return fmt::format(":{}:_files -g \"{}\"", tag, option.value.pattern);
-        case Value::Kind::folder: return fmt::format(":{}:_files -/", tag);
-        case Value::Kind::text: return fmt::format(":{}: ", tag);
-    }
-    return "";
-}
-
-std::string zsh(const Grammar& grammar) {
-    std::string commands, cases;
-    const auto specifications = [](const CommandGrammar& command) {
-        std::string all;
-        for (const auto& option : command.options)
-            for (const auto& name : {option.brief, option.name})
-                if (!name.empty())
-                    all += " \\\n            " +
-                           for_shell(fmt::format("{}{}[{}]{}", option.repeated ? "*" : "", name,
-                                                 zsh_text(option.description), zsh_action(option)));
-        for (const auto& positional : command.positionals)
-            all += " \\\n            " +
-                   for_shell((positional.repeated ? "*" : "1") + zsh_action(positional));
-        return all;
-    };
-    for (const auto& command : grammar.commands) {
-        commands +=
-            "        " + for_shell(command.name + ":" + zsh_text(command.description)) + "\n";
-        cases += fmt::format("    {})\n        _arguments{}\n        ;;\n", command.name,
-                             specifications(command));
-    }
-    return fmt::format(R"(#compdef {0}
-# zsh completion of {0}. Made by `{0} completion zsh`.
-_elastocheck() {{
-    local -a commands
-    commands=(
-{1}    )
-    if ((CURRENT == 2)); then
-        _describe command commands
-        return
-    fi
-    shift words
-    ((CURRENT--))
-    case $words[1] in
-{2}    esac
-}}
 if [ "$funcstack[1]" = _elastocheck ]; then
     _elastocheck "$@"
 else
-    compdef _elastocheck {0}
+    compdef _elastocheck elastocheck
 fi
-)",
-                       grammar.name, commands, cases);
+)sh";
+
+constexpr const char* fish =
+    R"sh(# fish completion of elastocheck. Made by `elastocheck completion fish`.
+function __elastocheck_offers
+    set -l token (commandline -ct)
+    set -l offers ((commandline -opc)[1] complete (commandline -cp) 2>/dev/null)
+    set -l before (string match -r -- '^--[^=]*=' $token)
+    switch "$offers[1]"
+        case ':folders'
+            __fish_complete_directories $token
+        case ':files *'
+            __fish_complete_suffix (string replace ':files *' '' -- $offers[1])
+        case '*'
+            for offer in $offers
+                echo "$before$offer"
+            end
+    end
+end
+complete -c elastocheck -f -a '(__elastocheck_offers)'
+)sh";
+
+using Offers = std::vector<std::pair<std::string, std::string>>;  // words and descriptions
+
+void add_names(Offers& list, const std::string& names, const std::string& description) {
+    for (std::size_t from = 0; from < names.size();) {
+        const std::size_t to = std::min(names.find(',', from), names.size());
+        list.emplace_back(names.substr(from, to - from), description);
+        from = to + 1;
+    }
 }
 
-// ---- fish: a line for each option of each command.
-
-// Single-quoted text: fish interprets \\ and \' there.
-std::string fish_text(std::string_view words) {
-    std::string safe = "'";
-    for (const char c : words) {
-        if (c == '\\' || c == '\'') safe += '\\';
-        safe += c;
-    }
-    return safe + "'";
-}
-
-// -F: also files, which `complete -f` has disabled.
-std::string fish_action(const Value& value) {
-    switch (value.kind) {
-        case Value::Kind::none: return "";
-        case Value::Kind::words:
-        case Value::Kind::similar_words:
-            return " -x -a " + fish_text(fmt::format("{}", fmt::join(value.words, " ")));
-        case Value::Kind::file:
-            return " -x -a " +
-                   fish_text(fmt::format("(__fish_complete_suffix {})", value.pattern.substr(1)));
-        case Value::Kind::folder: return " -x -a '(__fish_complete_directories)'";
-        case Value::Kind::text: return " -x";
-    }
-    return "";
-}
-
-std::string fish(const Grammar& grammar) {
-    std::string text = fmt::format(
-        "# fish completion of {0}. Made by `{0} completion fish`.\ncomplete -c {0} -f\n",
-        grammar.name);
-    const auto add = [&](const std::string& condition, const OptionGrammar& option) {
-        text += fmt::format("complete -c {} -n {}", grammar.name, fish_text(condition));
-        if (!option.brief.empty()) text += " -s " + option.brief.substr(1);
-        if (option.name.starts_with("--")) text += " -l " + option.name.substr(2);
-        text += fish_action(option.value) + " -d " + fish_text(option.description) + "\n";
-    };
-    for (const auto& option : grammar.options) add("__fish_use_subcommand", option);
-    for (const auto& command : grammar.commands) {
-        text += fmt::format("complete -c {} -n __fish_use_subcommand -a {} -d {}\n", grammar.name,
-                            command.name, fish_text(command.description));
-        for (const auto* list : {&command.positionals, &command.options})
-            for (const auto& option : *list)
-                add("__fish_seen_subcommand_from " + command.name, option);
-    }
+std::string text_of(const Offers& list) {
+    std::string text;
+    for (const auto& [word, description] : list)
+        text += word + (description.empty() ? "" : "\t" + description) + "\n";
     return text;
+}
+
+std::string text_of(const Value& value) {
+    switch (value.kind) {
+        case Value::Kind::words:
+        case Value::Kind::similar_words: return fmt::format("{}\n", fmt::join(value.words, "\n"));
+        case Value::Kind::file: return fmt::format(":files {}\n", value.pattern);
+        case Value::Kind::folder: return ":folders\n";
+        case Value::Kind::none:
+        case Value::Kind::text: break;
+    }
+    return {};
+}
+
+bool has_name(const Option& option, const std::string& name) {
+    return name.starts_with('-') && ("," + option.names + ",").find("," + name + ",") != name.npos;
 }
 
 }  // namespace
 
-std::string completion(const Grammar& grammar, const std::string& shell) {
-    return shell == "bash" ? bash(grammar) : shell == "zsh" ? zsh(grammar) : fish(grammar);
+std::string completion(const std::string& shell) {
+    return shell == "bash" ? bash : shell == "zsh" ? zsh : fish;
+}
+
+std::string offers(const std::vector<Command>& commands, const std::string& line) {
+    std::vector<std::string> words;
+    try {
+        words = words_of(line + "x");  // the last word may be empty
+    } catch (const std::invalid_argument&) {
+        return {};  // within quotes
+    }
+    words.back().pop_back();
+    if (const auto equals = words.back().find('=');
+        words.back().starts_with("--") && equals != std::string::npos) {
+        words.push_back(words.back().substr(equals + 1));
+        words[words.size() - 2].resize(equals);
+    }
+    const std::string word = words.back(), before = words.size() > 1 ? words[words.size() - 2] : "";
+    words.pop_back();
+    const auto given =
+        std::ranges::find_if(words.begin() + std::min<std::ptrdiff_t>(1, std::ssize(words)),
+                             words.end(), [](const std::string& w) { return !w.starts_with('-'); });
+    Offers list;
+    if (given == words.end()) {
+        for (const auto& command : commands)
+            if (!command.hidden) list.emplace_back(command.name, command.description);
+        add_names(list, version_option, version_help);
+        add_names(list, help_option, help_help);
+        return text_of(list);
+    }
+    const auto command = std::ranges::find(commands, *given, &Command::name);
+    if (command == commands.end()) return {};
+    for (const auto& option : command->options)
+        if (has_name(option, before) && value_of(option).kind != Value::Kind::none)
+            return text_of(value_of(option));
+    for (const auto& option : command->options) {
+        if (word.starts_with('-') && option.names.starts_with('-'))
+            add_names(list, option.names, option.description);
+        if (!word.starts_with('-') && !option.names.starts_with('-'))
+            return text_of(value_of(option));
+    }
+    if (word.starts_with('-')) add_names(list, help_option, help_help);
+    return text_of(list);
 }
 
 }  // namespace elastocheck::reports

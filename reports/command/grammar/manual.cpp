@@ -15,31 +15,37 @@ std::string text(std::string_view words) {
     return roff;
 }
 
-std::string list(const std::vector<OptionGrammar>& options) {
-    std::string page;
-    for (const auto& o : options)
-        page +=
-            ".TP\n" + (o.brief.empty() ? "" : "\\fB" + text(o.brief) + "\\fR, ") +
-            (o.name.starts_with('-') ? "\\fB" : "\\fI") + text(o.name) + "\\fR" +
-            (o.value_name.empty() || !o.name.starts_with('-') ? ""
-                                                              : " \\fI" + o.value_name + "\\fR") +
-            "\n" + text(o.description) + "\n";
-    return page;
+// "-o,--output": both in bold; a positional in italics.
+std::string entry(const std::string& names, const std::string& value,
+                  const std::string& description) {
+    const bool positional = !names.starts_with('-');
+    std::string page = std::string(".TP\n") + (positional ? "\\fI" : "\\fB");
+    for (const char c : names) page += c == ',' ? "\\fR, \\fB" : text(std::string(1, c));
+    return page + "\\fR" + (value.empty() || positional ? "" : " \\fI" + value + "\\fR") + "\n" +
+           text(description) + "\n";
 }
 
 }  // namespace
 
-std::string manual(const Grammar& all, const std::string& version) {
+std::string manual(const Program& program, const std::vector<Command>& commands,
+                   const std::string& version) {
+    const std::string help = entry(help_option, "", help_help);
     std::string page =
-        ".TH ELASTOCHECK 1 \"\" \"" + all.name + " " + text(version) +
-        "\" \"User Commands\"\n.SH NAME\n" + all.name +
+        ".TH ELASTOCHECK 1 \"\" \"" + program.name + " " + text(version) +
+        "\" \"User Commands\"\n.SH NAME\n" + program.name +
         " \\- verification of suspension solvers by independent solutions\n.SH SYNOPSIS\n.B " +
-        all.name + "\nCOMMAND [OPTION ...]\n.SH DESCRIPTION\n" + text(all.description) +
-        "\n.SH OPTIONS\n" + list(all.options) + ".SH COMMANDS\n";
-    for (const auto& command : all.commands)
-        page += ".SS " + text(all.name + " " + command.name) + "\n" + text(command.description) +
-                ".\n" + list(command.positionals) + list(command.options);
-    return page + ".SH EXIT STATUS AND FILES\n" + text(all.footer) + "\n";
+        program.name + "\nCOMMAND [OPTION ...]\n.SH DESCRIPTION\n" + text(program.description) +
+        "\n.SH OPTIONS\n" + entry(version_option, "", version_help) + help + ".SH COMMANDS\n";
+    for (const auto& command : commands) {
+        if (command.hidden) continue;
+        std::string positionals, options = help;
+        for (const auto& o : command.options)
+            (o.names.starts_with('-') ? options : positionals) +=
+                entry(o.names, value_of(o).name, o.description);
+        page += ".SS " + text(program.name + " " + command.name) + "\n" +
+                text(command.description) + ".\n" + positionals + options;
+    }
+    return page + ".SH EXIT STATUS AND FILES\n" + text(program.footer) + "\n";
 }
 
 }  // namespace elastocheck::reports

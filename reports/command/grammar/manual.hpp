@@ -2,11 +2,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "reports/command/grammar/grammar.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/parse.hpp"
 
 namespace elastocheck::reports {
 
-std::string manual(const Grammar& grammar, const std::string& version);
+std::string manual(const Program& program, const std::vector<Command>& commands,
+                   const std::string& version);
 
 }  // namespace elastocheck::reports

@@ -10,13 +10,39 @@
 #include <cmath>
 
 #include "models/reader/document/suggestions.hpp"
-#include "reports/command/grammar/arguments.hpp"
 #include "reports/command/grammar/exit_code.hpp"
-#include "reports/command/grammar/grammar.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
+
+// Throws std::invalid_argument for a word that is not UTF-8 or has control characters (escape.hpp:
+// flaw), since words appear in reports, annotations and terminals. A --reason may have several
+// lines.
+void check_words(int argc, char** argv) {
+    for (int k = 1; k < argc; ++k) {
+        const std::string_view word = argv[k];
+        std::string one_line(word);
+        if (word.starts_with("--reason=") || std::string_view(argv[k - 1]) == "--reason")
+            std::ranges::replace(one_line, '\n', ' ');
+        if (const std::string wrong = flaw(one_line); !wrong.empty())
+            throw std::invalid_argument(fmt::format("'{}': {}; names are one line of UTF-8 text",
+                                                    for_terminal(word), wrong));
+    }
+}
+
+// The command as given, for a shell; without --jobs and --quiet, which do not change a result.
+std::string command_line(int argc, char** argv) {
+    std::string line = "elastocheck";
+    for (int k = 1; k < argc; ++k) {
+        const std::string_view word = argv[k];
+        if (word == "--jobs") ++k;
+        if (word == "--quiet" || word == "--jobs" || word.starts_with("--jobs=")) continue;
+        line += " " + for_shell(word);
+    }
+    return line;
+}
 
 std::string flaw_of_a_name(const std::string& word) {
     if (word.empty()) return "'' is no name";
@@ -28,7 +54,7 @@ void check(CLI::Option& option, const Value& value) {
     if (value.kind == Value::Kind::file || value.kind == Value::Kind::folder)
         option.check(CLI::Validator(flaw_of_a_name, ""));
     if (value.kind == Value::Kind::words) option.check(CLI::IsMember(value.words).description(""));
-    if (value.kind != Value::Kind::text) option.type_name(value_name(value));
+    if (value.kind != Value::Kind::text) option.type_name(value.name);
 }
 
 // CLI11 reads numbers by the locale's decimal sign; from_chars reads a point.
@@ -135,8 +161,8 @@ int parse_and_run(const Program& program, const std::vector<Command>& commands, 
                   char** argv) {
     CLI::App app{program.description, program.name};
     app.require_subcommand(1);
-    app.set_version_flag("--version", program.version, version_help);
-    app.set_help_flag("-h,--help", help_help);
+    app.set_version_flag(version_option, program.version, version_help);
+    app.set_help_flag(help_option, help_help);
     app.footer(program.footer);
     std::vector<const CLI::App*> parsed;
     for (const auto& command : commands) {

@@ -1,7 +1,6 @@
 // The program as a whole: its name and description, and all of its commands.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,10 +9,12 @@
 
 namespace elastocheck::reports {
 
-// `place` returns where a document of the source tree is found, for the last lines of --help.
-Program program(const std::function<std::string(const std::string&)>& place);
+// For --help: documents of the source tree are named by the path at which they are installed, or at
+// which they are in the source tree for a program in its build tree.
+Program program();
 
-// The commands of the registry, and the two that print their description: completion, man.
+// In the order of --help; then the hidden ones that print this description: completion, complete,
+// man.
 std::vector<Command> commands();
 
 }  // namespace elastocheck::reports

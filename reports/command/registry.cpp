@@ -1,0 +1,101 @@
+#include "reports/command/registry.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "reports/command/grammar/completion.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/grammar/manual.hpp"
+#include "reports/files/provenance.hpp"
+#include "reports/files/terminal.hpp"
+
+namespace elastocheck::reports {
+
+// Each is in NAME_command.cpp; inspect, compare, converge and trade are in study_commands.cpp.
+Command certify_command();
+Command compare_command();
+Command converge_command();
+Command equilibria_command();
+Command export_command();
+Command gate_command();
+Command import_command();
+Command inspect_command();
+Command judge_command();
+Command new_command();
+Command report_command();
+Command solve_command();
+Command stress_command();
+Command trade_command();
+
+namespace {
+
+// Path of a document by its name in the source tree: PREFIX/share/doc/elastocheck/NAME of an
+// installed program, or the one in the source tree; else only its name.
+std::string documentation(const std::string& name) {
+    namespace fs = std::filesystem;
+    std::error_code failed;
+    for (fs::path file = fs::read_symlink("/proc/self/exe", failed), folder = file.parent_path();
+         !failed && folder != file; file = folder, folder = folder.parent_path())
+        for (const fs::path& place : {folder / "share/doc/elastocheck" / name, folder / name})
+            if (std::error_code unseen; fs::is_regular_file(place, unseen)) return place.string();
+    return name;
+}
+
+std::string installed(const std::string& name) { return "PREFIX/share/doc/elastocheck/" + name; }
+
+Program program_with(std::string (*place)(const std::string&)) {
+    return {
+        .name = "elastocheck",
+        .description =
+            "Verification of a suspension solver: one scene, solved by three independent methods:\n"
+            "the linear recursive formula of Kang's paper, the full equilibrium equations, and "
+            "an energy minimisation.",
+        .version = version_text(provenance()),
+        .footer = fmt::format(
+            "Exit codes: 0 success, 1 failed judgement or gate, 2 bad input, 3 could not judge, 4 "
+            "internal error.\n"
+            "Scene files: {}\nOutput files: {}\n",
+            place("models/scenes/README.md"), place("reports/README.md"))};
+}
+
+// A hidden command that prints a text made from its only argument.
+Command printing(const char* name, const char* description, std::vector<Option> options,
+                 std::function<std::string()> text) {
+    return {.name = name,
+            .description = description,
+            .options = std::move(options),
+            .run =
+                [text = std::move(text)](const std::string&) {
+                    print(text());
+                    return fine;
+                },
+            .hidden = true};
+}
+
+}  // namespace
+
+Program program() { return program_with(documentation); }
+
+std::vector<Command> commands() {
+    std::vector<Command> all{inspect_command(),  solve_command(),     compare_command(),
+                             converge_command(), trade_command(),     new_command(),
+                             import_command(),   export_command(),    gate_command(),
+                             certify_command(),  judge_command(),     report_command(),
+                             stress_command(),   equilibria_command()};
+    const auto given = std::make_shared<std::string>();
+    all.push_back(printing(
+        "completion", "Print the completion of this command for a shell",
+        {{"SHELL", Text{given.get(), one_of({"bash", "zsh", "fish"})}, "bash, zsh or fish", true}},
+        [given] { return completion(*given); }));
+    all.push_back(printing("complete", "Print what may stand at the end of a command line",
+                           {{"LINE", Text{given.get()}, "the line up to the cursor", true}},
+                           [given] { return offers(commands(), *given); }));
+    all.push_back(printing("man", "Print the page of the manual", {}, [] {
+        return manual(program_with(installed), commands(), provenance().version);
+    }));
+    return all;
+}
+
+}  // namespace elastocheck::reports
