@@ -1,4 +1,4 @@
-#include "reports/tables/studies/stress_tables.hpp"
+#include "reports/tables/stress_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@ namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
+using compare::finite_or_nan;
 using compare::Survival;
 using compare::Verdict;
 
@@ -24,9 +25,6 @@ constexpr std::size_t terminal_width = 118;  // of a terminal
 compare::Column words(std::string name, std::string description = {}) {
     return {std::move(name), {}, std::move(description), true};
 }
-
-// NaN for an infinite or missing value.
-double finite_or_nan(double value) { return std::isfinite(value) ? value : std::nan(""); }
 
 std::string signs(const Survival& survival, const std::string& scene, const std::string& sweep,
                   const std::string& variant = {}) {
