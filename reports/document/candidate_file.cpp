@@ -16,8 +16,10 @@
 #include "compare/outputs/not_a_number.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "models/reader/tables/csv.hpp"
 #include "reports/files/limits.hpp"
 #include "reports/json/json.hpp"
+#include "reports/json/json_cursor.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -93,11 +95,12 @@ struct Meaning {
         leg,
         nothing
     } kind = Kind::nothing;
-    std::string name;  // in the file
+    std::string name{};  // in the file
     std::size_t channel = 0;
     bool change = false;
     double factor = 1, offset = 0;
-    std::string unit;  // of a parameter, as written; empty: the branch's own, or given by a column
+    std::string
+        unit{};  // of a parameter, as written; empty: the branch's own, or given by a column
 };
 using MeaningKind = Meaning::Kind;
 
@@ -107,8 +110,7 @@ std::optional<Meaning> output_of(std::string_view name, const compare::Compariso
         const auto& channel = all.channels[c];
         if (!name.starts_with(channel.name)) continue;
         std::string_view rest = name.substr(channel.name.size());
-        Meaning meaning{
-            .kind = MeaningKind::output, .name = std::string(name), .channel = c, .unit = {}};
+        Meaning meaning{.kind = MeaningKind::output, .name = std::string(name), .channel = c};
         if (rest.starts_with("_change_")) {
             meaning.change = true;
             rest.remove_prefix(8);
@@ -131,8 +133,7 @@ std::optional<Meaning> parameter_of(std::string_view name) {
     for (const std::string_view word : {"parameter", "load"}) {
         if (!name.starts_with(word)) continue;
         std::string_view rest = name.substr(word.size());
-        if (rest.empty())
-            return Meaning{.kind = MeaningKind::parameter, .name = std::string(name), .unit = {}};
+        if (rest.empty()) return Meaning{.kind = MeaningKind::parameter, .name = std::string(name)};
         if (rest.starts_with(" [") && rest.ends_with("]"))
             rest = rest.substr(2, rest.size() - 3);
         else if (rest.starts_with("_"))
@@ -169,7 +170,7 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
     const auto wrong = [&](const char* field, const std::string& what) {
         reader::fail(map.file, entry.line, fmt::format("columns.{}.{}", entry.theirs, field), what);
     };
-    Meaning meaning{.name = entry.theirs, .unit = {}};
+    Meaning meaning{.name = entry.theirs};
     if (entry.output == "branch") {
         meaning.kind = MeaningKind::branch;
     } else if (entry.output == "parameter" || entry.output == "load") {
@@ -240,18 +241,17 @@ Table read_table(std::string_view csv, const std::string& file, const compare::C
         for (const auto cell : cells) {
             const std::string name(cell);
             if (std::ranges::find(table.columns, name, &Meaning::name) != table.columns.end())
-                fail_at(file, line,
-                        fmt::format("column {} stands there twice", reader::quote(name)));
+                fail_at(file, line, fmt::format("column {} is named twice", reader::quote(name)));
             const auto entry = std::ranges::find(map.columns, name, &ColumnMap::Entry::theirs);
             std::optional<Meaning> meaning;
             if (entry != map.columns.end())
                 meaning = mapped(*entry, map, all);
             else if (name == "branch")
-                meaning = Meaning{.kind = MeaningKind::branch, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::branch, .name = name};
             else if (name == "leg")
-                meaning = Meaning{.kind = MeaningKind::leg, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::leg, .name = name};
             else if (name == "unit")
-                meaning = Meaning{.kind = MeaningKind::parameter_unit, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::parameter_unit, .name = name};
             else
                 meaning = parameter_of(name);
             if (!meaning) meaning = output_of(name, all);
@@ -263,7 +263,7 @@ Table read_table(std::string_view csv, const std::string& file, const compare::C
                             fmt::format("unknown column {}{}", reader::quote(name),
                                         reader::did_you_mean(name, known, "allowed")));
                 left_out.push_back(for_terminal(name) + nearest(name, all));
-                meaning = Meaning{.kind = MeaningKind::nothing, .name = name, .unit = {}};
+                meaning = Meaning{.kind = MeaningKind::nothing, .name = name};
             }
             table.columns.push_back(*meaning);
         }
@@ -401,6 +401,8 @@ std::vector<bool> nodes_of(const Model& model) {
     return beam;
 }
 
+double finite_or_infinite(double value) { return std::isfinite(value) ? value : INFINITY; }
+
 struct Bodies {
     const Scene& scene;
     const Model& model;
@@ -426,7 +428,7 @@ struct Bodies {
         pose.p.coeffs().setConstant(nan);
         return {model.bodies.size(), pose};
     }
-    void check_all_said(const compare::CandidateState& state, const std::string& file,
+    void check_complete(const compare::CandidateState& state, const std::string& file,
                         int line) const {
         for (std::size_t b = 0; b < node.size(); ++b)
             if (!node[b] && std::isnan(state.poses[b].r.x()))
@@ -452,17 +454,31 @@ void put(Pose& pose, const Eigen::Vector3d& r, const Eigen::Vector4d& wxyz, cons
     pose.p.normalize();
 }
 
-double entry(const json& value, const std::string& what, const std::string& file, int line) {
-    if (value.is_null()) return INFINITY;  // JSON's representation of a value that is not finite
-    if (!value.is_number()) fail_at(file, line, fmt::format("{}: expected a number", what));
-    return value.get<double>();
+// null is JSON's representation of a value that is not finite.
+std::vector<double> numbers_of(const JsonCursor& list, std::size_t count, const char* what) {
+    auto numbers = list.numbers();
+    if (numbers.size() != count) list.fail(std::string("expected a list of ") + what);
+    return numbers;
 }
 
-const json& field(const json& object, const char* key, const std::string& what,
-                  const std::string& file, int line) {
-    const auto found = object.find(key);
-    if (found == object.end()) fail_at(file, line, fmt::format("{}: missing", what));
-    return *found;
+compare::CandidateState state_of(const JsonCursor& object, const std::string& file, int line,
+                                 Bodies& bodies, const compare::Comparison& all,
+                                 const ColumnMap& map) {
+    object.only_keys({"branch", "load", "bodies"});
+    compare::CandidateState state{
+        branch_named(object["branch"].text(), all, map, file, line, "branch"),
+        finite_or_infinite(object["load"].number()), bodies.nowhere()};
+    for (const auto& [name, pose] : object["bodies"].entries()) {
+        const auto r = numbers_of(pose["position"], 3, "3 numbers [m]"),
+                   p = numbers_of(pose["orientation"], 4, "4 numbers, w, x, y, z");
+        Pose read;
+        put(read, {r[0], r[1], r[2]}, {p[0], p[1], p[2], p[3]}, pose["orientation"].path, file,
+            line);
+        if (const int b = bodies.find(name, file, line); b >= 0)
+            state.poses[static_cast<std::size_t>(b)] = read;
+    }
+    bodies.check_complete(state, file, line);
+    return state;
 }
 
 std::vector<compare::CandidateState> states_of_json(std::string_view text, const std::string& file,
@@ -479,54 +495,15 @@ std::vector<compare::CandidateState> states_of_json(std::string_view text, const
         if (states.size() == most_measured)
             fail_at(file, line,
                     fmt::format("more states than {}, the most that are read", most_measured));
-        json object;
         try {
-            object = parse_json(one);
+            const json object = parse_json(one);
+            const std::string place = fmt::format("{}:{}", file, line);
+            states.push_back(state_of({&object, "", &place}, file, line, bodies, all, map));
         } catch (const JsonError& error) {
             fail_at(file, line, error.what());
+        } catch (const ResultError& error) {
+            throw SheetError(error.what());
         }
-        if (!object.is_object())
-            fail_at(file, line, "expected an object with branch, load and bodies");
-        for (const auto& [key, value] : object.items())
-            if (key != "branch" && key != "load" && key != "bodies")
-                fail_at(file, line,
-                        fmt::format(
-                            "unknown field {}{}", reader::quote(key),
-                            reader::did_you_mean(key, {"branch", "load", "bodies"}, "allowed")));
-        const json& branch = field(object, "branch", "branch", file, line);
-        if (!branch.is_string()) fail_at(file, line, "branch: expected a name");
-        compare::CandidateState state;
-        state.branch = branch_named(branch.get<std::string>(), all, map, file, line, "branch");
-        state.load = entry(field(object, "load", "load", file, line), "load", file, line);
-        state.poses = bodies.nowhere();
-        const json& list = field(object, "bodies", "bodies", file, line);
-        if (!list.is_object())
-            fail_at(file, line, "bodies: expected an object, each body under its name");
-        for (const auto& [name, pose] : list.items()) {
-            const std::string path = "bodies." + reader::shown(name);
-            if (!pose.is_object())
-                fail_at(file, line, path + ": expected position and orientation");
-            const json &at = field(pose, "position", path + ".position", file, line),
-                       &turned = field(pose, "orientation", path + ".orientation", file, line);
-            if (!at.is_array() || at.size() != 3)
-                fail_at(file, line, path + ".position: expected a list of 3 numbers [m]");
-            if (!turned.is_array() || turned.size() != 4)
-                fail_at(file, line,
-                        path + ".orientation: expected a list of 4 numbers, w, x, y, z");
-            Eigen::Vector3d r;
-            Eigen::Vector4d wxyz;
-            for (int k = 0; k < 3; ++k)
-                r[k] = entry(at[static_cast<std::size_t>(k)], path + ".position", file, line);
-            for (int k = 0; k < 4; ++k)
-                wxyz[k] =
-                    entry(turned[static_cast<std::size_t>(k)], path + ".orientation", file, line);
-            Pose read;
-            put(read, r, wxyz, path + ".orientation", file, line);
-            if (const int b = bodies.find(name, file, line); b >= 0)
-                state.poses[static_cast<std::size_t>(b)] = read;
-        }
-        bodies.check_all_said(state, file, line);
-        states.push_back(std::move(state));
     }
     if (states.empty()) fail_at(file, 0, "no state in it");
     return states;
@@ -556,7 +533,7 @@ std::vector<compare::CandidateState> states_of_table(std::string_view csv, const
         const std::string branch = branch_named(cells[place[0]], all, map, file, line, "branch");
         const auto number = [&](std::size_t k) {
             const double value = number_or_none(cells[place[k]], file, line, names[k]);
-            if (std::isnan(value)) fail_at(file, line, names[k] + ": nothing stands there");
+            if (std::isnan(value)) fail_at(file, line, names[k] + ": an empty cell");
             return value;
         };
         const double load = number(1);
@@ -579,13 +556,23 @@ std::vector<compare::CandidateState> states_of_table(std::string_view csv, const
         }
     });
     for (std::size_t k = 0; k < states.size(); ++k)
-        bodies.check_all_said(states[k], file, lines[k]);
+        bodies.check_complete(states[k], file, lines[k]);
     return states;
 }
 
 bool begins_as_json(std::string_view content) {
     const auto first = content.find_first_not_of(" \t\r\n");
     return first != content.npos && content[first] == '{';
+}
+
+// JSON lines, or a table with a column `body`.
+bool holds_states(std::string_view content) {
+    if (begins_as_json(content)) return true;
+    reader::CsvLines lines(content);
+    if (!lines.next()) return false;
+    const auto cells = lines.cells();
+    return std::ranges::find(cells, "body") != cells.end() &&
+           std::ranges::find(cells, "qw") != cells.end();
 }
 
 }  // namespace
@@ -610,7 +597,7 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
     };
     for (const auto& [name, at] : entries(top.require("columns"))) {
         at.only_keys({"output", "unit", "sign", "offset", "change"});
-        ColumnMap::Entry entry{.theirs = name, .output = {}, .unit = {}, .line = at.value->line};
+        ColumnMap::Entry entry{.theirs = name, .line = at.value->line};
         entry.output = at.require("output").text("an output of the scene, 'parameter' or 'branch'");
         if (const auto unit = at.optional("unit")) entry.unit = unit->text("a unit");
         if (const auto sign = at.optional("sign")) {
@@ -625,26 +612,6 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
         for (const auto& [name, at] : entries(*branches))
             map.branches.emplace_back(name, at.text("a branch of the scene"));
     return map;
-}
-
-bool holds_states(std::string_view content) {
-    if (begins_as_json(content)) return true;
-    bool body = false, qw = false;
-    try {
-        read_sheet(
-            content.substr(0,
-                           content.find('\n', content.find_first_not_of(" \t\r\n") == content.npos
-                                                  ? 0
-                                                  : content.find_first_not_of(" \t\r\n"))),
-            "", 0,
-            [&](const Cells& cells, int) {
-                body = std::ranges::find(cells, "body") != cells.end();
-                qw = std::ranges::find(cells, "qw") != cells.end();
-            },
-            [](const Cells&, int) {});
-    } catch (const SheetError&) {
-    }
-    return body && qw;
 }
 
 compare::Candidate read_candidate(std::string_view content, const std::string& file,

@@ -1,4 +1,5 @@
-// Reader of candidate files and measurements: a table of outputs, or states. Formats in reports/README.md.
+// Reader of candidate files and measurements: a table of outputs, or states. Formats in
+// reports/README.md.
 #pragma once
 
 #include <string>
@@ -15,9 +16,9 @@ namespace elastocheck::reports {
 // Mapping from the file's column and branch names to those of the scene.
 struct ColumnMap {
     struct Entry {
-        std::string theirs;
-        std::string output;  // an output of the scene, "parameter" or "branch"
-        std::string unit;    // empty: the output's own
+        std::string theirs{};
+        std::string output{};  // an output of the scene, "parameter" or "branch"
+        std::string unit{};    // empty: the output's own
         double sign = 1,
                // output = sign · number · unit + offset, the offset in the output's own unit
             offset = 0;
@@ -49,10 +50,7 @@ PointTable read_points(std::string_view csv, const std::string& file,
 // Whether a channel is the travel of a wheel, which gives the place of a point.
 bool is_travel(const compare::Channel& channel);
 
-// Whether the text contains states: JSON lines, or a table with a column `body`.
-bool holds_states(std::string_view content);
-
-// Throws SheetError "file:line: ...".
+// States are recognised by a JSON object, or a column `body`. Throws SheetError "file:line: ...".
 compare::Candidate read_candidate(std::string_view content, const std::string& file,
                                   std::string name, const Scene& scene, const Model& model,
                                   const compare::Comparison& comparison, const ColumnMap& map = {});

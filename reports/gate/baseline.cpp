@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "reports/files/subprocess.hpp"
 #include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
-#include "reports/text/escape.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -364,14 +363,13 @@ auto with_json(const BaselineText& text, const std::string& file_name, Use use) 
     }
 }
 
-// First line of the output of a command, "" when it fails.
-std::string first_line(const std::string& command) {
-    FILE* pipe = ::popen((command + " 2>/dev/null").c_str(), "r");
-    if (pipe == nullptr) return "";
-    char buffer[256];
-    std::string line;
-    while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) line += buffer;
-    return ::pclose(pipe) == 0 ? line.substr(0, line.find('\n')) : "";
+// First line of the output of git in a folder, "" when it fails. A container's checkout often
+// belongs to another user, which git rejects; only blobs are compared.
+std::string git(const std::string& folder, std::vector<std::string> words) {
+    words.insert(words.begin(), {"git", "-c", "safe.directory=*", "-C", folder});
+    constexpr double limit = 60;  // [s]
+    const ProcessResult result = run(words, limit);
+    return result.succeeded() ? result.output_text.substr(0, result.output_text.find('\n')) : "";
 }
 
 }  // namespace
@@ -450,15 +448,11 @@ BuildDistance distance(const Provenance& was, const Provenance& is) {
 }
 
 std::string not_committed(const fs::path& file) {
-    // A container's checkout often belongs to another user, which git rejects; only blobs are
-    // compared.
-    const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-    const std::string git = "git -c safe.directory='*' -C " + for_shell(folder) + " ";
-    const std::string leaf = file.filename().string();
-    const std::string committed =
-        first_line(git + "rev-parse --verify -q " + for_shell("HEAD:./" + leaf));
+    const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".",
+                      leaf = file.filename().string(),
+                      committed = git(folder, {"rev-parse", "--verify", "-q", "HEAD:./" + leaf});
     if (committed.empty()) return "it is not committed to a git repository";
-    if (committed != first_line(git + "hash-object -- " + for_shell(leaf)))
+    if (committed != git(folder, {"hash-object", "--", leaf}))
         return "it differs from what is committed";
     return "";
 }
