@@ -1,45 +1,27 @@
 #include "reports/command/browser.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
+
+#include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string variable(const char* name) {
     const char* value = std::getenv(name);
     return value == nullptr ? "" : value;
 }
 
-std::vector<std::string> parts(const std::string& list, char between) {
-    std::vector<std::string> all;
-    std::istringstream in(list);
-    for (std::string part; std::getline(in, part, between);)
-        if (!part.empty()) all.push_back(part);
-    return all;
-}
+bool succeeds(const std::string& line) { return std::system(line.c_str()) == 0; }
 
-// Looks up the first word as a shell does.
-bool is_executable(const std::string& command) {
-    const auto words = parts(command, ' ');
-    if (words.empty()) return false;
-    if (words.front().find('/') != std::string::npos)
-        return ::access(words.front().c_str(), X_OK) == 0;
-    for (const auto& folder : parts(variable("PATH"), ':'))
-        if (::access((fs::path(folder) / words.front()).c_str(), X_OK) == 0) return true;
-    return false;
+bool is_there(const std::string& command) {
+    const std::string program = command.substr(0, command.find(' '));
+    return !program.empty() && succeeds("command -v " + for_shell(program) + " >/dev/null 2>&1");
 }
 
 }  // namespace
@@ -47,39 +29,24 @@ bool is_executable(const std::string& command) {
 std::string browser() {
     if (const std::string ci = variable("CI"); !ci.empty() && ci != "false" && ci != "0")
         throw std::invalid_argument("--open: not in CI (variable CI is set)");
-    for (const auto& command : parts(variable("BROWSER"), ':'))
-        if (is_executable(command)) return command;
-    if (is_executable("xdg-open")) return "xdg-open";
+    std::istringstream list(variable("BROWSER"));
+    for (std::string command; std::getline(list, command, ':');)
+        if (is_there(command)) return command;
+    if (is_there("xdg-open")) return "xdg-open";
     throw std::invalid_argument(
         "--open: there is nothing to open a page with: $BROWSER names no program, and xdg-open (of "
         "xdg-utils) is not there");
 }
 
 void open_in(const std::string& browser, const std::string& page) {
-    const std::string address = fs::absolute(page).string();
-    auto words = parts(browser, ' ');
-    bool placed = false;  // %s is replaced by the page, as usual for $BROWSER
-    for (auto& word : words)
-        if (word == "%s") word = address, placed = true;
-    if (!placed) words.push_back(address);
-    std::vector<char*> argv;
-    for (auto& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
+    const std::string address = for_shell(std::filesystem::absolute(page).string());
+    std::string line = browser;
+    if (const auto at = line.find("%s"); at != line.npos)
+        line.replace(at, 2, address);
+    else
+        line += " " + address;
     // Its output goes to standard error: standard output may be a document.
-    posix_spawn_file_actions_t streams;
-    ::posix_spawn_file_actions_init(&streams);
-    ::posix_spawn_file_actions_adddup2(&streams, STDERR_FILENO, STDOUT_FILENO);
-    pid_t child = 0;
-    const int failed =
-        ::posix_spawnp(&child, argv.front(), &streams, nullptr, argv.data(), environ);
-    ::posix_spawn_file_actions_destroy(&streams);
-    if (failed != 0)
-        throw std::invalid_argument(fmt::format("--open: {} cannot be run ({}); the page is {}",
-                                                browser, std::strerror(failed), page));
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    if (!succeeds(line + " >&2"))
         throw std::invalid_argument(
             fmt::format("--open: {} failed; the page is {}", browser, page));
 }

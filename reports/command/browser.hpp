@@ -5,12 +5,12 @@
 
 namespace elastocheck::reports {
 
-// Browser program: the first existing one of the colon-separated list $BROWSER, else xdg-open.
-// Throws std::invalid_argument without a browser, and where CI is set.
+// Command of a browser: the first of the colon-separated list $BROWSER whose program exists, else
+// xdg-open. Throws std::invalid_argument without a browser, and where CI is set.
 std::string browser();
 
-// Runs it on the page, without a shell, and waits for it. Throws std::invalid_argument where it
-// fails.
+// Runs it in a shell with the page in place of %s, or after it, and waits for it. Throws
+// std::invalid_argument where it fails.
 void open_in(const std::string& browser, const std::string& page);
 
 }  // namespace elastocheck::reports

@@ -4,7 +4,6 @@
 
 #include "compare/proofs/certify.hpp"
 #include "compare/tables/rows.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
@@ -18,13 +17,10 @@
 namespace elastocheck::reports {
 namespace {
 
-struct CertifyRequest {
-    std::string scene, tolerance = compare::claimed_accuracy, folder;
+struct CertifyRequest : SceneRequest {
+    std::string tolerance = compare::claimed_accuracy;
     std::vector<std::string> solvers;
     int points = compare::CertifyOptions{}.points;
-    Settings settings;
-    bool as_json = false;
-    Running running;
 };
 
 compare::SolverSettings settings_of(const std::string& solver) {
@@ -35,7 +31,7 @@ compare::SolverSettings settings_of(const std::string& solver) {
     return settings;
 }
 
-int certify(const CertifyRequest& request, const std::string& command) {
+int certify(const CertifyRequest& request, const Delivery& delivery) {
     compare::CertifyOptions options;
     options.tolerance = compare::claim(request.tolerance);  // throws before the work
     if (!request.folder.empty()) Staging::check(request.folder);
@@ -43,18 +39,13 @@ int certify(const CertifyRequest& request, const std::string& command) {
     options.points = request.points;
     options.threads = threads_of(request.running);
     options.progress = progress;
-    const Delivery delivery{
-        .folder = request.folder, .as_json = request.as_json, .command = command};
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const compare::CertifyStudy study = compare::certify(loaded.model, options);
     progress("");
     delivery.print_text(certify_text(study));
     const bool conclusive = study.conclusive();
     if (delivery.wants_document()) {
-        nlohmann::ordered_json part =
-            scene_document(loaded.scene, read_whole(request.scene), loaded.model,
-                           recursive::diagnose(loaded.model));
-        if (loaded.trim) add_trim(part, *loaded.trim);
+        nlohmann::ordered_json part = document_of(loaded, request.scene);
         part["certify"] = certify_json(study);
         add_verdict(
             part, study.points(),
@@ -71,22 +62,23 @@ Command certify_command() {
     const auto request = std::make_shared<CertifyRequest>();
     std::vector<std::string> known{"equilibrium", "energy"};
     for (const auto& method : recursive::methods) known.emplace_back(method.name);
-    return {"certify",
-            "Prove by interval arithmetic that computed states are equilibria and locally unique",
-            {scene_option(request->scene),
-             set_option(request->settings),
-             {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
-              "solver of the points: equilibrium, energy, series (default: these three), or a "
-              "method of the recursion"},
-             {"--tolerance", Text{&request->tolerance},
-              "accuracy to be proved (default: 1e-6mm,1e-6deg)"},
-             {"--points", Integer{&request->points, 1, most_steps},
-              "points of each direction of a branch, besides its start (default: 20)"},
-             output_option(request->folder, "folder for result.json and certify.csv"),
-             json_option(request->as_json),
-             jobs_option(request->running),
-             quiet_option(request->running)},
-            [request](const std::string& line) { return certify(*request, line); }};
+    return {
+        "certify",
+        "Prove by interval arithmetic that computed states are equilibria and locally unique",
+        {scene_option(request->scene),
+         set_option(request->settings),
+         {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
+          "solver of the points: equilibrium, energy, series (default: these three), or a "
+          "method of the recursion"},
+         {"--tolerance", Text{&request->tolerance},
+          "accuracy to be proved (default: 1e-6mm,1e-6deg)"},
+         {"--points", Integer{&request->points, 1, most_steps},
+          "points of each direction of a branch, besides its start (default: 20)"},
+         output_option(request->folder, "folder for result.json and certify.csv"),
+         json_option(request->as_json),
+         jobs_option(request->running),
+         quiet_option(request->running)},
+        [request](const std::string& line) { return certify(*request, request->delivery(line)); }};
 }
 
 }  // namespace elastocheck::reports

@@ -7,7 +7,39 @@
 
 namespace elastocheck::reports {
 
+std::vector<Option> SceneRequest::options() {
+    return {scene_option(scene), set_option(settings), json_option(as_json)};
+}
+
+std::vector<Option> SceneRequest::options_of_a_run() {
+    auto list = options();
+    list.push_back(jobs_option(running));
+    list.push_back(quiet_option(running));
+    return list;
+}
+
 void print_document(const nlohmann::ordered_json& document) { print(document.dump(1) + "\n"); }
+
+nlohmann::ordered_json document_head(const char* schema, const std::string& command) {
+    return {
+        {"schema", schema}, {"reproduce", command}, {"provenance", provenance_json(provenance())}};
+}
+
+nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {
+    auto part = scene_document(loaded.scene, read_whole(file), loaded.model);
+    if (loaded.trim) add_trim(part, *loaded.trim);
+    if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
+    return part;
+}
+
+void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files) {
+    write_folder(delivery.folder, files);
+    std::string written;
+    for (const auto& file : files)
+        written += fmt::format("{}{}/{}", written.empty() ? "" : ", ", delivery.folder, file.name);
+    written = fmt::format("Written: {}\n", written);
+    delivery.as_json ? print_error(written) : print(written);
+}
 
 void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
              std::vector<NamedContent> tables) {
@@ -17,15 +49,7 @@ void deliver(const Delivery& delivery, nlohmann::ordered_json scene,
         if (result["scenes"][0].contains("branches"))
             tables.insert(tables.begin(), {"curves.csv", curves_csv(result, "result.json")});
         tables.insert(tables.begin(), {"result.json", result.dump(1) + "\n"});
-        write_folder(delivery.folder, tables);
-        std::string written;
-        for (const auto& file : tables)
-            written +=
-                fmt::format("{}{}/{}", written.empty() ? "" : ", ", delivery.folder, file.name);
-        if (delivery.as_json)
-            print_error("Written: {}\n", written);
-        else
-            print("Written: {}\n", written);
+        deliver_files(delivery, tables);
     }
     if (delivery.as_json) print_document(result);
 }

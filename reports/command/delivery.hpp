@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
 
@@ -22,8 +24,33 @@ struct Delivery {
     }
 };
 
+// Input of every command on one scene.
+struct SceneRequest {
+    std::string scene, folder;  // folder: -o
+    Settings settings;
+    bool as_json = false;
+    Running running;
+
+    Delivery delivery(const std::string& line) const {
+        return {.folder = folder, .as_json = as_json, .command = line};
+    }
+    // SCENE, --set, --json; of a long run also --jobs, --quiet.
+    std::vector<Option> options();
+    std::vector<Option> options_of_a_run();
+};
+
 // Writes one document, and nothing else, to standard output.
 void print_document(const nlohmann::ordered_json& document);
+
+// {schema, reproduce, provenance}: the head of a document other than result.json.
+nlohmann::ordered_json document_head(const char* schema, const std::string& command);
+
+// A scene of result.json without results: the compiled model, the trim, the reader's warnings.
+// `file` is the scene's.
+nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file);
+
+// Writes the files to the folder in one step, and names them on the terminal.
+void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files);
 
 // Writes the result document of one scene: to the folder, with curves.csv and `tables` beside it,
 // in one step; to standard output; or both.

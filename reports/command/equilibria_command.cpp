@@ -8,44 +8,28 @@
 #include <vector>
 
 #include "compare/proofs/multiple_equilibria.hpp"
-#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/load_scene.hpp"
-#include "reports/document/document.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/tables/equilibria.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
-struct EquilibriaRequest {
-    std::string scene;
-    Settings settings;
+struct EquilibriaRequest : SceneRequest {
     std::string branch;  // empty: the first
     double at = 0;       // of its parameter, in display units: N, N·m, mm, deg
     double turned = 90;  // excludes states with a body rotated further [deg]
-    bool as_json = false;
 };
-
-const Branch& branch_named(const Model& model, const std::string& name) {
-    if (name.empty()) return model.branches.front();
-    std::vector<std::string> names;
-    for (const auto& branch : model.branches) {
-        if (branch.name == name) return branch;
-        names.push_back(branch.name);
-    }
-    throw std::invalid_argument(fmt::format("--branch: the scene has no branch {}{}",
-                                            reader::quote(name),
-                                            reader::did_you_mean(name, names, "branches")));
-}
 
 // Exit code 0: the branch reaches this value and all found equilibria are proved; else 3.
 int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
     if (!std::isfinite(request.at)) throw std::invalid_argument("--at: not a finite number");
     const LoadedScene loaded = load_scene(request.scene, request.settings);
-    const Branch& branch = branch_named(loaded.model, request.branch);
+    const Branch& branch = request.branch.empty() ? loaded.model.branches.front()
+                                                  : branch_named(loaded.model, request.branch);
     const double a = request.at / compare::in_unit(compare::unit_of(branch.unit));
     const auto all = compare::find_equilibria(
         loaded.model, branch, a,
@@ -53,9 +37,7 @@ int equilibria(const EquilibriaRequest& request, const Delivery& delivery) {
     progress("");
     delivery.print_text(equilibria_text(all));
     if (delivery.as_json) {
-        nlohmann::ordered_json document = {{"schema", equilibria_schema},
-                                           {"reproduce", delivery.command},
-                                           {"provenance", provenance_json(provenance())}};
+        nlohmann::ordered_json document = document_head(equilibria_schema, delivery.command);
         document.update(equilibria_json(loaded.model, all));
         print_document(document);
     }
@@ -78,7 +60,7 @@ Command equilibria_command() {
              set_option(request->settings),
              json_option(request->as_json)},
             [request](const std::string& line) {
-                return equilibria(*request, {.as_json = request->as_json, .command = line});
+                return equilibria(*request, request->delivery(line));
             }};
 }
 

@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
@@ -18,14 +17,10 @@ namespace elastocheck::reports {
 
 namespace {
 
-struct JudgeRequest {
-    std::string scene;
-    Settings settings;
+struct JudgeRequest : SceneRequest {
     CandidateRequest candidate;
     int steps = 0;  // of the candidate's command and of the references; 0: as in the scene
     std::string tolerance = "0.01mm,0.001deg,1%";
-    std::string folder;
-    bool as_json = false;
 };
 
 // Exit code: 0 all pass, 1 one fails, 3 none fails and one could not be judged.
@@ -34,7 +29,7 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
         throw std::invalid_argument(
             "judge: no candidate; give --candidate FILE or --candidate-command");
     const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::forces_too);
-    const bool asked = request.tolerance != JudgeRequest{}.tolerance;
+    const bool given = request.tolerance != JudgeRequest{}.tolerance;
     check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
@@ -55,11 +50,11 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
     int compared = 0;
     for (const auto& output : outputs) {
         const auto judgement =
-            judged(output, request.candidate, loaded, comparison, tolerance, asked);
-        const std::string said = sentence(judgement, comparison);
+            judged(output, request.candidate, loaded, comparison, tolerance, given);
+        const std::string verdict = sentence(judgement, comparison);
         delivery.print_text(candidate_text(judgement, comparison));
-        delivery.print_text(said + "\n");
-        candidates.push_back(candidate_json(judgement, comparison, said));
+        delivery.print_text(verdict + "\n");
+        candidates.push_back(candidate_json(judgement, comparison, verdict));
         compared += judgement.compared;
         for (const auto& reason : judgement.reasons)
             reasons.push_back(judgement.name + ": " + reason);
@@ -67,10 +62,7 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
         if (judgement.verdict == compare::Grade::not_judged && code == fine) code = could_not_judge;
     }
     if (delivery.wants_document()) {
-        auto part = scene_document(loaded.scene, read_whole(request.scene), model,
-                                   recursive::diagnose(model));
-        if (loaded.trim) add_trim(part, *loaded.trim);
-        if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
+        auto part = document_of(loaded, request.scene);
         add_comparison(part, loaded.scene, model, comparison);
         part["candidates"] = std::move(candidates);
         add_verdict(part, compared, reasons);
@@ -96,9 +88,7 @@ Command judge_command() {
          json_option(request->as_json)});
     return {"judge", "Judge the results of another solver by the references: pass or fail",
             std::move(options), [request](const std::string& line) {
-                return judge(
-                    *request,
-                    {.folder = request->folder, .as_json = request->as_json, .command = line});
+                return judge(*request, request->delivery(line));
             }};
 }
 

@@ -18,8 +18,6 @@
 #include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
-#include "models/reader/document/suggestions.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/browser.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
@@ -42,10 +40,9 @@
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/studies/precision_tables.hpp"
-#include "reports/tables/studies/stress_tables.hpp"
-#include "reports/tables/studies/study_tables.hpp"
-#include "reports/tables/studies/work_precision_tables.hpp"
+#include "reports/tables/stress_tables.hpp"
+#include "reports/tables/study_tables.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -99,12 +96,9 @@ json recommended(compare::Solves& solves, const compare::Trade& trade) {
 
 // Names of the measured file's columns and branches.
 ColumnMap map_of_measured(const ReportRequest& request) {
-    ColumnMap map;
-    if (!request.candidate.map.empty())
-        map = read_column_map(read_whole(request.candidate.map, largest_baseline),
-                              request.candidate.map);
+    ColumnMap map = map_of(request.candidate);
     if (request.branch_column != ReportRequest{}.branch_column)
-        map.columns.push_back({.theirs = request.branch_column, .output = "branch", .unit = {}});
+        map.columns.push_back({.theirs = request.branch_column, .output = "branch"});
     for (const auto& text : request.cases) map.branches.push_back(parse_load_case(text));
     return map;
 }
@@ -120,18 +114,12 @@ std::string add_measured(json& document, const ReportRequest& request) {
                : fmt::format("no point of {} is within the range of the legs", request.measured);
 }
 
-// The branches that are asked for, in the order of the scene.
-void select_branches(Scene& scene, Model& model, const std::vector<std::string>& asked) {
-    if (asked.empty()) return;
-    std::vector<std::string> names;
-    for (const auto& branch : model.branches) names.push_back(branch.name);
-    for (const auto& name : asked)
-        if (std::ranges::find(names, name) == names.end())
-            throw std::invalid_argument(fmt::format("--branch: {} has no branch {}{}", scene.source,
-                                                    reader::quote(name),
-                                                    reader::did_you_mean(name, names, "branches")));
+// Leaves only the branches of --branch, in the order of the scene.
+void select_branches(Scene& scene, Model& model, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    for (const auto& name : names) (void)branch_named(model, name);
     const auto left_out = [&](const Branch& branch) {
-        return std::ranges::find(asked, branch.name) == asked.end();
+        return std::ranges::find(names, branch.name) == names.end();
     };
     std::erase_if(scene.branches, left_out);
     std::erase_if(model.branches, left_out);
@@ -194,9 +182,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
     select_branches(loaded.scene, loaded.model, request.branches);
     const Scene& scene = loaded.scene;
     const Model& model = loaded.model;
-    json document = scene_document(scene, read_whole(file), model, recursive::diagnose(model));
-    if (!loaded.warnings.empty()) document["warnings"] = loaded.warnings;
-    if (loaded.trim) add_trim(document, *loaded.trim);
+    json document = document_of(loaded, file);
     if (!request.only.empty()) document["only"] = request.only;
     if (request.quick) document["proved"] = "ends";
     const bool studies = !request.quick && request.only != "kc";
@@ -257,13 +243,16 @@ void overlay(json& result, const ReportRequest& request) {
     result = json::parse(result.dump());
 }
 
-json read_alarms(const std::string& file) {
-    json alarms;
+json read_json(const std::string& file) {
     try {
-        alarms = parse_json(read_whole(file));
+        return parse_json(read_whole(file));
     } catch (const JsonError& error) {
         throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
     }
+}
+
+json read_alarms(const std::string& file) {
+    json alarms = read_json(file);
     if (!alarms.is_array())
         throw std::invalid_argument(file + ": is not the results.json that ./dev mutate writes");
     return alarms;
@@ -271,12 +260,7 @@ json read_alarms(const std::string& file) {
 
 // Map and wrong results; without the cells.
 json read_stress(const std::string& file) {
-    json stress;
-    try {
-        stress = parse_json(read_whole(file));
-    } catch (const JsonError& error) {
-        throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
-    }
+    json stress = read_json(file);
     if (!stress.is_object() || stress.value("schema", json()) != stress_schema)
         throw std::invalid_argument(
             fmt::format("{}: is not the stress.json that `elastocheck stress` writes ('{}')", file,
@@ -308,8 +292,8 @@ std::string answer_text(const std::vector<Answer>& answers, const std::string& p
         if (!answer.sentence.empty())
             text += fmt::format("{}: {}\n\n", answer.name, answer.sentence);
     for (const auto& answer : answers) text += fmt::format("{}: {}\n", answer.source, answer.mark);
-    return text + fmt::format("The page: {} ({} scene{}, {:.1f} s)\n", page, answers.size(),
-                              answers.size() == 1 ? "" : "s", seconds);
+    return text + fmt::format("The page: {} ({}, {:.1f} s)\n", page,
+                              counted(answers.size(), "scene"), seconds);
 }
 
 // Removes fields that differ from run to run.
@@ -336,9 +320,9 @@ int report(const ReportRequest& request, const std::string& reproduce) {
         throw std::invalid_argument("report: --candidate belongs to one scene; give one");
     if (request.against && request.from.empty() && request.scenes.size() != 2)
         throw std::invalid_argument("report: --against: needs two scenes, the base first");
-    CandidateRequest asked = request.candidate;
-    if (!request.measured.empty()) asked.map.clear();  // it is of the measurement
-    check(asked, request.settings);
+    CandidateRequest candidate = request.candidate;
+    if (!request.measured.empty()) candidate.map.clear();  // it is of the measurement
+    check(candidate, request.settings);
     const auto start = std::chrono::steady_clock::now();
     const int threads = threads_of(request.running);
     // Invalid requests are rejected before the work.
@@ -392,7 +376,7 @@ int report(const ReportRequest& request, const std::string& reproduce) {
         if (result["scenes"].size() != 2)
             throw std::invalid_argument("report: --against: the result has not two scenes");
         add_against(result["scenes"][0], result["scenes"][1]);
-        // nobody asked whether the fast method is good enough for a variant
+        // a variant has no verdict on the fast method unless a tolerance is given
         for (auto& scene : result["scenes"])
             if (scene.contains("judgement") && !scene["judgement"]["tolerance"]["asked"])
                 scene.erase("judgement");
@@ -407,10 +391,10 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     // the verdict of a candidate counts for the page, as in `judge`
     for (const auto& scene : result["scenes"])
         if (scene.contains("candidates"))
-            for (const auto& candidate : scene["candidates"]) {
-                print_error("{}\n", candidate["sentence"].get<std::string>());
-                if (candidate["verdict"] == "fail") code = limit_broken;
-                if (candidate["verdict"] == "not judged" && code == fine) code = could_not_judge;
+            for (const auto& judged : scene["candidates"]) {
+                print_error("{}\n", judged["sentence"].get<std::string>());
+                if (judged["verdict"] == "fail") code = limit_broken;
+                if (judged["verdict"] == "not judged" && code == fine) code = could_not_judge;
             }
     for (const auto& answer : answers)
         if (!answer.conclusive) {

@@ -34,34 +34,60 @@ namespace {
 
 using compare::Channel;
 
-struct SolveRequest {
-    compare::SolverSettings solver;
-    Detail detail = Detail::required;
+// `folder` is the CSV file.
+struct SolveRequest : SceneRequest {
+    std::string method = name(compare::Leg::equilibrium);
+    RecursionRequest recursion;
+    bool keep_all = false, error_bound = false;
+    int every = 1;
     std::vector<std::string> channels;  // names, or patterns with *; none: all
     std::string rates;                  // CSV of the derivatives, by the series; empty: none
-    std::string states = {};            // JSON lines of poses, in the candidate format; empty: none
+    std::string states;                 // JSON lines of poses, in the candidate format; empty: none
 };
 
+// Names of the legs and of the methods of the recursion.
+std::vector<std::string> solvers() {
+    std::vector<std::string> names;
+    for (const auto leg : compare::legs) names.emplace_back(name(leg));
+    for (const auto& method : recursive::methods) names.emplace_back(method.name);
+    return names;
+}
+
+compare::SolverSettings solver_of(const SolveRequest& request) {
+    RecursionRequest with_method = request.recursion;
+    const auto leg = std::ranges::find(compare::legs, request.method,
+                                       [](auto l) { return std::string(name(l)); });
+    if (leg == compare::legs.end()) with_method.method = request.method;
+    compare::SolverSettings solver;
+    solver.recursion = recursion(with_method);
+    solver.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
+    solver.every = request.every;
+    solver.error_bound = request.error_bound;
+    if (!request.rates.empty() &&
+        !std::holds_alternative<recursive::Series>(solver.recursion.method.kind))
+        throw std::invalid_argument("--rates: only with --method series");
+    return solver;
+}
+
 // Writes the derivatives in a separate file: positions and angles per unit of the parameter.
-void write_rates(const Model& model, const std::vector<Channel>& asked,
-                 const SolveRequest& request) {
+void write_rates(const Model& model, const std::vector<Channel>& requested,
+                 const SolveRequest& request, const compare::SolverSettings& solver) {
     std::vector<Channel> channels;
-    std::ranges::copy_if(asked, std::back_inserter(channels), &Channel::kinematic);
+    std::ranges::copy_if(requested, std::back_inserter(channels), &Channel::kinematic);
     if (channels.empty())
         throw std::invalid_argument("--rates: needs a position or an angle in --channels");
     AtomicFile csv(request.rates, rates_file);
     csv.add(rates_header(channels));
-    const auto& [leg, how, refine, every, error_bound] = request.solver;
     for (const auto& branch : model.branches)
-        for (const auto& way : compare::sides_of(model, branch, how.steps)) {
+        for (const auto& side : compare::sides_of(model, branch, solver.recursion.steps)) {
             const auto path = recursive::series::follow(
-                way.model, way.branch, std::get<recursive::Series>(how.method.kind));
-            for (const double a : compare::requested_parameters({way}, every)) {
+                side.model, side.branch, std::get<recursive::Series>(solver.recursion.method.kind));
+            for (const double a : compare::requested_parameters({side}, solver.every)) {
                 const auto place = recursive::series::find(path, a);
                 if (!place) break;
                 csv.add(rates_row(
-                    way.name, compare::unit_of(branch.unit), a,
-                    compare::channel_rates(way.model, channels, way.branch, path, *place)));
+                    side.name, compare::unit_of(branch.unit), a,
+                    compare::channel_rates(side.model, channels, side.branch, path, *place)));
             }
         }
     csv.finish();
@@ -128,45 +154,47 @@ std::string differences(const Model& model, const Branch& branch, const Equilibr
 
 // Error of a method at the end of a branch side: its state there against one solve of the
 // equilibrium leg at the same parameter.
-std::string error_at_end(const Model& model, compare::BranchSide way, const Equilibrium& state) {
-    const compare::Unit unit = compare::unit_of(way.branch.unit);
+std::string error_at_end(const Model& model, compare::BranchSide side, const Equilibrium& state) {
+    const compare::Unit unit = compare::unit_of(side.branch.unit);
     const std::string where =
-        fmt::format("at {:g} {}, the end", compare::in_unit(unit) * way.branch.to, symbol(unit));
-    way.branch.steps = 1;
+        fmt::format("at {:g} {}, the end", compare::in_unit(unit) * side.branch.to, symbol(unit));
+    side.branch.steps = 1;
     std::optional<Equilibrium> truth;
-    const EquilibriumPath path = compare::walk(way, {.leg = compare::Leg::equilibrium},
+    const EquilibriumPath path = compare::walk(side, {.leg = compare::Leg::equilibrium},
                                                [&](const Equilibrium& found) { truth = found; });
     if (path.outcome != Outcome::converged || !truth)
         return fmt::format("its error {} is not known: equilibrium leg: {}: {}", where,
                            name(path.outcome), path.detail);
     return fmt::format("off by {} {}, from the equilibrium leg there",
-                       differences(model, way.branch, state, *truth), where);
+                       differences(model, side.branch, state, *truth), where);
 }
 
 // The last recorded parameter is the end but for rounding.
-bool is_end(const Branch& way, double load) {
-    return std::abs(load - way.to) <= 1e-12 * std::abs(way.to);
+bool is_end(const Branch& side, double load) {
+    return std::abs(load - side.to) <= 1e-12 * std::abs(side.to);
 }
 
 // Writes each row when its point is found, except for the branch side that is solved in reverse.
 // Invalid requests are rejected before the work. Returns the exit code; for a branch that does not
 // converge, the rows reach to its last point. The CSV goes to the file of `delivery` or to standard
 // output; the document contains every point, so all are stored for it.
-int solve(const std::string& file, const Settings& settings, const SolveRequest& request,
-          const Delivery& delivery) {
-    const auto& [leg, how, refine, every, error_bound] = request.solver;
+int solve(const SolveRequest& request, const Delivery& delivery) {
+    compare::SolverSettings solver = solver_of(request);
+    const auto leg = solver.leg;
+    const recursive::Options& how = solver.recursion;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
     if (!request.rates.empty()) check_may_write(request.rates, rates_file);
     if (!request.states.empty()) check_may_write(request.states, states_file);
-    const LoadedScene loaded = load_scene(file, settings, request.detail);
+    const LoadedScene loaded = load_scene(request.scene, request.settings,
+                                          request.keep_all ? Detail::everything : Detail::required);
     const Model& model = loaded.model;
     const auto channels = requested_channels(model, request.channels);
-    check_every(model, how.steps, every);
+    check_every(model, how.steps, request.every);
     if (delivery.as_json)
-        check_memory(model, {.steps = how.steps, .every = every, .written = true});
+        check_memory(model, {.steps = how.steps, .every = request.every, .written = true});
     else
-        check_memory_of_rows(model, {.steps = how.steps, .every = every}, channels.size());
-    if (!request.rates.empty()) write_rates(model, channels, request);
+        check_memory_of_rows(model, {.steps = how.steps, .every = request.every}, channels.size());
+    if (!request.rates.empty()) write_rates(model, channels, request, solver);
 
     std::optional<AtomicFile> csv;
     if (!delivery.folder.empty()) csv.emplace(delivery.folder, curves_file);
@@ -185,27 +213,25 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
         leg == compare::Leg::recursive
             ? compare::tolerance_of_method(how.method, recursive::diagnose(model).length)
             : std::nullopt;
-    compare::SolverSettings solver = request.solver;
-    solver.error_bound = error_bound || promise;
+    solver.error_bound = request.error_bound || promise;
     // A method with equal steps has no error bound: its error at the end is reported.
     const bool approximate = leg == compare::Leg::recursive && recursive::has_steps(how.method);
     for (const auto& branch : model.branches) {
-        compare::BranchErrorBounds said{promise};
+        compare::BranchErrorBounds bounds{promise};
         if (csv) progress(branch.name);
-        const auto ways = compare::sides_of(model, branch, how.steps);
+        const auto sides = compare::sides_of(model, branch, how.steps);
         compare::Analyses analyses;
         compare::PathCurve whole;
         whole.curve.unit = compare::unit_of(branch.unit);
-        std::vector<std::optional<Equilibrium>> ends(ways.size());
+        std::vector<std::optional<Equilibrium>> ends(sides.size());
         const EquilibriumPath path = compare::walk(
-            ways, solver,
+            sides, solver,
             [&](const Equilibrium& state) {
-                if (solver.error_bound) add(said, state);
+                if (solver.error_bound) add(bounds, state);
                 if (states) states->add(state_line(model, branch.name, state)), has_states = true;
-                for (std::size_t w = 0; approximate && w < ways.size(); ++w)
-                    if (is_end(ways[w].branch, state.load)) ends[w] = state;
-                return compare::row_of(model, channels, ways.front(), request.solver, state,
-                                       analyses);
+                for (std::size_t w = 0; approximate && w < sides.size(); ++w)
+                    if (is_end(sides[w].branch, state.load)) ends[w] = state;
+                return compare::row_of(model, channels, sides.front(), solver, state, analyses);
             },
             [&](const compare::Row& row) {
                 if (delivery.as_json) {
@@ -219,12 +245,12 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
-        for (const auto& line : messages(said, branch.unit))
+        for (const auto& line : messages(bounds, branch.unit))
             print_error("{}: {}: {}\n", who, branch.name, line);
-        for (std::size_t w = 0; w < ways.size(); ++w)
+        for (std::size_t w = 0; w < sides.size(); ++w)
             if (ends[w])
                 print_error("{}: {}: {}\n", who, branch.name,
-                            error_at_end(model, ways[w], *ends[w]));
+                            error_at_end(model, sides[w], *ends[w]));
         if (path.outcome == Outcome::converged) continue;
         print_error("{}: {}: {}\n", who, name(path.outcome), path.detail);
         code = could_not_judge;
@@ -235,10 +261,7 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     else if (states)
         print_error("{}: not written: no state was reached\n", request.states);
     if (delivery.as_json) {
-        nlohmann::ordered_json part =
-            scene_document(loaded.scene, read_whole(file), model, recursive::diagnose(model));
-        if (loaded.trim) add_trim(part, *loaded.trim);
-        if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
+        nlohmann::ordered_json part = document_of(loaded, request.scene);
         add_curves(part, model, channels, leg,
                    leg == compare::Leg::recursive ? std::string(how.method.name) : "", kept);
         deliver({.as_json = true, .command = delivery.command}, std::move(part), {});
@@ -246,67 +269,34 @@ int solve(const std::string& file, const Settings& settings, const SolveRequest&
     return code;
 }
 
-// Names of the legs and of the methods of the recursion.
-std::vector<std::string> solvers() {
-    std::vector<std::string> names;
-    for (const auto leg : compare::legs) names.emplace_back(name(leg));
-    for (const auto& method : recursive::methods) names.emplace_back(method.name);
-    return names;
-}
-
-// The request with its leg, and for the recursion with its options.
-SolveRequest with_solver(SolveRequest request, RecursionRequest recursion_request,
-                         const std::string& solver) {
-    const auto leg =
-        std::ranges::find(compare::legs, solver, [](auto l) { return std::string(name(l)); });
-    if (leg == compare::legs.end()) recursion_request.method = solver;
-    request.solver.recursion = recursion(recursion_request);
-    request.solver.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
-    if (!request.rates.empty() &&
-        !std::holds_alternative<recursive::Series>(request.solver.recursion.method.kind))
-        throw std::invalid_argument("--rates: only with --method series");
-    return request;
-}
-
 }  // namespace
 
 Command solve_command() {
-    struct Given {
-        std::string scene, output, method = name(compare::Leg::equilibrium);
-        Settings settings;
-        RecursionRequest recursion;
-        SolveRequest request;
-        bool as_json = false, keep_all = false;
-    };
-    const auto given = std::make_shared<Given>();
-    std::vector<Option> options{scene_option(given->scene), set_option(given->settings),
-                                json_option(given->as_json), keep_all_option(given->keep_all)};
+    const auto given = std::make_shared<SolveRequest>();
+    std::vector<Option> options = given->options();
+    options.push_back(keep_all_option(given->keep_all));
     add_recursion_options(options, given->recursion);
     options.insert(
         options.end(),
         {{"--method", Text{&given->method, one_of(solvers())},
           "equilibrium (default) or energy; a fast method: published (or recursive), closed, "
           "balanced, tangent, chord, midpoint, adaptive or series"},
-         {"--account", Flag{&given->request.solver.error_bound},
+         {"--account", Flag{&given->error_bound},
           "report the extrapolated singular point and error estimates; adaptive and series always "
           "do"},
          {"--arc-length", Flag{&given->recursion.arc_length},
           "series: continuation by arc length, through limit points"},
-         {"--rates", Text{&given->request.rates, a_file("*.csv")},
+         {"--rates", Text{&given->rates, a_file("*.csv")},
           "series: write derivatives of travel and outputs to this CSV file"},
-         {"--states", Text{&given->request.states, a_file("*.jsonl")},
+         {"--states", Text{&given->states, a_file("*.jsonl")},
           "write the poses of the bodies to this file (JSON lines)"},
-         {"--channels", TextList{&given->request.channels, TextList::Form::commas},
+         {"--channels", TextList{&given->channels, TextList::Form::commas},
           "outputs to write, in this order: NAME,... as in the CSV's head; * matches any letters"},
-         every_option(given->request.solver.every),
-         {"-o,--output", Text{&given->output, a_file("*.csv")}, "write the CSV to this file"}});
+         every_option(given->every),
+         {"-o,--output", Text{&given->folder, a_file("*.csv")}, "write the CSV to this file"}});
     return {"solve", "Solve a scene with one method and print the curves as CSV",
-            std::move(options), [given](const std::string& line) {
-                SolveRequest request = with_solver(given->request, given->recursion, given->method);
-                request.detail = given->keep_all ? Detail::everything : Detail::required;
-                return solve(given->scene, given->settings, request,
-                             {.folder = given->output, .as_json = given->as_json, .command = line});
-            }};
+            std::move(options),
+            [given](const std::string& line) { return solve(*given, given->delivery(line)); }};
 }
 
 }  // namespace elastocheck::reports

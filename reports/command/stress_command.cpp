@@ -17,12 +17,11 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/command/templates.hpp"
-#include "reports/document/document.hpp"
 #include "reports/extremes/extremes.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/studies/stress_tables.hpp"
+#include "reports/tables/stress_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -76,17 +75,11 @@ int stress(const StressRequest& request, const Delivery& delivery) {
                     elapsed.count(), survival.seconds, survival.dearest.scene,
                     survival.dearest.variant, survival.dearest.seconds));
     if (delivery.wants_document()) {
-        nlohmann::ordered_json document = {{"schema", stress_schema},
-                                           {"reproduce", delivery.command},
-                                           {"provenance", provenance_json(provenance())}};
+        nlohmann::ordered_json document = document_head(stress_schema, delivery.command);
         document.update(stress_json(survival));
-        if (!delivery.folder.empty()) {
-            write_folder(delivery.folder, {{"stress.json", document.dump(1) + "\n"},
-                                           {"cells.csv", csv(cell_table(survival))}});
-            const std::string written =
-                fmt::format("Written: {0}/stress.json, {0}/cells.csv\n", delivery.folder);
-            delivery.as_json ? print_error(written) : print(written);
-        }
+        if (!delivery.folder.empty())
+            deliver_files(delivery, {{"stress.json", document.dump(1) + "\n"},
+                                     {"cells.csv", csv(cell_table(survival))}});
         if (delivery.as_json) print_document(document);
     }
     return survival.count(compare::Verdict::wrong) > 0 ? limit_broken

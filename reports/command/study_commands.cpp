@@ -17,7 +17,6 @@
 #include "compare/studies/work_precision.hpp"
 #include "compare/tables/rows.hpp"
 #include "elastocheck/recursive.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
@@ -36,35 +35,35 @@
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/studies/formulation_tables.hpp"
-#include "reports/tables/studies/order_tables.hpp"
-#include "reports/tables/studies/precision_tables.hpp"
-#include "reports/tables/studies/study_tables.hpp"
-#include "reports/tables/studies/work_precision_tables.hpp"
+#include "reports/tables/study_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-struct CompareRequest {
-    recursive::Options recursion;
-    int every = 1;  // compares every `every`-th step
-    Detail detail = Detail::required;
-    std::string within = {};          // tolerance of the verdict; empty: the default
-    bool verdict = false;             // asked for by a method or a tolerance
-    CandidateRequest candidate = {};  // external solver, beside the legs
-    bool formulations = false;        // adds the spread over bushing formulations
-    int threads = 1;
+struct InspectRequest : SceneRequest {
+    bool verbose = false, keep_all = false;
+};
+struct CompareRequest : SceneRequest {
+    RecursionRequest recursion{.method = ""};  // without a method: published, and no verdict
+    int every = 1;                             // compares every `every`-th step
+    bool keep_all = false;
+    std::string within;          // tolerance of the verdict; empty: the default
+    CandidateRequest candidate;  // external solver, beside the legs
+    bool formulations = false;   // adds the spread over bushing formulations
+};
+struct ConvergeRequest : SceneRequest {
+    std::vector<std::string> methods{"published"};
+    std::vector<int> steps;
+    CandidateRequest candidate;
+};
+struct TradeRequest : SceneRequest {
+    std::string tolerance = "0.01mm,0.001deg,1%";
+    CandidateRequest candidate;
 };
 
-json document_of(const LoadedScene& loaded, const std::string& file) {
-    json part = scene_document(loaded.scene, read_whole(file), loaded.model,
-                               recursive::diagnose(loaded.model));
-    if (loaded.trim) add_trim(part, *loaded.trim);
-    if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
-    return part;
-}
+Detail detail(bool keep_all) { return keep_all ? Detail::everything : Detail::required; }
 
 std::vector<recursive::Method> methods_named(const std::vector<std::string>& names) {
     std::vector<recursive::Method> methods;
@@ -114,10 +113,7 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
     if (!request.files.empty() && !request.command.empty())
         throw std::invalid_argument("converge: --candidate or --candidate-command, one of the two");
     const compare::Comparison outline = compare::outline(loaded.model);
-    const ColumnMap map =
-        request.map.empty()
-            ? ColumnMap{}
-            : read_column_map(read_whole(request.map, largest_baseline), request.map);
+    const ColumnMap map = map_of(request);
     std::vector<compare::CandidateLevel> levels;
     std::string name;
     auto outputs = outputs_of(request, file, steps);
@@ -145,63 +141,65 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
     return compare::study_candidate(loaded.model, name, levels, progress);
 }
 
-int inspect(const std::string& file, const Settings& settings, Detail detail, bool verbose,
-            const Delivery& delivery) {
-    const LoadedScene loaded = load_scene(file, settings, detail);
+int inspect(const InspectRequest& request, const Delivery& delivery) {
+    const LoadedScene loaded =
+        load_scene(request.scene, request.settings, detail(request.keep_all));
     if (delivery.as_json) {
-        json part = document_of(loaded, file);
+        json part = document_of(loaded, request.scene);
         add_inspection(part, loaded.scene, loaded.model);
         deliver(delivery, std::move(part), {});
     } else {
         print(inspection({.scene = loaded.scene,
                           .model = loaded.model,
                           .trim = loaded.trim,
-                          .diagnosis = recursive::diagnose(loaded.model),
-                          .verbose = verbose}));
+                          .verbose = request.verbose}));
     }
     return fine;
 }
 
-int compare_legs(const std::string& file, const Settings& settings, const CompareRequest& request,
-                 const Delivery& delivery) {
-    const bool asked = !request.within.empty();
-    const auto tolerance = asked
+int compare_legs(const CompareRequest& request, const Delivery& delivery) {
+    RecursionRequest method = request.recursion;
+    const bool named = !method.method.empty();
+    if (!named) method.method = RecursionRequest{}.method;
+    compare::Options options;
+    options.recursion = recursion(method);
+    options.every = request.every;
+    options.threads = threads_of(request.running);
+    options.progress = progress;
+    const int steps = options.recursion.steps;
+    const bool given = !request.within.empty();
+    const auto tolerance = given
                                ? compare::parse_tolerance(request.within, compare::Asks::forces_too)
                                : compare::default_tolerance;
-    check(request.candidate, settings);
+    check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
-    const LoadedScene loaded = load_scene(file, settings, request.detail);
+    const LoadedScene loaded =
+        load_scene(request.scene, request.settings, detail(request.keep_all));
     const Model& model = loaded.model;
-    check_every(model, request.recursion.steps, request.every);
-    check_memory(model, {.steps = request.recursion.steps,
+    check_every(model, steps, request.every);
+    check_memory(model, {.steps = steps,
                          .every = request.every,
                          .legs = static_cast<int>(compare::legs.size()),
                          .written = delivery.wants_document()});
-    compare::Options options;
-    options.recursion = request.recursion;
-    options.every = request.every;
-    options.threads = request.threads;
-    options.progress = progress;
     const compare::Comparison comparison = compare::compare(model, options);
     std::optional<compare::FormulationStudy> study;
     if (request.formulations)
-        study = compare::formulation_study(loaded.scene, request.recursion.steps, request.every,
-                                           request.threads, progress);
+        study = compare::formulation_study(loaded.scene, steps, request.every, options.threads,
+                                           progress);
     progress("");
     delivery.print_text(tables(model, comparison));
     if (study) delivery.print_text(formulation_text(*study, comparison));
-    auto judgement = compare::assess(model, comparison, tolerance, asked);
-    judgement.requested = asked || request.verdict;
+    auto judgement = compare::assess(model, comparison, tolerance, given);
+    judgement.requested = given || named;
     std::vector<compare::CandidateJudgement> candidates;
     for (const auto& output :
-         outputs_of(request.candidate, file,
-                    {request.recursion.steps > 0 ? request.recursion.steps : steps_of(model)})) {
+         outputs_of(request.candidate, request.scene, {steps > 0 ? steps : steps_of(model)})) {
         candidates.push_back(
-            judged(output, request.candidate, loaded, comparison, tolerance, asked));
+            judged(output, request.candidate, loaded, comparison, tolerance, given));
         delivery.print_text("\n" + candidate_text(candidates.back(), comparison));
     }
     if (delivery.wants_document()) {
-        json part = document_of(loaded, file);
+        json part = document_of(loaded, request.scene);
         add_comparison(part, loaded.scene, model, comparison);
         std::vector<NamedContent> files{
             {"forces.csv", csv(force_rows(element_values(model, comparison)))}};
@@ -231,12 +229,14 @@ int compare_legs(const std::string& file, const Settings& settings, const Compar
                : could_not_judge;
 }
 
-int converge(const std::string& file, const Settings& settings,
-             const std::vector<std::string>& names, const std::vector<int>& steps,
-             const CandidateRequest& candidate, int threads, const Delivery& delivery) {
-    check(candidate, settings);
+int converge(const ConvergeRequest& request, const Delivery& delivery) {
+    const auto& names = request.methods;
+    const auto& steps = request.steps;
+    const auto& candidate = request.candidate;
+    const int threads = threads_of(request.running);
+    check(candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
-    const LoadedScene loaded = load_scene(file, settings);
+    const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Model& model = loaded.model;
     if (!steps.empty()) check_memory(model, {.steps = *std::ranges::max_element(steps)});
     compare::StudyOptions options;
@@ -245,7 +245,8 @@ int converge(const std::string& file, const Settings& settings,
     options.threads = threads;
     options.progress = compare::part(progress, 0, 0.4);
     std::optional<compare::Study> of_candidate;
-    if (candidate.wanted()) of_candidate = study_of(candidate, file, loaded, options.steps);
+    if (candidate.wanted())
+        of_candidate = study_of(candidate, request.scene, loaded, options.steps);
     compare::Study study;
     std::vector<compare::BranchAttribution> attribution;
     if (!options.methods.empty()) {
@@ -265,7 +266,7 @@ int converge(const std::string& file, const Settings& settings,
                             (options.methods.empty() || study.conclusive()) &&
                             (orders.empty() || compare::conclusive(orders));
     if (delivery.wants_document()) {
-        json part = document_of(loaded, file);
+        json part = document_of(loaded, request.scene);
         std::vector<NamedContent> files;
         if (!options.methods.empty()) {
             part["convergence"] = study_json(study, attribution);
@@ -292,17 +293,18 @@ int converge(const std::string& file, const Settings& settings,
     return conclusive ? fine : could_not_judge;
 }
 
-int trade(const std::string& file, const Settings& settings, const std::string& tolerance,
-          const CandidateRequest& candidate, int threads, const Delivery& delivery) {
-    check(candidate, settings);
+int trade(const TradeRequest& request, const Delivery& delivery) {
+    const CandidateRequest& candidate = request.candidate;
+    const int threads = threads_of(request.running);
+    check(candidate, request.settings);
     if (!candidate.files.empty())
         throw std::invalid_argument(
             "trade: a --candidate file has no time; give --candidate-command");
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
-    const LoadedScene loaded = load_scene(file, settings);
+    const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Model& model = loaded.model;
     compare::TradeOptions options;
-    options.tolerance = compare::parse_tolerance(tolerance, compare::Asks::shares_too);
+    options.tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
     options.threads = threads;
     options.progress = compare::part(progress, 0, 0.7);
     const compare::Trade trade = compare::trade(model, options);
@@ -313,11 +315,11 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     std::optional<compare::Table> of_candidate;
     auto reasons = trade.inconclusive;
     if (candidate.wanted()) {
-        of_candidate = price_of(candidate, file, loaded, options.tolerance, reasons);
+        of_candidate = price_of(candidate, request.scene, loaded, options.tolerance, reasons);
         delivery.print_text("\nthe candidate\n" + text(*of_candidate));
     }
     if (delivery.wants_document()) {
-        json part = document_of(loaded, file);
+        json part = document_of(loaded, request.scene);
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
         if (of_candidate) part["candidate_trade"] = table_json(*of_candidate);
@@ -330,89 +332,45 @@ int trade(const std::string& file, const Settings& settings, const std::string& 
     return trade.recommendation && reasons.empty() ? fine : could_not_judge;
 }
 
-// Input of every study.
-struct Common {
-    std::string scene, folder;
-    Settings settings;
-    bool as_json = false;
-    Running running;
-
-    Delivery delivery(const std::string& line) const {
-        return {.folder = folder, .as_json = as_json, .command = line};
-    }
-    std::vector<Option> options() {
-        return {scene_option(scene), set_option(settings), json_option(as_json)};
-    }
-    std::vector<Option> options_of_a_run() {
-        auto list = options();
-        list.push_back(jobs_option(running));
-        list.push_back(quiet_option(running));
-        return list;
-    }
-};
-
 }  // namespace
 
 Command inspect_command() {
-    struct Given : Common {
-        bool verbose = false, keep_all = false;
-    };
-    const auto given = std::make_shared<Given>();
+    const auto given = std::make_shared<InspectRequest>();
     std::vector<Option> options = given->options();
     options.push_back({"--verbose", Flag{&given->verbose},
                        "long lists whole, and the size of the matrix, its order and its fill-in"});
     options.push_back(keep_all_option(given->keep_all));
     return {"inspect", "Show the compiled scene: bodies, coordinates, constraints, idle modes",
-            std::move(options), [given](const std::string& line) {
-                return inspect(given->scene, given->settings,
-                               given->keep_all ? Detail::everything : Detail::required,
-                               given->verbose, given->delivery(line));
-            }};
+            std::move(options),
+            [given](const std::string& line) { return inspect(*given, given->delivery(line)); }};
 }
 
 Command compare_command() {
-    struct Given : Common {
-        RecursionRequest recursion{.method = ""};
-        CompareRequest request;
-        bool keep_all = false;
-    };
-    const auto given = std::make_shared<Given>();
+    const auto given = std::make_shared<CompareRequest>();
     std::vector<std::string> methods;
     for (const auto& method : recursive::methods) methods.emplace_back(method.name);
     std::vector<Option> options = given->options_of_a_run();
     options.push_back(keep_all_option(given->keep_all));
-    options.push_back({"--formulations", Flag{&given->request.formulations},
+    options.push_back({"--formulations", Flag{&given->formulations},
                        "add the spread of the outputs over the bushing formulations of tools"});
-    options.push_back({"--within", Text{&given->request.within},
+    options.push_back({"--within", Text{&given->within},
                        "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent of "
                        "forces, moments and rates (with --method: 0.01mm,0.001deg,1%)"});
     add_recursion_options(options, given->recursion);
     options.push_back({"--method", Text{&given->recursion.method, one_of(methods)},
                        "give a verdict on this method: published (shown without a verdict by "
                        "default), closed, balanced, tangent, chord, midpoint, adaptive or series"});
-    options.push_back(every_option(given->request.every));
+    options.push_back(every_option(given->every));
     options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
-    add_candidate_options(options, given->request.candidate);
+    add_candidate_options(options, given->candidate);
     return {"compare", "Solve a scene with all three methods and show the deviations",
             std::move(options), [given](const std::string& line) {
-                CompareRequest request = given->request;
-                RecursionRequest method = given->recursion;
-                request.verdict = !method.method.empty();
-                if (!request.verdict) method.method = RecursionRequest{}.method;
-                request.recursion = recursion(method);
-                request.threads = threads_of(given->running);
-                request.detail = given->keep_all ? Detail::everything : Detail::required;
-                return compare_legs(given->scene, given->settings, request, given->delivery(line));
+                return compare_legs(*given, given->delivery(line));
             }};
 }
 
 Command converge_command() {
-    struct Given : Common {
-        std::vector<std::string> methods{"published"};
-        std::vector<int> steps;
-        CandidateRequest candidate;
-    };
-    const auto given = std::make_shared<Given>();
+    const auto given = std::make_shared<ConvergeRequest>();
     std::vector<std::string> known{"all"};
     for (const auto& method : recursive::methods)
         if (!std::holds_alternative<recursive::Adaptive>(method.kind))
@@ -431,19 +389,12 @@ Command converge_command() {
     return {"converge",
             "Convergence study: split the recursion's error into step error, formulation gap and "
             "reference uncertainty",
-            std::move(options), [given](const std::string& line) {
-                return converge(given->scene, given->settings, given->methods, given->steps,
-                                given->candidate, threads_of(given->running),
-                                given->delivery(line));
-            }};
+            std::move(options),
+            [given](const std::string& line) { return converge(*given, given->delivery(line)); }};
 }
 
 Command trade_command() {
-    struct Given : Common {
-        std::string tolerance = "0.01mm,0.001deg,1%";
-        CandidateRequest candidate;
-    };
-    const auto given = std::make_shared<Given>();
+    const auto given = std::make_shared<TradeRequest>();
     std::vector<Option> options = given->options_of_a_run();
     options.push_back({"--tolerance", Text{&given->tolerance},
                        "required accuracy (default: 0.01mm,0.001deg,1%)"});
@@ -451,10 +402,8 @@ Command trade_command() {
         output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
     add_candidate_options(options, given->candidate);
     return {"trade", "Cost of accuracy: every method against both references, and a recommendation",
-            std::move(options), [given](const std::string& line) {
-                return trade(given->scene, given->settings, given->tolerance, given->candidate,
-                             threads_of(given->running), given->delivery(line));
-            }};
+            std::move(options),
+            [given](const std::string& line) { return trade(*given, given->delivery(line)); }};
 }
 
 }  // namespace elastocheck::reports

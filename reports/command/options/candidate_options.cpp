@@ -65,12 +65,15 @@ void add_candidate_options(std::vector<Option>& options, CandidateRequest& reque
                        "let a candidate pass that leaves out branches or parts of them"});
 }
 
+ColumnMap map_of(const CandidateRequest& request) {
+    if (request.map.empty()) return {};
+    return read_column_map(read_whole(request.map, largest_baseline), request.map);
+}
+
 void check(const CandidateRequest& request, const Settings& settings) {
-    if (!request.map.empty()) {
-        if (!request.wanted())
-            throw std::invalid_argument("--map: only with --candidate or --candidate-command");
-        (void)read_column_map(read_whole(request.map, largest_baseline), request.map);
-    }
+    if (!request.map.empty() && !request.wanted())
+        throw std::invalid_argument("--map: only with --candidate or --candidate-command");
+    (void)map_of(request);
     if (request.partial && !request.wanted())
         throw std::invalid_argument("--partial: only with --candidate or --candidate-command");
     if (request.command.empty()) return;
@@ -137,22 +140,19 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
 
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
                                    const LoadedScene& loaded, const compare::Comparison& comparison,
-                                   const compare::Tolerance& tolerance, bool asked) {
+                                   const compare::Tolerance& tolerance, bool given) {
     compare::CandidateJudgement none;
-    none.name = output.name, none.tolerance = tolerance, none.asked = asked;
+    none.name = output.name, none.tolerance = tolerance, none.asked = given;
     if (!output.failed.empty()) {
         none.reasons.push_back(output.failed);
         return none;
     }
-    const ColumnMap map =
-        request.map.empty()
-            ? ColumnMap{}
-            : read_column_map(read_whole(request.map, largest_baseline), request.map);
+    const ColumnMap map = map_of(request);
     try {
         auto candidate = read_candidate(output.content, output.file, output.name, loaded.scene,
                                         loaded.model, comparison, map);
         candidate.complete = !request.partial;
-        return compare::judge_candidate(loaded.model, comparison, candidate, tolerance, asked);
+        return compare::judge_candidate(loaded.model, comparison, candidate, tolerance, given);
     } catch (const SheetError& error) {
         if (!output.of_command) throw;
         none.reasons.emplace_back(error.what());

@@ -24,6 +24,9 @@ struct CandidateRequest {
 };
 void add_candidate_options(std::vector<Option>& options, CandidateRequest& request);
 
+// The file of --map; empty without one.
+ColumnMap map_of(const CandidateRequest& request);
+
 // Output of one file or one run.
 struct CandidateOutput {
     std::string name;  // of the file or of the program
@@ -49,7 +52,7 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
 // file is bad input and throws SheetError.
 compare::CandidateJudgement judged(const CandidateOutput& output, const CandidateRequest& request,
                                    const LoadedScene& loaded, const compare::Comparison& comparison,
-                                   const compare::Tolerance& tolerance, bool asked);
+                                   const compare::Tolerance& tolerance, bool given);
 
 // Default number of steps for a command: those of the recursion on the longest branch.
 int steps_of(const Model& model);

@@ -52,9 +52,9 @@ void check_memory(const Model& model, const RunSize& run) {
 void check_memory_of_rows(const Model& model, const RunSize& run, std::size_t channels) {
     for (Branch branch : model.branches) {
         if (run.steps > 0) branch.steps = run.steps;
-        const auto all = ways(branch);
-        if (all.size() < 2) continue;
-        const double points = points_of(all.front(), {.every = run.every});
+        const auto sides = ways(branch);
+        if (sides.size() < 2) continue;
+        const double points = points_of(sides.front(), {.every = run.every});
         check(
             points, bytes_per_row(channels, false), branch.steps,
             fmt::format("{:.0f} points of branch '{}' that come in reverse", points, branch.name));

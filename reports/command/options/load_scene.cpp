@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "models/reader/document/suggestions.hpp"
 #include "models/reader/plausibility.hpp"
 #include "reports/files/terminal.hpp"
 
@@ -26,6 +27,17 @@ LoadedScene load_scene(const std::string& file, const Settings& settings, Detail
     Model model = compile(trimmed.scene, detail);
     return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record),
             std::move(warnings)};
+}
+
+const Branch& branch_named(const Model& model, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& branch : model.branches) {
+        if (branch.name == name) return branch;
+        names.push_back(branch.name);
+    }
+    throw std::invalid_argument(fmt::format("--branch: the scene has no branch {}{}",
+                                            reader::quote(name),
+                                            reader::did_you_mean(name, names, "branches")));
 }
 
 }  // namespace elastocheck::reports

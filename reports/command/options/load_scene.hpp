@@ -27,8 +27,12 @@ struct LoadedScene {
     std::vector<std::string> warnings = {};  // of the reader: "FILE:LINE: field: ..."
 };
 
-// Prints the reader's warnings to standard error. Throws SceneError, also for an ill-posed trim; NotTrimmed.
+// Prints the reader's warnings to standard error. Throws SceneError, also for an ill-posed trim, and
+// NotTrimmed.
 LoadedScene load_scene(const std::string& file, const Settings& settings,
                        Detail detail = Detail::required);
+
+// The branch of --branch. Throws std::invalid_argument for an unknown name, with the nearest.
+const Branch& branch_named(const Model& model, const std::string& name);
 
 }  // namespace elastocheck::reports

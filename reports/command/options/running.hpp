@@ -1,5 +1,5 @@
-// How a long computation runs and tells of itself: --jobs, --quiet. Neither changes a result, and
-// command_line() leaves both out.
+// Options of a long computation: --jobs, --quiet. Neither changes a result, and the command line in
+// a document leaves both out.
 #pragma once
 
 #include "reports/command/grammar/command.hpp"
