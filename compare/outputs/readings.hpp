@@ -1,4 +1,4 @@
-// Names of the two readings of a curve.
+// The two readings of a curve: at equal parameter, at equal abscissa.
 #pragma once
 
 #include <string>
@@ -13,6 +13,10 @@ inline std::string parameter_word(std::string_view unit) {
 inline std::string parameter_reading(std::string_view unit) {
     return "at equal " + parameter_word(unit);
 }
+
+// An abscissa that moves less than this [mm] is not used: a longitudinal force lifts the wheel by
+// some tenths of a millimetre, over which a camber curve has no meaning.
+inline constexpr double least_travel = 1;
 
 // "at equal travel"; without such a channel "at equal abscissa".
 inline std::string abscissa_reading(std::string_view channel) {

@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "compare/outputs/readings.hpp"
 #include "compare/studies/study.hpp"
 #include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
-
-// An abscissa that moves less than this [mm] is not used: a longitudinal force lifts the wheel by
-// some tenths of a millimetre, over which a camber curve has no meaning.
-inline constexpr double least_travel = 1;
 
 const Reading& reading_of(const Pair& pair, ReadingKind kind);
 

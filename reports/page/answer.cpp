@@ -23,11 +23,6 @@ std::string errors(double mm, double deg) {
     return enumerated(parts);
 }
 
-double worse(double a, double b) {
-    return std::isnan(a) || std::isnan(b) ? std::numeric_limits<double>::quiet_NaN()
-                                          : std::max(a, b);
-}
-
 // Largest error at equal abscissa of a method at the ends of the branches, with as many steps a branch
 // or, as the study has them, fewer. A side of a two-sided branch takes half of them.
 void add_across(MethodRow& row, const JsonCursor& scene, const std::vector<compare::StepRow>& steps,
@@ -58,6 +53,12 @@ void add_across(MethodRow& row, const JsonCursor& scene, const std::vector<compa
     }
     if (mm >= 0) row.mm_across = mm;
     if (deg >= 0) row.deg_across = deg;
+}
+
+// The largest deviation of the published recursion; NaN without one.
+double max_of(const JsonCursor& judgement, const char* key) {
+    const auto worst = judgement.find(key);
+    return worst ? (*worst)["max"].number() : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ std::string trust_sentence(const JsonCursor& scene) {
         text += proved == points ? fmt::format(", proved at {} points", whole_number(proved))
                                  : fmt::format(", proved at {} of {} points", whole_number(proved),
                                                whole_number(points));
-    if (points > 0 && scene.find("proved"))  // as asked for by --quick
+    if (points > 0 && scene.find("proved"))  // with --quick
         text += " (the ends of the branches only)";
     return text + ".";
 }
@@ -110,7 +111,7 @@ std::vector<MethodRow> studied(const JsonCursor& scene, const JsonCursor& trade)
                              : std::vector<compare::StepRow>{};
     const auto equilibrium = std::ranges::find(points, "equilibrium", &TradeRow::leg);
     const double full = equilibrium == points.end() ? NAN : equilibrium->price;
-    const auto share = [&](const TradeRow& r) {  // no looser than what is asked
+    const auto share = [&](const TradeRow& r) {  // no looser than required
         return r.tolerance > trade["tolerance"]["mm"].number() ? INFINITY : r.share;
     };
     for (const auto& method : distinct(points, &TradeRow::method)) {
@@ -151,16 +152,12 @@ std::vector<MethodRow> method_rows(const JsonCursor& scene) {
     std::vector<MethodRow> rows;
     if (const auto trade = scene.find("trade")) rows = studied(scene, *trade);
     if (const auto judgement = scene.find("judgement")) {
-        const auto max = [&](const char* key) {
-            const auto worst = judgement->find(key);
-            return worst ? (*worst)["max"].number() : std::numeric_limits<double>::quiet_NaN();
-        };
         rows.push_back({.method = (*judgement)["method"].text(),
                         .setting = "steps of the scene",
-                        .mm = max("position"),
-                        .deg = max("angle"),
-                        .mm_across = max("position_across"),
-                        .deg_across = max("angle_across"),
+                        .mm = max_of(*judgement, "position"),
+                        .deg = max_of(*judgement, "angle"),
+                        .mm_across = max_of(*judgement, "position_across"),
+                        .deg_across = max_of(*judgement, "angle_across"),
                         .within = (*judgement)["verdict"].text() == "pass"});
     }
     std::ranges::stable_sort(rows, [](const MethodRow& a, const MethodRow& b) {
@@ -195,10 +192,7 @@ std::string method_sentence(const JsonCursor& scene) {
     }
     const auto judgement = scene.find("judgement");
     if (!judgement) return text;
-    const auto max = [&](const char* key) {
-        const auto worst = judgement->find(key);
-        return worst ? (*worst)["max"].number() : NAN;
-    };
+    const auto max = [&](const char* key) { return max_of(*judgement, key); };
     const std::string load = errors(max("position"), max("angle")),
                       travel = errors(max("position_across"), max("angle_across"));
     if (load.empty() && travel.empty()) return text;

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "compare/outputs/curve.hpp"
-#include "compare/studies/findings.hpp"
 #include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
@@ -64,6 +63,11 @@ LegCurve curve_of(const JsonCursor& branch, std::string_view leg) {
         return found;
     }
     return {std::string(leg), {}, {}, legs};
+}
+
+bool Sweep::has(std::string_view branch) const {
+    return std::ranges::any_of(branches,
+                               [&](const JsonCursor& b) { return b["name"].text() == branch; });
 }
 
 std::string Sweep::parameter() const {
@@ -160,10 +164,7 @@ std::optional<Sweep> leading_sweep(const JsonCursor& scene) {
 
 bool leads(const JsonCursor& scene, const std::string& side) {
     const auto sweep = leading_sweep(scene);
-    return sweep && std::ranges::any_of(sweep->branches, [&](const JsonCursor& branch) {
-               const std::string name = branch["name"].text();
-               return side == name || side.starts_with(name + " to ");
-           });
+    return sweep && (sweep->has(side) || sweep->has(side.substr(0, side.rfind(" to "))));
 }
 
 SweepCurve sweep_curve(const Sweep& sweep) {
@@ -240,14 +241,7 @@ std::vector<std::size_t> thinned(std::size_t size, std::size_t count) {
     return kept;
 }
 
-double largest(const std::vector<double>& values) {
-    double most = 0;
-    for (const double value : values) {
-        if (!std::isfinite(value)) return value;
-        most = std::max(most, std::abs(value));
-    }
-    return most;
-}
+double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 namespace {
 

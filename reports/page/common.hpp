@@ -54,6 +54,7 @@ struct Sweep {
     std::vector<JsonCursor> branches;
     std::string kind = "other";  // what it moves: "heave", "roll", "steering", ... (README.md)
 
+    bool has(std::string_view branch) const;  // by its name
     bool lifts() const { return kind == "heave" || kind == "roll" || kind == "travel"; }
     std::string parameter() const;           // "load [N]", "rack [mm]"
     std::string at_equal_parameter() const;  // "at equal load"
@@ -96,7 +97,8 @@ std::vector<WheelInfo> wheels_of(const JsonCursor& scene);
 // Up to `count` evenly spaced indices of 0 ... size - 1, including both ends.
 std::vector<std::size_t> thinned(std::size_t size, std::size_t count);
 
-double largest(const std::vector<double>& values);  // largest absolute value; NaN if any is NaN
+// The larger one; NaN if one of them is NaN.
+double worse(double a, double b);
 
 // A study's table as a table of the page, without empty columns.
 Table page_table(std::string caption, const compare::Table& table);

@@ -157,7 +157,7 @@ std::string marker(Shape shape, PaperPoint p, double r) {
 
 struct Marker {
     Shape shape;
-    bool nonempty_columns;
+    bool filled;
 };
 constexpr Marker markers[] = {{Shape::circle, true}, {Shape::square, true},  {Shape::up, true},
                               {Shape::down, true},   {Shape::diamond, true}, {Shape::circle, false},
@@ -231,7 +231,7 @@ void draw_series(Svg& svg, const Series& series, At&& at, double top, double bot
     else if (series.style != Style::points && series.style != Style::rings)
         svg.stroke(lines, series.colour, line_width(series.style),
                    series.style == Style::dashed ? " stroke-dasharray=\"6,4\"" : "");
-    if (series.style == Style::bars || mark.nonempty_columns)
+    if (series.style == Style::bars || mark.filled)
         svg.area(marks, series.colour);
     else
         svg.stroke(marks, series.colour, line_width(series.style));
@@ -362,13 +362,13 @@ Svg draw_plot(const Figure& figure) {
         svg.elements += "</g>";
     }
     // for the script of the page: pixels and coordinates of the ends of the axes, and their names
-    const auto tell = [&](char name, const Axis& axis, const std::string& words) {
+    const auto add_axis = [&](char name, const Axis& axis, const std::string& words) {
         svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",
                                     name, px(axis.start), px(axis.stop), axis.low, axis.high,
                                     axis.logarithmic, for_xml(words));
     };
-    tell('x', x, figure.x);
-    tell('y', y, figure.y);
+    add_axis('x', x, figure.x);
+    add_axis('y', y, figure.y);
     svg.stroke(fmt::format("M{},{}V{}H{}", px(left), px(top), px(bottom), px(right)), slate, 0.8);
     return svg;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 
 namespace elastocheck::reports {
@@ -35,31 +34,23 @@ json runs(const JsonCursor& field, std::size_t solvers) {
     return {{"signs", signs}, {"runs", list}};
 }
 
+std::string joined(const JsonCursor& texts, const char* between) {
+    return fmt::format("{}", fmt::join(texts.texts(), between));
+}
+
 // Digits lost to other arithmetic, by scene, arithmetic and solver group.
 json arithmetic(const JsonCursor& part) {
-    std::string groups;
-    for (const auto& group : part["groups"].texts()) groups += (groups.empty() ? "" : ", ") + group;
-    const auto variants = part["variants"].texts();
-    json rows = json::array(), gave_up = json::array();
+    json data = *part.value, rows = json::array();
     for (const auto& row : part["rows"].items()) {
         json cells = json::array();
-        for (const auto& variant : row["lost"].items()) {
-            std::string numbers;
-            for (const auto& loss : variant.texts()) numbers += (numbers.empty() ? "" : " ") + loss;
-            cells.push_back(numbers);
-        }
-        if (cells.size() != variants.size())
+        for (const auto& variant : row["lost"].items()) cells.push_back(joined(variant, " "));
+        if (cells.size() != part["variants"].items().size())
             row["lost"].fail("expected what is lost of every variant");
         rows.push_back({{"name", row["scene"].text()}, {"cells", cells}});
     }
-    for (const auto& one : part["gave_up"].items())
-        gave_up.push_back({{"where", one["where"].text()}, {"why", one["why"].text()}});
-    return {{"groups", groups},
-            {"variants", variants},
-            {"lost", rows},
-            {"worst", part["worst"].text()},
-            {"worst_right", part["worst_right"].text()},
-            {"gave_up", gave_up}};
+    data["groups"] = joined(part["groups"], ", ");
+    data["lost"] = rows;
+    return data;
 }
 
 }  // namespace
@@ -68,53 +59,30 @@ json survival(const JsonCursor& result) {
     const auto found = result.find("stress");
     if (!found) return nullptr;
     const JsonCursor& part = *found;
-    const auto solvers = part["solvers"].texts();
-    std::string who;
-    for (const auto& solver : solvers) who += (who.empty() ? "" : ", ") + solver;
-    json sweeps = json::array(), rows = json::array(), extremes = json::array(),
-         wrong = json::array(), skipped = json::array();
-    for (const auto& sweep : part["sweeps"].texts()) sweeps.push_back(sweep);
+    const std::size_t solvers = part["solvers"].items().size();
+    json data = *part.value, rows = json::array();
     for (const auto& scene : part["map"].items()) {
         json cells = json::array();
-        for (const auto& signs : scene["signs"].items())
-            cells.push_back(runs(signs, solvers.size()));
-        if (cells.size() != sweeps.size()) scene["signs"].fail("expected the signs of every sweep");
+        for (const auto& signs : scene["signs"].items()) cells.push_back(runs(signs, solvers));
+        if (cells.size() != part["sweeps"].items().size())
+            scene["signs"].fail("expected the signs of every sweep");
         rows.push_back({{"name", scene["scene"].text()}, {"cells", cells}});
     }
-    for (const auto& one : part["extremes"].items())
-        extremes.push_back({{"scene", one["scene"].text()},
-                            {"variant", one["variant"].text()},
-                            {"cells", json::array({runs(one["signs"], solvers.size())})}});
-    for (const auto& one : part["wrong"].items())
-        wrong.push_back({{"scene", one["scene"].text()},
-                         {"variant", one["variant"].text()},
-                         {"way", one["way"].text()},
-                         {"solver", one["solver"].text()},
-                         {"why", one["why"].text()}});
-    for (const auto& one : part["skipped"].items())
-        skipped.push_back({{"scene", one["scene"].text()},
-                           {"variant", one["variant"].text()},
-                           {"why", one["why"].text()}});
+    const auto extremes = part["extremes"].items();
+    for (std::size_t k = 0; k < extremes.size(); ++k)
+        data["extremes"][k]["cells"] = json::array({runs(extremes[k]["signs"], solvers)});
     int all = 0;
-    json counts = json::object();
-    for (const auto& [verdict, count] : part["counts"].entries()) {
-        counts[verdict] = count.whole();
-        all += count.whole();
-    }
+    for (const auto& [verdict, count] : part["counts"].entries()) all += count.whole();
     const auto other = part.find("arithmetic");
     const bool any = other && !(*other)["rows"].items().empty();
-    return {{"arithmetic", any ? arithmetic(*other) : json(nullptr)},
-            {"solvers", who},
-            {"sweeps", sweeps},
-            {"rows", rows},
-            {"has_rows", !rows.empty()},
-            {"extremes", extremes},
-            {"has_extremes", !extremes.empty()},
-            {"wrong", wrong},
-            {"has_wrong", !wrong.empty()},
-            {"skipped", skipped},
-            {"count", all},
-            {"counts", counts}};
+    data["arithmetic"] = any ? arithmetic(*other) : json(nullptr);
+    data["solvers"] = joined(part["solvers"], ", ");
+    data["rows"] = rows;
+    data["count"] = all;
+    data["has_rows"] = !rows.empty();
+    data["has_extremes"] = !extremes.empty();
+    data["has_wrong"] = !part["wrong"].items().empty();
+    return data;
 }
 
 }  // namespace elastocheck::reports

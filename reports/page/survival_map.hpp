@@ -7,8 +7,9 @@
 
 namespace elastocheck::reports {
 
-// Data of the templates survival.mustache; null if the document has none. Throws ResultError for a
-// sign that is not one of compare::sign.
+// Data of the templates survival.mustache: the part "stress" of the document, with its signs grouped
+// by colour; null if the document has none. Throws ResultError for a sign that is not one of
+// compare::sign.
 nlohmann::ordered_json survival(const JsonCursor& result);
 
 }  // namespace elastocheck::reports

@@ -67,23 +67,10 @@ std::vector<std::vector<Position>> tyre(const Suspension& s, const Suspension::W
     return edges;
 }
 
-// Convex hull of points on paper (Andrew's monotone chain, 1979).
-Stroke hull(Stroke points) {
-    std::ranges::sort(points, {}, [](const PaperPoint& p) { return std::pair{p.x, p.y}; });
+// Closed outline of the convex hull of points on paper.
+Stroke hull(const Stroke& points) {
     Stroke round;
-    for (int side = 0; side < 2; ++side) {
-        const std::size_t first = round.size();
-        for (const auto& p : points) {
-            while (round.size() >= first + 2) {
-                const PaperPoint &a = round[round.size() - 2], &b = round.back();
-                if ((b.x - a.x) * (p.y - b.y) - (b.y - a.y) * (p.x - b.x) > 0) break;
-                round.pop_back();
-            }
-            round.push_back(p);
-        }
-        round.pop_back();
-        std::ranges::reverse(points);
-    }
+    for (const auto k : convex_hull(points)) round.push_back(points[k]);
     if (!round.empty()) round.push_back(round.front());
     return round;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace elastocheck::reports {
 namespace {
@@ -35,6 +36,30 @@ Box wider(const Box& box, double by) {
 
 bool overlap(const Box& a, const Box& b) {
     return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
+}
+
+// Andrew's monotone chain (1979): sorted along x, the lower side and the upper one back.
+std::vector<std::size_t> convex_hull(const std::vector<PaperPoint>& points) {
+    std::vector<std::size_t> sorted(points.size()), hull;
+    std::iota(sorted.begin(), sorted.end(), 0);
+    std::ranges::sort(sorted, {}, [&](std::size_t k) {
+        return std::pair{points[k].x, points[k].y};
+    });
+    const auto left_turn = [&](std::size_t i, std::size_t j, std::size_t k) {
+        const PaperPoint &a = points[i], &b = points[j], &c = points[k];
+        return (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x) > 0;
+    };
+    for (int side = 0; side < 2; ++side) {
+        const std::size_t first = hull.size();
+        for (const auto k : sorted) {
+            while (hull.size() >= first + 2 && !left_turn(hull[hull.size() - 2], hull.back(), k))
+                hull.pop_back();
+            hull.push_back(k);
+        }
+        if (!hull.empty()) hull.pop_back();  // the other side starts with the same point
+        std::ranges::reverse(sorted);
+    }
+    return hull;
 }
 
 double text_width(std::string_view text, double size) {

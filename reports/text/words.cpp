@@ -11,6 +11,10 @@ std::string enumerated(const std::vector<std::string>& words) {
     return text;
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string as_words(std::string name) {
     std::ranges::replace(name, '_', ' ');
     return name;

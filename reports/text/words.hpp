@@ -9,6 +9,9 @@ namespace elastocheck::reports {
 // "a", "a and b", "a, b and c"
 std::string enumerated(const std::vector<std::string>& words);
 
+// "1 number", "2 numbers"
+std::string counted(std::size_t count, const std::string& noun);
+
 // A name as words: "wheel centre" of "wheel_centre".
 std::string as_words(std::string name);
 

@@ -133,14 +133,10 @@ std::optional<Section> against_section(const JsonCursor& scene) {
     const auto against = scene.find("against");
     if (!against) return std::nullopt;
     Section section{.id = "against", .title = "Differences of " + (*against)["name"].text()};
-    const auto count = [&](const char* key, const char* what) {
-        const std::size_t n = (*against)[key].items().size();
-        return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-    };
     section.words = {{"base", scene["source"].text()},
                      {"variant", (*against)["source"].text()},
-                     {"numbers", count("numbers", "number")},
-                     {"figures", count("figures", "figure")}};
+                     {"numbers", counted((*against)["numbers"].items().size(), "number")},
+                     {"figures", counted((*against)["figures"].items().size(), "figure")}};
     for (const char* key : {"only_base", "only_variant"})
         if (const auto names = (*against)[key].texts(); !names.empty())
             section.words[key] = enumerated(names);

@@ -15,10 +15,6 @@ namespace {
 using compare::StepRow;
 using compare::StudyRow;
 
-double worse(double a, double b) {
-    return std::isnan(a) || std::isnan(b) ? NAN : std::max(a, std::abs(b));
-}
-
 // Largest errors over the positions at the end of a branch, per step count.
 struct Levels {
     std::vector<double> steps, phi, step, truth;
@@ -35,8 +31,8 @@ Levels levels_of(const std::vector<StepRow>& rows) {
             levels.step.push_back(0);
             levels.truth.push_back(0);
         }
-        levels.step[at] = worse(levels.step[at], row.end);
-        levels.truth[at] = worse(levels.truth[at], row.error);
+        levels.step[at] = worse(levels.step[at], std::abs(row.end));
+        levels.truth[at] = worse(levels.truth[at], std::abs(row.error));
     }
     return levels;
 }

@@ -37,8 +37,7 @@ std::optional<Section> formulations_section(const JsonCursor& scene) {
     }
     section.words["formulations"] = enumerated((*study)["formulations"].texts());
     section.words["bushings"] = enumerated((*study)["bushings"].texts());
-    section.words["reasons"] = nlohmann::ordered_json::array();
-    for (const auto& why : (*study)["not_solved"].texts()) section.words["reasons"].push_back(why);
+    section.words["reasons"] = (*study)["not_solved"].texts();
     for (const auto& why : (*study)["inconclusive"].texts())
         section.words["reasons"].push_back(why);
     section.tables.push_back(std::move(table));

@@ -56,7 +56,7 @@ const std::vector<Quantity> over_load{
     {"wheel_centre_x", "Longitudinal displacement of the wheel centre", "forward positive",
      Shown::change},
 };
-// Drawn only where somebody measured or computed them.
+// Drawn only where they were measured, or computed by a candidate.
 const std::vector<Quantity> when_given{
     {"wheel_centre_y", "Lateral movement of the wheel centre", "outwards positive",
      Shown::outward_change},
@@ -244,7 +244,7 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
             drawn.push_back(std::move(rows));
         }
     }
-    // what does not move says nothing, unless it was measured
+    // a quantity that does not move is left out, unless it was measured
     if (figure.series.empty() ||
         (others.empty() && !(moved > 1e-6 * std::max(1e-3, std::max(std::abs(low), high)))))
         return std::nullopt;

@@ -102,12 +102,9 @@ std::optional<Section> candidate_section(const JsonCursor& scene) {
             section.mark = Mark::fail;
         else if (verdict != "pass" && section.mark == Mark::pass)
             section.mark = Mark::open;
-        nlohmann::ordered_json reasons = nlohmann::ordered_json::array(),
-                               notes = nlohmann::ordered_json::array();
-        for (const auto& reason : candidate["reasons"].texts()) reasons.push_back(reason);
-        for (const auto& note : candidate["notes"].texts()) notes.push_back(note);
-        listed.push_back(
-            {{"sentence", candidate["sentence"].text()}, {"reasons", reasons}, {"notes", notes}});
+        listed.push_back({{"sentence", candidate["sentence"].text()},
+                          {"reasons", candidate["reasons"].texts()},
+                          {"notes", candidate["notes"].texts()}});
         const std::string who = candidate["name"].text();
         for (const auto& branch : candidate["branches"].items())
             if (auto table = beside_the_recursion(scene, who, candidate, branch);
@@ -131,10 +128,7 @@ std::vector<Series> candidate_series(const JsonCursor& scene, const Sweep& sweep
                       .colour = green,
                       .mark = 4};
         for (const auto& branch : candidate["branches"].items()) {
-            if (std::ranges::none_of(sweep.branches, [&](const JsonCursor& b) {
-                    return b["name"].text() == branch["name"].text();
-                }))
-                continue;
+            if (!sweep.has(branch["name"].text())) continue;
             const JsonCursor curve = branch["curve"];
             const auto y = curve["outputs"].find(channel);
             const auto abscissa = branch.find("abscissa");

@@ -11,15 +11,6 @@
 
 namespace elastocheck::reports {
 
-namespace {
-
-bool is_of(const Sweep& sweep, const std::string& branch) {
-    return std::ranges::any_of(sweep.branches,
-                               [&](const JsonCursor& b) { return b["name"].text() == branch; });
-}
-
-}  // namespace
-
 bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep) {
     const auto measured = scene.find("measured");
     if (!measured) return false;
@@ -29,7 +20,7 @@ bool measured_over_parameter(const JsonCursor& scene, const Sweep& sweep) {
     const auto of = (*measured)["branch"].texts();
     bool points = false, travel = false;
     for (std::size_t k = 0; k < of.size() && k < x.size(); ++k)
-        if (is_of(sweep, of[k])) points = true, travel = travel || std::isfinite(x[k]);
+        if (sweep.has(of[k])) points = true, travel = travel || std::isfinite(x[k]);
     return points && !travel;
 }
 
@@ -48,7 +39,7 @@ std::optional<Series> measured_series(const JsonCursor& scene, const Sweep& swee
     Series series{.title = "measured", .style = Series::Style::rings, .colour = purple, .mark = 5};
     bool any = false;
     for (std::size_t k = 0; k < x.size(); ++k)
-        if (is_of(sweep, of[k]) && std::isfinite(x[k]))
+        if (sweep.has(of[k]) && std::isfinite(x[k]))
             series.rows.push_back({x[k], y[k]}), any = any || std::isfinite(y[k]);
     if (!any) return std::nullopt;
     return series;

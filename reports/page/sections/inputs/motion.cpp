@@ -112,11 +112,7 @@ json motion_of(const JsonCursor& scene, const Suspension& s, const View& first) 
     for (const bool of_leading : {true, false})
         for (const auto& branch : scene["branches"].items()) {
             const std::string name = branch["name"].text();
-            const bool leads =
-                leading && std::ranges::any_of(leading->branches, [&](const auto& b) {
-                    return b["name"].text() == name;
-                });
-            if (leads != of_leading) continue;
+            if ((leading && leading->has(name)) != of_leading) continue;
             for (const auto& motion : motions->items())
                 if (motion["branch"].text() == name && motion["a"].items().size() > 1)
                     branches.push_back(branch_of(scene, branch, motion, s));

@@ -76,11 +76,7 @@ std::optional<Suspension> suspension_of(const JsonCursor& scene) {
     std::vector<double> order;
     for (const auto& at : (*drawing)["positions"].items()) {
         const auto of = at.find("of");
-        if (!of || at["where"].text() != "end" ||
-            std::ranges::none_of(sweep->branches, [&](const JsonCursor& b) {
-                return b["name"].text() == of->text();
-            }))
-            continue;
+        if (!of || at["where"].text() != "end" || !sweep->has(of->text())) continue;
         Suspension::Moved moved;
         moved.title = fmt::format("{} at {}", sweep->lifts() ? "travel" : of->text(),
                                   quantity(at["a"].number(), at["unit"].text()));
