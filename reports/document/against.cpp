@@ -12,6 +12,7 @@
 #include "compare/gate/gate.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "reports/json/json_cursor.hpp"
+#include "reports/text/words.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -28,7 +29,7 @@ struct Line {
     std::vector<double> a, y;
 };
 
-struct Way {
+struct BranchCurve {
     std::string name, unit;
     JsonCursor curve;  // of the equilibrium leg
 
@@ -49,8 +50,8 @@ std::vector<Output> outputs_of(const JsonCursor& scene) {
     return all;
 }
 
-std::vector<Way> ways_of(const JsonCursor& scene) {
-    std::vector<Way> all;
+std::vector<BranchCurve> branches_of(const JsonCursor& scene) {
+    std::vector<BranchCurve> all;
     for (const auto& branch : scene["branches"].items())
         for (const auto& leg : branch["legs"].items())
             if (leg["leg"].text() == name(compare::Leg::equilibrium))
@@ -65,11 +66,12 @@ std::vector<Number> numbers_of(const JsonCursor& scene) {
     return all;
 }
 
-// A way of this name and unit, or null.
-const Way* find(const std::vector<Way>& ways, const Way& like) {
-    const auto found = std::ranges::find_if(
-        ways, [&](const Way& way) { return way.name == like.name && way.unit == like.unit; });
-    return found == ways.end() ? nullptr : &*found;
+// The branch of this name and unit, or null.
+const BranchCurve* find(const std::vector<BranchCurve>& branches, const BranchCurve& like) {
+    const auto found = std::ranges::find_if(branches, [&](const BranchCurve& branch) {
+        return branch.name == like.name && branch.unit == like.unit;
+    });
+    return found == branches.end() ? nullptr : &*found;
 }
 
 double at_design(const Line& line) {
@@ -104,15 +106,16 @@ json thinned(const Line& line) {
 
 json number_or_null(double x) { return std::isfinite(x) ? json(x) : json(nullptr); }
 
-json figures_json(const std::vector<Output>& outputs, const std::vector<Way>& was,
-                  const std::vector<Way>& is) {
+json figures_json(const std::vector<Output>& outputs, const std::vector<BranchCurve>& was,
+                  const std::vector<BranchCurve>& is) {
     std::vector<json> figures;
     for (const auto& output : outputs) {
         if (!output.kinematic && !output.characteristic) continue;
-        for (const auto& way : is) {
-            const Way* same = find(was, way);
+        for (const auto& branch : is) {
+            const BranchCurve* same = find(was, branch);
             if (same == nullptr) continue;
-            const double a = at_design(same->of(output.name)), b = at_design(way.of(output.name));
+            const double a = at_design(same->of(output.name)),
+                         b = at_design(branch.of(output.name));
             if (std::isnan(a) && std::isnan(b)) continue;  // no figure of this branch
             if (!differs(a, b)) break;
             const auto compared = [&](double x) {
@@ -136,7 +139,8 @@ json figures_json(const std::vector<Output>& outputs, const std::vector<Way>& wa
     return figures;
 }
 
-json curves_json(const std::vector<Output>& outputs, const Way& was, const Way& is) {
+json curves_json(const std::vector<Output>& outputs, const BranchCurve& was,
+                 const BranchCurve& is) {
     json curves = json::array();
     for (const auto& output : outputs) {
         if (!output.main || !output.kinematic) continue;
@@ -186,23 +190,23 @@ void add_against(json& base, const json& variant) {
             only_variant.push_back("output " + output.name);
     for (const auto& output : before)
         if (!has(outputs, output)) only_base.push_back("output " + output.name);
-    const auto ways = ways_of(is), ways_before = ways_of(was);
-    json branches = json::array();
-    for (const auto& way : ways)
-        if (const Way* same = find(ways_before, way))
-            branches.push_back({{"name", way.name},
-                                {"unit", way.unit},
-                                {"curves", curves_json(common, *same, way)}});
+    const auto branches = branches_of(is), branches_before = branches_of(was);
+    json list = json::array();
+    for (const auto& branch : branches)
+        if (const BranchCurve* same = find(branches_before, branch))
+            list.push_back({{"name", branch.name},
+                            {"unit", branch.unit},
+                            {"curves", curves_json(common, *same, branch)}});
         else
-            only_variant.push_back("branch " + way.name);
-    for (const auto& way : ways_before)
-        if (find(ways, way) == nullptr) only_base.push_back("branch " + way.name);
+            only_variant.push_back("branch " + branch.name);
+    for (const auto& branch : branches_before)
+        if (find(branches, branch) == nullptr) only_base.push_back("branch " + branch.name);
     base["against"] = {{"name", is["name"].text()},
                        {"source", is["source"].text()},
                        {"input_hash", is["input_hash"].text()},
                        {"numbers", numbers},
-                       {"figures", figures_json(common, ways_before, ways)},
-                       {"branches", branches},
+                       {"figures", figures_json(common, branches_before, branches)},
+                       {"branches", list},
                        {"only_base", only_base},
                        {"only_variant", only_variant}};
 }
@@ -213,14 +217,11 @@ std::string against_sentence(const json& base) {
     for (const auto& figure : against.at("figures"))
         if (most == nullptr && figure.at("base").is_number() && figure.at("variant").is_number())
             most = &figure;
-    const auto count = [](std::size_t n, const char* what) {
-        return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-    };
     std::string text =
         fmt::format("{} against {}: {} of the scene and {} at the design position differ",
                     against.at("source").get<std::string>(), base.at("source").get<std::string>(),
-                    count(against.at("numbers").size(), "number"),
-                    count(against.at("figures").size(), "figure"));
+                    counted(against.at("numbers").size(), "number"),
+                    counted(against.at("figures").size(), "figure"));
     if (most != nullptr)
         text +=
             fmt::format(", most {} [{}] from {:.3g} to {:.3g}",

@@ -10,7 +10,7 @@
 #include "compare/studies/findings.hpp"
 #include "compare/tables/rows.hpp"
 #include "models/overloaded.hpp"
-#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/document/wheels.hpp"
 #include "reports/tables/elements.hpp"
@@ -22,7 +22,8 @@ namespace {
 using json = nlohmann::ordered_json;
 using compare::Leg;
 
-json model_json(const Model& model, const recursive::Diagnosis& d) {
+json model_json(const Model& model) {
+    const recursive::Diagnosis d = recursive::diagnose(model);
     const recursive::Conditioning condition = recursive::conditioning(model, d);
     json bodies = json::array(), joints = json::array(), elements = json::array(),
          idle = json::array(), redundant = json::array(), omitted = json::array();
@@ -279,12 +280,11 @@ json document(const std::string& reproduce, const Provenance& provenance) {
             {"scenes", json::array()}};
 }
 
-json scene_document(const Scene& scene, std::string_view input, const Model& model,
-                    const recursive::Diagnosis& diagnosis) {
+json scene_document(const Scene& scene, std::string_view input, const Model& model) {
     return {{"name", scene.name},
             {"source", scene.source},
             {"input_hash", input_hash(input)},
-            {"model", model_json(model, diagnosis)}};
+            {"model", model_json(model)}};
 }
 
 void add_comparison(json& scene_document, const Scene& scene, const Model& model,

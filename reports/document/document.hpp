@@ -9,7 +9,6 @@
 #include "compare/studies/study.hpp"
 #include "elastocheck/scene.hpp"
 #include "elastocheck/trim.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/files/provenance.hpp"
 
 namespace elastocheck::reports {
@@ -28,11 +27,12 @@ nlohmann::ordered_json document(const std::string& reproduce, const Provenance& 
 // A scene in the document: name, source, hash, compiled model. The functions below add the results,
 // each under its own key; a part that was not requested is absent.
 nlohmann::ordered_json scene_document(const Scene& scene, std::string_view input,
-                                      const Model& model, const recursive::Diagnosis& diagnosis);
+                                      const Model& model);
 
 // "channels" and "branches": every point of every leg, deviations, certificates, what the branch does
-// to the wheels; "findings", "rate_errors": key figures; "wheels": static alignment; "forces": of elements and links at the ends of the branches;
-// "drawing": hardpoints at the design position and along the branches.
+// to the wheels; "findings", "rate_errors": key figures; "wheels": static alignment; "forces": of
+// elements and links at the ends of the branches; "drawing": hardpoints at the design position and
+// along the branches.
 void add_comparison(nlohmann::ordered_json& scene_document, const Scene& scene, const Model& model,
                     const compare::Comparison& comparison);
 

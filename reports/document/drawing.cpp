@@ -11,6 +11,7 @@
 
 #include "compare/outputs/curve.hpp"
 #include "models/kinds.hpp"
+#include "reports/text/labels.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -76,31 +77,9 @@ std::vector<std::size_t> outline(const std::vector<Vector3d>& points) {
     const Vector3d extent = principal.eigenvalues().cwiseMax(0).cwiseSqrt();  // ascending
     if (!(extent[1] > 0.15 * extent[2]) || extent[0] > 0.35 * extent[1]) return {};
     const Vector3d u = principal.eigenvectors().col(2), v = principal.eigenvectors().col(1);
-    const auto flat = [&](std::size_t k) {
-        return Eigen::Vector2d{u.dot(points[k] - middle), v.dot(points[k] - middle)};
-    };
-    // Convex hull by Andrew's monotone chain (1979): sorted along u, the lower side and the upper
-    // one back.
-    std::vector<std::size_t> sorted(points.size()), hull;
-    for (std::size_t k = 0; k < sorted.size(); ++k) sorted[k] = k;
-    std::ranges::sort(sorted, {}, [&](std::size_t k) {
-        return std::pair{flat(k).x(), flat(k).y()};
-    });
-    const auto left_turn = [&](std::size_t a, std::size_t b, std::size_t c) {
-        const Eigen::Vector2d ab = flat(b) - flat(a), bc = flat(c) - flat(b);
-        return ab.x() * bc.y() - ab.y() * bc.x() > 0;
-    };
-    for (int side = 0; side < 2; ++side) {
-        const std::size_t first = hull.size();
-        for (const auto k : sorted) {
-            while (hull.size() >= first + 2 && !left_turn(hull[hull.size() - 2], hull.back(), k))
-                hull.pop_back();
-            hull.push_back(k);
-        }
-        hull.pop_back();  // the other side starts with the same point
-        std::ranges::reverse(sorted);
-    }
-    return hull;
+    std::vector<PaperPoint> flat;
+    for (const auto& p : points) flat.push_back({u.dot(p - middle), v.dot(p - middle)});
+    return convex_hull(flat);
 }
 
 // Minimum spanning tree (Prim 1957): joins each point to the nearest joined one.

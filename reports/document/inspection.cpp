@@ -87,7 +87,7 @@ std::string cost_words(const Model& model) {
 
 std::string inspection(const Inspected& inspected) {
     const Model& model = inspected.model;
-    const recursive::Diagnosis& d = inspected.diagnosis;
+    const recursive::Diagnosis d = recursive::diagnose(model);
     std::string text;
     const recursive::Conditioning condition = recursive::conditioning(model, d);
     const auto line = [&](const char* format, const auto&... args) {
@@ -154,9 +154,9 @@ std::string inspection(const Inspected& inspected) {
         std::string name = channel.name;
         if (const bool reaction = std::holds_alternative<compare::Reaction>(channel.reads);
             reaction) {
-            bool& said = channel.unit == compare::Unit::newton ? force : moment;
-            if (said) continue;  // the same for every joint and axis
-            said = true;
+            bool& listed = channel.unit == compare::Unit::newton ? force : moment;
+            if (listed) continue;  // the same for every joint and axis
+            listed = true;
             name = channel.unit == compare::Unit::newton ? "JOINT.force_x, _y, _z"
                                                          : "JOINT.moment_x, _y, _z";
         }

@@ -6,7 +6,6 @@
 
 #include "elastocheck/model.hpp"
 #include "elastocheck/trim.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 
 namespace elastocheck::reports {
 
@@ -14,8 +13,7 @@ struct Inspected {
     const Scene& scene;  // trimmed
     const Model& model;  // as solved
     const std::optional<compare::TrimRecord>& trim;
-    const recursive::Diagnosis diagnosis;  // of `model`
-    bool verbose = false;                  // complete lists, and the cost of a step
+    bool verbose = false;  // complete lists, and the cost of a step
 };
 
 std::string inspection(const Inspected& inspected);

@@ -27,9 +27,9 @@ std::pair<std::string, std::string> parse_load_case(std::string_view text);
 //                                  each unit of their parameters
 //   OUTPUT_UNIT                    toe_deg, camber_deg, wheel_centre_y_mm, ...: absolute values
 //   OUTPUT_change_UNIT             ...: relative to the design position
-//   branch                         its branch; needed only where several branches go the same way
-// The map names columns and branches that are called otherwise. Columns that nobody knows and
-// outputs that are no positions or angles are left out, and listed. A point is compared only with
+//   branch                         its branch; needed only where several branches have the same parameter
+// The map gives the names of columns and branches in the file. Unknown columns, and outputs
+// that are neither positions nor angles, are left out and listed. A point is compared only with
 // the branch on which it was measured. Throws MeasurementError, and ResultError for a document
 // without curves.
 void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv,

@@ -23,8 +23,8 @@ nlohmann::ordered_json wheel_loads_json(const Model& model, const Branch& branch
                                         const std::vector<compare::Channel>& channels,
                                         const compare::Curve& curve);
 
-// "wheels": names and sides, "vehicle", and "static": rows of compare::StaticRow, settled on the first branch that holds no
-// wheel, else on the first.
+// "wheels": names and sides, "vehicle", and "static": rows of compare::StaticRow, settled on the
+// first branch that holds no wheel, else on the first.
 nlohmann::ordered_json wheels_json(const Model& model, const compare::Comparison& comparison);
 
 // "elements": the stops with their clearance, and the segments of beams with the beam's name.

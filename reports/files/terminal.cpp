@@ -72,7 +72,7 @@ struct Display {
         if (on_screen) std::fputs("\r\033[K", stderr);
         on_screen = false;
     }
-    void tell() {
+    void show() {
         const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
         if (!terminal) {
             (void)write(stderr, progress_line(what, done, seconds, 0) + "\n");
@@ -96,7 +96,7 @@ struct Display {
             if (ready > 0 && ::read(read_end, &message, 1) != 1) return;
             if (ready != 0) continue;
             const std::lock_guard guard(lock);
-            if (works) tell();
+            if (works) show();
         }
     }
     void begin() {
@@ -169,7 +169,7 @@ void progress(std::string_view what, double done) {
     }
     if (!shown.works) shown.begin();
     shown.what = what, shown.done = done;
-    if (shown.terminal) shown.tell();
+    if (shown.terminal) shown.show();
 }
 
 void hide_progress() {

@@ -28,7 +28,7 @@ void print_error(fmt::format_string<First, Rest...> format, First&& first, Rest&
         fmt::format(format, std::forward<First>(first), std::forward<Rest>(rest)...)));
 }
 
-// Tells on standard error what runs, and the share of the work that is done, 0 to 1: on a terminal
+// Shows on standard error what runs, and the share of the work that is done, 0 to 1: on a terminal
 // by a bar that is rewritten in place, else by a line every ten seconds. Empty: the work has ended.
 // May be called by any thread.
 void progress(std::string_view what, double done = std::numeric_limits<double>::quiet_NaN());

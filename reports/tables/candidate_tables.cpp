@@ -23,7 +23,7 @@ using compare::Grade;
 using compare::Unit;
 
 std::string tolerance_of(const CandidateJudgement& j) {
-    return tolerance_text(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
+    return tolerance_text(j.tolerance, j.others > 0, j.asked);
 }
 
 std::string worst_of(const CandidateJudgement& j, const compare::Comparison& comparison) {
@@ -36,13 +36,9 @@ std::string worst_of(const CandidateJudgement& j, const compare::Comparison& com
                 ? ""
                 : comparison.channels[static_cast<std::size_t>(branch.abscissa)].name;
         const bool parameter = w.kind == compare::ReadingKind::equal_parameter;
-        const bool hardly = w.max > w.limit && w.max < 1.1 * w.limit;  // shown with more digits
-        const std::string size = std::isnan(w.max) ? "not a number"
-                                 : w.max < 1e-9    ? "nothing"
-                                 : hardly          ? fmt::format("{:.6g} {}", w.max, symbol(w.unit))
-                                                   : quantity(w.max, symbol(w.unit));
         text += fmt::format(
-            "{}{}{} ({}, branch {}, {})", text.empty() ? "" : " and ", size,
+            "{}{}{} ({}, branch {}, {})", text.empty() ? "" : " and ",
+            deviation_text(w.max, w.limit, symbol(w.unit)),
             w.extent > 0 ? fmt::format(", {} of its extent", percent(w.max / w.extent)) : "",
             as_words(w.channel), w.branch,
             parameter ? compare::parameter_reading(symbol(branch.unit))
@@ -128,11 +124,7 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
                     "Not judged: it does not give {}; with --partial it is judged on what it "
                     "gives.{}",
                     joined(j.not_given, j.not_given.size()), hints);
-            return fmt::format("Not judged: {}{}.{}", j.reasons.front(),
-                               j.reasons.size() > 1
-                                   ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)
-                                   : "",
-                               hints);
+            return not_judged(j.reasons) + hints;
         case Grade::pass:
             if (in_balance && std::ranges::all_of(j.worst, [](const CandidateWorst& w) {
                     return w.max < (w.extent > 0 ? 1e-6 * w.extent : 1e-9);

@@ -14,8 +14,7 @@ std::string claim(const compare::Tolerance& tolerance) {
     return fmt::format("{:g} mm and {:g} deg", tolerance.mm, tolerance.deg);
 }
 
-}  // namespace
-
+// Statement and limits of the proofs in one paragraph.
 std::string what_is_proved(const compare::CertifyStudy& study) {
     return fmt::format(
         "Proved: interval arithmetic shows that the model's equations of balance and constraint, "
@@ -26,6 +25,8 @@ std::string what_is_proved(const compare::CertifyStudy& study) {
         "the suspension, or that its numbers are right.",
         claim(study.tolerance));
 }
+
+}  // namespace
 
 std::string sentence(const compare::CertifyStudy& study) {
     const int points = study.points(), proved = study.proved();
@@ -58,7 +59,7 @@ std::string certify_text(const compare::CertifyStudy& study) {
         compare::CertifyStudy of_branch = study;
         of_branch.sides = where(study.sides, &compare::CertifiedSide::branch, branch);
         fmt::format_to(out, "branch '{}'\n{}", branch, text(certify_table(of_branch)));
-        bool said = false;
+        bool printed = false;
         for (const auto& side : study.sides) {
             if (side.branch != branch) continue;
             const char* unit = symbol(side.unit);
@@ -82,9 +83,9 @@ std::string certify_text(const compare::CertifyStudy& study) {
                       : std::string()})
                 if (!what.empty()) fmt::format_to(out, "  {}: {}\n", side.solver, what);
             // The theorems of the other solvers' points hold about the same motions.
-            if (!side.tally.theorem.empty() && !said)
+            if (!side.tally.theorem.empty() && !printed)
                 fmt::format_to(out, "  {}\n", side.tally.theorem);
-            said = said || !side.tally.theorem.empty();
+            printed = printed || !side.tally.theorem.empty();
         }
         all += '\n';
     }

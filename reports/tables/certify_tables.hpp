@@ -8,9 +8,6 @@
 
 namespace elastocheck::reports {
 
-// Statement and limits of the proofs in one paragraph, for text and page.
-std::string what_is_proved(const compare::CertifyStudy& study);
-
 // "63 of 63 points proved: ..." or the missing proofs.
 std::string sentence(const compare::CertifyStudy& study);
 

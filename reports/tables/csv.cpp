@@ -41,9 +41,9 @@ std::string rates_header(const std::vector<compare::Channel>& channels) {
     return line + "\n";
 }
 
-std::string rates_row(const std::string& way, compare::Unit unit, double a,
+std::string rates_row(const std::string& side, compare::Unit unit, double a,
                       const std::vector<double>& slopes) {
-    return fmt::format("{},{},{}{}\n", for_csv(way), parameter_in(unit, a), symbol(unit),
+    return fmt::format("{},{},{}{}\n", for_csv(side), parameter_in(unit, a), symbol(unit),
                        numbers(slopes));
 }
 

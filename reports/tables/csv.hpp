@@ -16,7 +16,7 @@ std::string curves_row(const std::string& branch, compare::Leg leg, compare::Uni
 
 // Derivatives of the series in a separate file, by branch side; `a` in SI.
 std::string rates_header(const std::vector<compare::Channel>& channels);
-std::string rates_row(const std::string& way, compare::Unit unit, double a,
+std::string rates_row(const std::string& side, compare::Unit unit, double a,
                       const std::vector<double>& slopes);
 
 }  // namespace elastocheck::reports

@@ -12,12 +12,9 @@ namespace {
 
 using json = nlohmann::ordered_json;
 using compare::AllEquilibria;
+using compare::finite_or_nan;
 
 constexpr double deg = 57.29577951308232;
-
-double finite_or_nan(double value) { return std::isfinite(value) ? value : std::nan(""); }
-
-}  // namespace
 
 compare::Table equilibria_table(const AllEquilibria& all) {
     using enum Digits;
@@ -39,6 +36,8 @@ compare::Table equilibria_table(const AllEquilibria& all) {
                               finite_or_nan(1e3 * one.proof.unique.length), one.meaning});
     return table;
 }
+
+}  // namespace
 
 std::string equilibria_text(const AllEquilibria& all) {
     std::string text;

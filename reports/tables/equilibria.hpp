@@ -12,8 +12,6 @@ namespace elastocheck::reports {
 // Incremented when a field changes its meaning or is removed; new fields do not increment it.
 inline constexpr const char* equilibria_schema = "elastocheck/equilibria/1";
 
-compare::Table equilibria_table(const compare::AllEquilibria& all);
-
 std::string equilibria_text(const compare::AllEquilibria& all);
 
 // {"branch", "at", "unit", "outcome", "detail", "proved", "starts", "other_way_round",

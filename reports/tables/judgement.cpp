@@ -26,19 +26,12 @@ std::string subject(const Assessment& j) {
     return fmt::format("the recursion by method ‘{}’", j.method);
 }
 
-// `limit`: the tolerance; a small excess is shown with enough digits.
 std::string size(const Worst& worst, double limit) {
-    if (std::isnan(worst.max)) return "not a number";
-    if (worst.max > limit && worst.max < 1.1 * limit)
-        return fmt::format("{:.6g} {}", worst.max, symbol(worst.unit));
-    if (worst.max < nothing)
-        return worst.max > limit ? fmt::format("{:.1e} {}", worst.max, symbol(worst.unit))
-                                 : "nothing";
-    return quantity(worst.max, symbol(worst.unit));
+    return deviation_text(worst.max, limit, symbol(worst.unit));
 }
 
-std::string asked(const Assessment& j) {
-    return tolerance_text(j.tolerance, j.others > 0) + (j.asked ? "" : " (the default)");
+std::string tolerance_of(const Assessment& j) {
+    return tolerance_text(j.tolerance, j.others > 0, j.asked);
 }
 
 // "6.9 N, 7 % of its extent (rod.drive force, branch len)"
@@ -89,8 +82,7 @@ std::string compared(const Assessment& j) {
     const std::string others =
         j.others == 0 ? ", no force, moment or rate among them"
                       : fmt::format(", {} of them forces, moments and rates", j.others);
-    return fmt::format("{} {} compared{}", j.outputs, j.outputs == 1 ? "output" : "outputs",
-                       others);
+    return counted(static_cast<std::size_t>(j.outputs), "output") + " compared" + others;
 }
 
 // The deviations without a verdict.
@@ -98,7 +90,7 @@ std::string deviations(const Assessment& j) {
     const std::string text = j.exact ? fmt::format("{} is exact to round-off", subject(j))
                                      : fmt::format("{} is off from the full solution by up to {}{}",
                                                    subject(j), worst_of(j), rate_of(j));
-    return fmt::format("{}{}; {}. No verdict was asked for: --within gives a tolerance.",
+    return fmt::format("{}{}; {}. No verdict was requested: --within gives a tolerance.",
                        static_cast<char>(std::toupper(static_cast<unsigned char>(text.front()))),
                        text.substr(1), compared(j));
 }
@@ -114,7 +106,20 @@ json worst_json(const std::optional<Worst>& worst) {
 
 }  // namespace
 
-std::string tolerance_text(const compare::Tolerance& tolerance, bool others) {
+std::string deviation_text(double value, double limit, const char* unit) {
+    if (std::isnan(value)) return "not a number";
+    if (value > limit && value < 1.1 * limit) return fmt::format("{:.6g} {}", value, unit);
+    if (value < nothing) return value > limit ? fmt::format("{:.1e} {}", value, unit) : "nothing";
+    return quantity(value, unit);
+}
+
+std::string not_judged(const std::vector<std::string>& reasons) {
+    return fmt::format(
+        "Not judged: {}{}.", reasons.empty() ? "nothing was compared" : reasons.front(),
+        reasons.size() > 1 ? fmt::format(" (and {} reasons more)", reasons.size() - 1) : "");
+}
+
+std::string tolerance_text(const compare::Tolerance& tolerance, bool others, bool given) {
     std::vector<std::string> parts;
     const auto add = [&](double value, const char* unit) {
         if (std::isfinite(value)) parts.push_back(setting(value, unit));
@@ -132,38 +137,32 @@ std::string tolerance_text(const compare::Tolerance& tolerance, bool others) {
                                     : moment        ? "forces and rates"
                                                     : "forces, moments and rates"));
     }
-    return enumerated(parts);
+    return enumerated(parts) + (given ? "" : " (the default)");
 }
 
 std::string sentence(const Assessment& j) {
     if (!j.requested && j.verdict != Grade::not_judged) return deviations(j);
     switch (j.verdict) {
-        case Grade::not_judged: {
-            const std::string more =
-                j.reasons.size() > 1 ? fmt::format(" (and {} reasons more)", j.reasons.size() - 1)
-                                     : "";
-            return fmt::format("Not judged: {}{}. The results are no basis for a decision.",
-                               j.reasons.empty() ? "nothing was compared" : j.reasons.front(),
-                               more);
-        }
+        case Grade::not_judged:
+            return not_judged(j.reasons) + " The results are no basis for a decision.";
         case Grade::pass:
             if (j.exact)
                 return fmt::format("Pass: {} is exact to round-off; the tolerance is {}; {}.",
-                                   subject(j), asked(j), compared(j));
+                                   subject(j), tolerance_of(j), compared(j));
             return fmt::format(
                 "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.",
-                subject(j), asked(j), worst_of(j), rate_of(j), compared(j));
+                subject(j), tolerance_of(j), worst_of(j), rate_of(j), compared(j));
         case Grade::fail:
             return fmt::format(
                 "Fail: {} is off from the full solution by up to {}{}. The tolerance is {}.",
-                subject(j), worst_of(j), rate_of(j), asked(j));
+                subject(j), worst_of(j), rate_of(j), tolerance_of(j));
     }
     return {};
 }
 
-nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool asked) {
+nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool given) {
     return {{"mm", tolerance.mm},           {"deg", tolerance.deg},     {"N", tolerance.newton},
-            {"Nm", tolerance.newton_metre}, {"share", tolerance.share}, {"asked", asked}};
+            {"Nm", tolerance.newton_metre}, {"share", tolerance.share}, {"asked", given}};
 }
 
 json judgement_json(const Assessment& j) {
@@ -175,8 +174,8 @@ json judgement_json(const Assessment& j) {
                 {"unit", symbol(j.wheel_rate->unit)},
                 {"off", j.wheel_rate->off},
                 {"as_position_mm", compare::as_position(*j.wheel_rate)}};
-    const bool told = j.requested || j.verdict == Grade::not_judged;
-    return {{"verdict", told ? compare::name(j.verdict) : "not asked"},
+    const bool judged = j.requested || j.verdict == Grade::not_judged;
+    return {{"verdict", judged ? compare::name(j.verdict) : "not asked"},
             {"sentence", sentence(j)},
             {"method", j.method},
             {"tolerance", tolerance_json(j.tolerance, j.asked)},

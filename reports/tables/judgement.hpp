@@ -10,14 +10,22 @@ namespace elastocheck::reports {
 
 std::string sentence(const compare::Assessment& judgement);
 
-// The tolerance as text: "0.01 mm, 0.001 deg and 1 % of the extent of forces, moments and rates";
-// the last part only if `others`, outputs that are neither positions nor angles, are judged.
-std::string tolerance_text(const compare::Tolerance& tolerance, bool others);
+// The tolerance as text: "0.01 mm, 0.001 deg and 1 % of the extent of forces, moments and rates (the
+// default)"; forces, moments and rates only if `others`, outputs that are neither positions nor
+// angles, are judged; the default unless the user gave it.
+std::string tolerance_text(const compare::Tolerance& tolerance, bool others, bool given);
 
-// A tolerance: mm, deg, N, Nm, share, and whether the user requested it ("asked").
-nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool asked);
+// A deviation as text: with enough digits where it exceeds its limit by little; "nothing" for
+// rounding.
+std::string deviation_text(double value, double limit, const char* unit);
 
-//   verdict         "pass", "fail", "not judged"; "not asked" where no verdict was asked for
+// "Not judged: the references disagree (and 2 reasons more)."
+std::string not_judged(const std::vector<std::string>& reasons);
+
+// A tolerance: mm, deg, N, Nm, share, and whether the user gave it ("asked").
+nlohmann::ordered_json tolerance_json(const compare::Tolerance& tolerance, bool given);
+
+//   verdict         "pass", "fail", "not judged"; "not asked" where no verdict was requested
 //   sentence        as above
 //   method          of the recursion
 //   tolerance       mm, deg, N, Nm, share, and whether it was given or is the default

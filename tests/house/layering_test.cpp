@@ -205,6 +205,25 @@ TEST(Layering, ASectionOfTheReportIncludesFewHeadersAndNoStudy) {
     EXPECT_GT(sections, 15u);
 }
 
+// What the rooms that show results include of the rooms that compute them.
+TEST(Layering, TheRoomsOfReportsIncludeOnlyWhatTheyShow) {
+    const std::map<std::string, std::vector<std::string>> allowed{
+        {"reports/page", {"compare/tables", "compare/outputs"}},
+        {"reports/tables", {"compare"}},
+        {"reports/gate", {"compare/gate", "compare/comparison"}},
+        {"reports/text", {}},
+        {"reports/files", {}},
+        {"reports/json", {}}};
+    for (const auto& [file, text] : sources())
+        for (const auto& [room, rooms] : allowed)
+            for (const auto& [target, quoted] : includes(text))
+                if (is_below(file, room) &&
+                    (is_below(target, "compare") || is_below(target, "recursive")))
+                    EXPECT_TRUE(std::ranges::any_of(
+                        rooms, [&](const std::string& r) { return is_below(target, r); }))
+                        << file << " includes " << target;
+}
+
 // A visit that asks what a kind can do, instead of saying what is done with each, leaves a new
 // kind out silently.
 TEST(Layering, NoKindIsLeftOutSilently) {
