@@ -55,6 +55,7 @@ compare::Series& first_moving(BaselineFile& file) {  // a curve whose end is not
     return series(file)[0];
 }
 
+// Of the judgement itself: tests/gate/judge_test.cpp.
 TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
     const BaselineText good = reports::baseline_text(as_committed);
     struct Case {
@@ -83,41 +84,20 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
     const auto limited = [&](const compare::Limit& limit) {
         return edited([&](auto& f) { f.baseline.limits = {limit}; });
     };
-    const double nowhere = std::nan("");
-    const auto nan = edited([&](auto&f) { first_moving(f).values.back() = nowhere; }),
-               less = edited([](auto&f) { series(f).erase(series(f).begin() + 1); }),
-               fewer = edited([](auto&f) { first_moving(f).values.pop_back(); }),
-               swapped = edited([](auto&f) {
-                   auto& moving = first_moving(f);
-                   for (auto& s : series(f))
-                       if (s.unit == moving.unit && s.quantity == moving.quantity &&
-                           s.values != moving.values)
-                           return std::swap(s.values, moving.values);
-               }),
+    const auto nan = edited([&](auto&f) { first_moving(f).values.back() = std::nan(""); }),
                older = replaced("baseline/4", "baseline/3"),
                nothing =
-                   edited([](auto&f) { series(f).clear(), f.baseline.accepted.branches.clear(); }),
-               other_scene = edited([](auto&f) { f.baseline.accepted.scene = "another"; }),
-               elsewhere = edited([](auto&f) { f.baseline.accepted.branches[0].a[5] = 1.0; });
+                   edited([](auto&f) { series(f).clear(), f.baseline.accepted.branches.clear(); });
     constexpr auto at_load = Quantity::deviation_at_equal_parameter, figure = Quantity::equilibrium;
     const std::vector<Case> cases{
         {"as accepted", 0, good, good},
         {"NaN measured", 3, good, nan},
-        {"NaN accepted", 3, nan, good},
         {"NaN in both", 3, nan, nan},
-        {"a channel vanished", 3, good, less},
-        {"a channel is new", 3, less, good},
-        {"fewer points measured", 3, good, fewer},
-        {"fewer points accepted", 3, fewer, good},
-        {"no numbers measured", 3, good, nothing},
-        {"no numbers accepted", 3, nothing, good},
         {"no numbers in both", 3, nothing, nothing},
         {"empty measurement", 3, good, {}},
         {"empty baseline", 3, {}, good},
         {"on the tolerance", 0, set_first(0), set_first(atol)},
         {"one ulp over", 1, set_first(0), set_first(std::nextafter(atol, 1))},
-        {"one ulp under", 1, set_first(0), set_first(std::nextafter(-atol, -1))},
-        {"swapped channels", 1, good, swapped},
         {"older measurement", 3, good, older},
         {"older baseline", 3, older, good},
         {"truncated measurement", 3, good, {truncated(good.review), good.curves}},
@@ -125,9 +105,6 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
         {"truncated curves", 3, {good.review, truncated(good.curves)}, good},
         {"curves of another acceptance", 3, {good.review, set_first(0).curves}, good},
         {"figures of another acceptance", 3, {set_first(0).review, good.curves}, good},
-        {"another scene", 3, good, other_scene},
-        {"other parameters", 3, good, elsewhere},
-        {"no reason", 3, edited([](auto& f) { f.baseline.reason = ""; }), good},
         {"a bound that is no number", 3,
          replaced("\"mm\":{\"atol\":2e-09", "\"mm\":{\"atol\":null"), good},
         {"an infinite bound", 3,  // 1e999 is no JSON number that a double holds
@@ -138,16 +115,9 @@ TEST(GateCommand, EveryKindOfDamageHasItsExitCode) {
          limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "mm"}), good},
         {"a limit on a figure that is broken", 1,
          limited({.of = figure, .channel = "centre_z", .max = -1e6, .unit = "mm"}), good},
-        {"a limit on a figure in another unit", 3,
-         limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "deg"}), good},
         {"a limit over a branch that is not there", 3,
          limited({.of = figure, .channel = "centre_z", .max = 1e6, .unit = "mm", .over = "x"}),
          good},
-        {"a NaN and a broken bound", 1, set_first(0), edited([&](auto& f) {
-             series(f).back().values[0] = nowhere;
-             for (auto& s : series(f))
-                 if (s.unit == "mm") return void(s.values[0] = 1.0);
-         })},
     };
     for (const auto& [what, code, baseline, measurement] : cases) {
         const Said said = crafted(baseline, measurement);
@@ -177,24 +147,20 @@ TEST(GateCommand, AFigureIsLimitedAtTheDesignPositionAndOverABranchAndMisspeltNa
     EXPECT_EQ(said.code, 0) << said.out << said.err;
     said = judged(R"({"figure": "bump_steer", "unit": "deg/m", "min": -2, "max": 2})");
     EXPECT_EQ(said.code, 1) << said.out << said.err;
-    EXPECT_TRUE(contains(said.out, "left.bump_steer [deg/m]")) << said.out;
-    EXPECT_TRUE(contains(said.out, "right.bump_steer [deg/m]")) << said.out;
+    expect_parts(said.out, {"left.bump_steer [deg/m]", "right.bump_steer [deg/m]"});
     said = judged(
         R"({"figure": "left.bump_steer", "unit": "deg/m", "min": -3, "max": 3, "over": "parallel"})");
     EXPECT_EQ(said.code, 1) << said.out << said.err;
-    EXPECT_FALSE(contains(said.out, "right.bump_steer [deg/m]")) << said.out;
+    expect_parts(said.out, {}, {"right.bump_steer [deg/m]"});
     said = judged(R"({"figure": "bump_steer", "unit": "deg/m", "min": -9, "over": "parallel"})");
     EXPECT_EQ(said.code, 0) << said.out << said.err;
     said = judged(R"({"figure": "bump_ster", "unit": "deg/m", "max": 2})");
     EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(said.out,
-                         "limit on bump_ster: nothing of that name was measured, did "
-                         "you mean 'bump_steer'?"))
-        << said.out;
+    expect_parts(said.out, {"limit on bump_ster: nothing of that name was measured, did "
+                            "you mean 'bump_steer'?"});
     said = judged(R"({"figure": "toe", "unit": "deg", "max": 2, "over": "paralel"})");
     EXPECT_EQ(said.code, 3);
-    EXPECT_TRUE(contains(said.out, "there is no branch 'paralel', did you mean 'parallel'?"))
-        << said.out;
+    expect_parts(said.out, {"there is no branch 'paralel', did you mean 'parallel'?"});
 }
 
 TEST(GateCommand, AMissingBaselineCouldNotBeJudgedAndAMissingSceneIsBadInput) {
@@ -247,16 +213,16 @@ TEST(GateCommand, AcceptsThenPassesThenCatchesAChangedScene) {
     EXPECT_TRUE(std::regex_search(
         said.out, std::regex("\n  changed: bushings\\.[a-z_]+\\.rates\\.x: 1[0-9]+ .*, was ")))
         << said.out;
-    EXPECT_TRUE(contains(text_of(folder.path / "j.xml"), "<failure message="));
-    EXPECT_TRUE(contains(text_of(folder.path / "s.md"), "# elastocheck gate: FAILED"));
-    EXPECT_FALSE(contains(said.out, "::error"));
-    EXPECT_TRUE(contains(gate(own, "GITHUB_ACTIONS=true CI=").out, "\n::error file="));
+    expect_parts(text_of(folder.path / "j.xml"), {"<failure message="});
+    expect_parts(text_of(folder.path / "s.md"), {"# elastocheck gate: FAILED"});
+    expect_parts(said.out, {}, {"::error"});
+    expect_parts(gate(own, "GITHUB_ACTIONS=true CI=").out, {"\n::error file="});
 
     // By --set too, where the file is as it was; by a comment alone no number changes.
     folder.write("own.yaml", text_of(scene));
     const std::string path = reports::read_baseline(baseline).numbers.back().path;
     said = gate(own + " --set " + path + "=7");
-    EXPECT_TRUE(contains(said.out, "  changed: " + path + ": 7")) << said.out;
+    expect_parts(said.out, {"  changed: " + path + ": 7"});
     folder.write("own.yaml", text_of(scene) + "# a comment\n");
     expect_said(gate(own), 0, {.out = {"; none of its numbers changed"}});
 

@@ -11,6 +11,7 @@
 namespace elastocheck {
 
 using support::contains;
+using support::expect_parts;
 using support::expect_said;
 using support::Folder;
 using support::Parts;

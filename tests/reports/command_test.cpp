@@ -81,8 +81,8 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     const Said solved =
         expect_says("solve " + scene + " --method series --steps 10 --rates " + rates, 0);
     EXPECT_EQ(std::ranges::count(solved.out, '\n'), 1 + 2 * 11);
-    EXPECT_TRUE(contains(text_of(rates),
-                         "branch,parameter,parameter unit,wheel_centre_x [mm per parameter unit]"));
+    expect_parts(text_of(rates),
+                 {"branch,parameter,parameter unit,wheel_centre_x [mm per parameter unit]"});
 
     const Said compared =
         expect_says("compare " + scene + " --method series --steps 10 -o " +
@@ -102,19 +102,15 @@ TEST(Command, SeriesSolvesComparesAndStudiesItsOrders) {
     const Said studied = expect_says(
         "converge " + scene + " --method series -o " + (folder.path / "studied").string(), 0,
         {.out = {"the series over its order"}});
-    EXPECT_TRUE(contains(text_of(folder.path / "studied/orders.csv"), "jounce,1e-09,16,converged"));
+    expect_parts(text_of(folder.path / "studied/orders.csv"), {"jounce,1e-09,16,converged"});
     EXPECT_FALSE(std::filesystem::exists(folder.path / "studied/convergence.csv"));
 }
 
 TEST(Command, SeriesSaysWhereThePathEndsAndGoesOnByArcLength) {
-    const Folder folder;
-    std::string text = text_of(scenes + "/two_spring_arch.yaml");
-    const auto to = text.find("to: -200");
-    ASSERT_NE(to, std::string::npos);
-    const auto scene = folder.write("arch.yaml", text.replace(to, 8, "to: -400"));
-    expect_says("solve " + scene + " --method series", 3, {.err = {"limit point near -211.51659"}});
-    expect_says("solve " + scene + " --method series --arc-length --steps 40", 0,
-                {.out = {"down,recursive,-400"}});
+    const std::string solve =
+        "solve " + scenes + "/two_spring_arch.yaml --set branches.down.to=-400 --method series";
+    expect_says(solve, 3, {.err = {"limit point near -211.51659"}});
+    expect_says(solve + " --arc-length --steps 40", 0, {.out = {"down,recursive,-400"}});
 }
 
 TEST(Command, OptionsOfAnotherMethodAreRefused) {
@@ -138,24 +134,21 @@ TEST(Command, CompareWritesTheTableAndTheResult) {
                                       (folder.path / "out").string(),
                                   0);
     EXPECT_TRUE(said.err.empty()) << said.err;  // no progress in a pipe
-    for (const char* part : {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]",
-                             "at equal travel", "recursive    converged", "conclusive: "})
-        EXPECT_TRUE(contains(said.out, part)) << part << "\n" << said.out;
+    expect_parts(said.out, {"branch 'jounce': 0 to 3000 N in 20 steps", "toe [deg]",
+                            "at equal travel", "recursive    converged", "conclusive: "});
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["name"], "McPherson strut (generic vehicle of Project Chrono)");
     const std::string curves = text_of(folder.path / "out" / "curves.csv");
     EXPECT_TRUE(
         curves.starts_with("scene,branch,leg,parameter,parameter unit,output,unit,value\n"));
-    EXPECT_TRUE(contains(curves, ",rebound,energy,-3000,N,")) << curves.substr(0, 300);
+    expect_parts(curves, {",rebound,energy,-3000,N,"});
 }
 
 TEST(Command, CompareThatCannotJudgeExitsWith3AndStillWritesWhatItFound) {
     const Folder folder;
-    std::string scene = text_of(scenes + "/two_spring_arch.yaml");
-    scene.replace(scene.find("to: -200"), 8, "to: -300");
-    expect_says(
-        "compare " + folder.write("arch.yaml", scene) + " -o " + (folder.path / "out").string(), 3,
-        {.out = {"INCONCLUSIVE", "limit point"}});
+    expect_says("compare " + scenes + "/two_spring_arch.yaml --set branches.down.to=-300 -o " +
+                    (folder.path / "out").string(),
+                3, {.out = {"INCONCLUSIVE", "limit point"}});
     const auto result = nlohmann::json::parse(text_of(folder.path / "out" / "result.json"));
     EXPECT_EQ(result["scenes"][0]["verdict"]["conclusive"], false);
     EXPECT_FALSE(result["scenes"][0]["verdict"]["reasons"].empty());
@@ -177,17 +170,6 @@ TEST(Command, AReferenceWithoutASinglePointIsReportedNotCrashedOn) {
                  "equilibrium stops being "
                  "a minimum",
                  "nothing compared: a curve is empty"}});
-}
-
-TEST(Command, SolvePrintsOneLegAsCsv) {
-    for (const char* method : {"recursive", "equilibrium", "energy"}) {
-        const Said said =
-            expect_says("solve " + scenes + "/pinned_bar.yaml --steps 4 --method " + method, 0);
-        EXPECT_EQ(std::count(said.out.begin(), said.out.end(), '\n'), 1 + 2 * 5);
-        EXPECT_TRUE(contains(said.out, std::string("up,") + method + ",5000,")) << said.out;
-    }
-    EXPECT_TRUE(contains(elastocheck_says("solve " + scenes + "/pinned_bar.yaml --steps 4").out,
-                         "up,equilibrium,"));
 }
 
 TEST(Command, SolveThatFailsExitsWith3AndSaysWhere) {
@@ -216,12 +198,12 @@ TEST(Command, ConvergeSplitsTheErrorAndWritesItsTables) {
         << "branches, methods, readings, outputs";
     EXPECT_EQ(study["step_errors"]["rows"].size(), 2u * 2 * 2 * 6 * 5);
     EXPECT_EQ(study["gap"]["rows"].size(), 2u * 2 * 6);
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "convergence.csv"),
-                         "lift,published,at equal load,nose_z,mm,converging,"));
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "step_errors.csv"),
-                         "lift,published,at equal load,nose_z,mm,320,converged,"));
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "attribution.csv"),
-                         "lift,at equal load,nose_z,mm,"));
+    expect_parts(text_of(folder.path / "out" / "convergence.csv"),
+                 {"lift,published,at equal load,nose_z,mm,converging,"});
+    expect_parts(text_of(folder.path / "out" / "step_errors.csv"),
+                 {"lift,published,at equal load,nose_z,mm,320,converged,"});
+    expect_parts(text_of(folder.path / "out" / "attribution.csv"),
+                 {"lift,at equal load,nose_z,mm,"});
     expect_says("converge " + scenes + "/bushing_pair.yaml --steps 10,20", 2);
     expect_says("converge " + scenes + "/bushing_pair.yaml --method tangnt", 2);
 }
@@ -235,14 +217,6 @@ TEST(Command, BadInputExitsWith2AndWritesNothing) {
     EXPECT_FALSE(std::filesystem::exists(out));
     expect_says("compare " + (folder.path / "none.yaml").string(), 2);
     expect_says("inspect " + folder.path.string(), 2);
-}
-
-TEST(Command, OutputThatCannotBeWrittenExitsWith2) {
-    const Folder folder;
-    const auto file = folder.write("file", "old");
-    expect_says("compare " + scenes + "/single_bushing.yaml --steps 2 -o " + file, 2,
-                {.err = {"file: is a file; a folder is written here"}});
-    EXPECT_EQ(text_of(file), "old");
 }
 
 TEST(Command, TyposAreAnsweredWithTheNearestWord) {
@@ -261,11 +235,6 @@ TEST(Command, TyposAreAnsweredWithTheNearestWord) {
         const Said said = expect_says(arguments, 2, {.err = {answer}});
         EXPECT_TRUE(said.out.empty()) << said.out;
     }
-}
-
-TEST(Command, HelpListsTheCommands) {
-    expect_says("--help", 0, {.out = {"inspect", "solve", "compare", "Exit codes"}});
-    expect_says("compare --help", 0);
 }
 
 }  // namespace

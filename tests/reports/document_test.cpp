@@ -34,7 +34,7 @@ struct Made {
     }
     json document(std::string_view input = "input") const {
         json whole = reports::document("elastocheck compare x", provenance());
-        json part = scene_document(scene, input, model, recursive::diagnose(model));
+        json part = scene_document(scene, input, model);
         add_comparison(part, scene, model, comparison);
         add_verdict(part, comparison.compared, reasons_of(comparison));
         whole["scenes"].push_back(part);
@@ -147,27 +147,6 @@ TEST(Document, InputHashIsFnv1a) {
     EXPECT_EQ(input_hash(""), "cbf29ce484222325");
     EXPECT_EQ(input_hash("a"), "af63dc4c8601ec8c");
     EXPECT_EQ(input_hash("foobar"), "85944171f73967e8");
-}
-
-TEST(Csv, OneRowPerPointWithUnitsInEveryHeading) {
-    const Made made;
-    std::string csv = curves_header(made.comparison.channels);
-    for (const auto& branch : made.comparison.branches)
-        for (const auto& run : branch.runs)
-            for (std::size_t k = 0; k < run.curve.a.size(); ++k)
-                csv += curves_row(branch.branch, run.leg, branch.unit, {0, 0, run.curve.values[k]});
-    EXPECT_EQ(std::ranges::count(csv, '\n'), 1 + 2 * 3 * 13);
-    const std::string header = csv.substr(0, csv.find('\n'));
-    EXPECT_TRUE(header.starts_with("branch,leg,parameter,unit,wheel_centre_x [mm],")) << header;
-    EXPECT_NE(header.find(",toe [deg],camber [deg],"), std::string::npos);
-    const auto columns = std::ranges::count(header, ',');
-    for (std::size_t at = 0; at < csv.size();) {
-        const auto end = csv.find('\n', at);
-        EXPECT_EQ(std::count(csv.begin() + static_cast<long>(at),
-                             csv.begin() + static_cast<long>(end), ','),
-                  columns);
-        at = end + 1;
-    }
 }
 
 // Three bytes of text, each with its own list: a file of 30 MB would take 2 GB.

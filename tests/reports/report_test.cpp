@@ -37,15 +37,6 @@ Contents contents_of(const fs::path& folder) {
     return contents;
 }
 
-// Small: two figures.
-json small_result(const std::string& name) {
-    json result = sample_result("pinned_bar");
-    auto& scene = result["scenes"][0];
-    scene["name"] = name;
-    for (const char* part : {"convergence", "trade", "precision", "drawing"}) scene.erase(part);
-    return result;
-}
-
 std::string refusal(const fs::path& folder) {
     try {
         write_report(small_result("new"), "result.json", folder);
@@ -87,11 +78,10 @@ TEST(Report, NamesAreTextWhateverTheyContain) {
             if (of_unit.is_object()) of_unit["branch"] = evil;
     write_report(result, "result.json", folder.path / "r");
     const std::string html = text_of(folder.path / "r" / "report.html");
-    EXPECT_TRUE(contains(html, "<h1>&lt;b&gt;&amp;&quot;&apos;| `x` $(reboot) \\ *bold*</h1>"));
-    EXPECT_FALSE(contains(html, "<b>"));
-    EXPECT_FALSE(contains(html, "'<script"));
-    EXPECT_TRUE(contains(text_of(folder.path / "r" / "report.md"),
-                         "# \\<b\\>\\&\"'\\| \\`x\\` \\$(reboot) \\\\ \\*bold\\*"));
+    expect_parts(html, {"<h1>&lt;b&gt;&amp;&quot;&apos;| `x` $(reboot) \\ *bold*</h1>"},
+                 {"<b>", "'<script"});
+    expect_parts(text_of(folder.path / "r" / "report.md"),
+                 {"# \\<b\\>\\&\"'\\| \\`x\\` \\$(reboot) \\\\ \\*bold\\*"});
     EXPECT_FALSE(fs::exists(folder.path / "r" / "hacked"));
 }
 
@@ -106,7 +96,7 @@ TEST(Report, AFigureIsWellFormedWhateverItsWordsAre) {
         EXPECT_EQ(draw({{&figure, "f"}}, folder.path).size(), 1u) << evil;
         expect_said(
             support::says("xmllint --noout " + (folder.path / "figures" / "f.svg").string()), 0);
-        EXPECT_FALSE(contains(text_of(folder.path / "figures" / "f.svg"), "<script")) << evil;
+        expect_parts(text_of(folder.path / "figures" / "f.svg"), {}, {"<script"});
     }
     // A document with such a name is rejected earlier.
     json result = small_result("x");
@@ -115,11 +105,10 @@ TEST(Report, AFigureIsWellFormedWhateverItsWordsAre) {
         write_report(result, "result.json", folder.path / "r");
         ADD_FAILURE() << "a line end in a name";
     } catch (const ResultError& error) {
-        EXPECT_TRUE(contains(error.what(),
-                             "result.json: scenes[0].branches[0].name: expected one line of text: "
-                             "it has the control "
-                             "character U+000A"))
-            << error.what();
+        expect_parts(error.what(),
+                     {"result.json: scenes[0].branches[0].name: expected one line of text: "
+                      "it has the control "
+                      "character U+000A"});
     }
 }
 
@@ -129,9 +118,8 @@ TEST(Report, TwoScenesOfOneNameShareAPage) {
     result["scenes"].push_back(result["scenes"][0]);
     write_report(result, "result.json", folder.path / "r");
     const std::string html = text_of(folder.path / "r" / "report.html");
-    EXPECT_TRUE(contains(html, "<article id=\"pinned-bar\""));
-    EXPECT_TRUE(contains(html, "<article id=\"pinned-bar-2\""));
-    EXPECT_TRUE(contains(html, "<a href=\"#pinned-bar-2\">twin</a>"));
+    expect_parts(html, {"<article id=\"pinned-bar\"", "<article id=\"pinned-bar-2\"",
+                        "<a href=\"#pinned-bar-2\">twin</a>"});
 }
 
 TEST(Report, SeveralScenesBeginWithASummaryOfTheirMethods) {
@@ -146,10 +134,10 @@ TEST(Report, SeveralScenesBeginWithASummaryOfTheirMethods) {
         return at == md.npos ? "" : md.substr(at, md.find('\n', at) - at);
     };
     const std::string first = row("McPherson strut (generic vehicle of Project Chrono)");
-    EXPECT_TRUE(contains(first, "| series, tolerance ")) << first;
+    expect_parts(first, {"| series, tolerance "});
     EXPECT_TRUE(contains(first, " too s")) << "its wheel rate: " << first;
-    EXPECT_FALSE(contains(first, "–")) << first;
-    EXPECT_FALSE(contains(md, "FAIL"));
+    expect_parts(first, {}, {"–"});
+    expect_parts(md, {}, {"FAIL"});
     EXPECT_TRUE(contains(row("second"), "| not judged |")) << row("second");
 }
 
@@ -157,20 +145,18 @@ TEST(Report, ShowsWhichAlarmsRangAndSaysWhenAFaultSurvived) {
     const Folder folder;
     auto result = small_result("x");
     write_report(result, "result.json", folder.path / "without");
-    EXPECT_FALSE(contains(text_of(folder.path / "without" / "report.html"),
-                          "Mutation tests: seeded faults"));
+    expect_parts(text_of(folder.path / "without" / "report.html"), {},
+                 {"Mutation tests: seeded faults"});
     result["alarms"] = nlohmann::ordered_json::parse(
         R"([{"fault": "sign", "in": "a.cpp", "simulates": "a <sign>", "first": "Some.Test", "margin": "3.2", "alarms": 2},
             {"fault": "row", "in": "b.cpp", "simulates": "a row", "first": "", "margin": "", "alarms": 0}])");
     write_report(result, "result.json", folder.path / "with");
     const std::string html = text_of(folder.path / "with" / "report.html"),
                       markdown = text_of(folder.path / "with" / "report.md");
-    for (const char* part :
-         {"Mutation tests: seeded faults", "2 faults", "1 survived", "a &lt;sign&gt;", "Some.Test"})
-        EXPECT_TRUE(contains(html, part)) << part;
-    for (const char* part :
-         {"## Mutation tests: seeded faults", "2 faults", "Some.Test", "survived"})
-        EXPECT_TRUE(contains(markdown, part)) << part;
+    expect_parts(html, {"Mutation tests: seeded faults", "2 faults", "1 survived", "a &lt;sign&gt;",
+                        "Some.Test"});
+    expect_parts(markdown,
+                 {"## Mutation tests: seeded faults", "2 faults", "Some.Test", "survived"});
     result["alarms"][0].erase("first");
     EXPECT_THROW(write_report(result, "result.json", folder.path / "broken"), ResultError);
 }
@@ -180,8 +166,8 @@ TEST(Report, ReplacesAnOlderOneCompletely) {
     write_report(sample_result(), "result.json", folder.path / "r");
     write_report(small_result("new"), "result.json", folder.path / "r");
     const Contents contents = contents_of(folder.path / "r");
-    for (const auto& [name, text] : contents) EXPECT_FALSE(contains(name, "mcpherson")) << name;
-    EXPECT_TRUE(contains(contents.at("report.html"), "<h1>new</h1>"));
+    for (const auto& [name, text] : contents) expect_parts(name, {}, {"mcpherson"});
+    expect_parts(contents.at("report.html"), {"<h1>new</h1>"});
     int left = 0;
     for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path)) ++left;
     EXPECT_EQ(left, 1);  // nothing beside it
@@ -190,15 +176,15 @@ TEST(Report, ReplacesAnOlderOneCompletely) {
 TEST(Report, NeverTouchesAFolderWithSomebodysFiles) {
     const Folder folder;
     folder.write("notes.txt", "mine");
-    EXPECT_TRUE(contains(refusal(folder.path), "notes.txt: is no part of a report"));
+    expect_parts(refusal(folder.path), {"notes.txt: is no part of a report"});
     write_report(small_result("old"), "result.json", folder.path / "r");
     std::ofstream(folder.path / "r" / "figures" / "mine.svg") << "mine";
     const Contents before = contents_of(folder.path / "r");
-    EXPECT_TRUE(contains(refusal(folder.path / "r"), "figures/mine.svg: is no part of a report"));
+    expect_parts(refusal(folder.path / "r"), {"figures/mine.svg: is no part of a report"});
     EXPECT_EQ(contents_of(folder.path / "r"), before);
     const auto file = folder.write("file", "mine");
-    EXPECT_TRUE(contains(refusal(file), "is a file; a folder is written here"));
-    EXPECT_TRUE(contains(refusal("/"), "choose a folder below it"));
+    expect_parts(refusal(file), {"is a file; a folder is written here"});
+    expect_parts(refusal("/"), {"choose a folder below it"});
     EXPECT_EQ(text_of(file), "mine");
 }
 
@@ -210,7 +196,7 @@ TEST(Report, ReplacesOnlyFilesOfItsManifest) {
     std::ofstream(theirs / "files.txt") << "thesis.tex\nfiles.txt\n";
     std::ofstream(theirs / "thesis.tex") << "years of work";
     Contents before = contents_of(theirs);
-    EXPECT_TRUE(contains(refusal(theirs), "files.txt: is no part of a report")) << refusal(theirs);
+    expect_parts(refusal(theirs), {"files.txt: is no part of a report"});
     EXPECT_EQ(contents_of(theirs), before);
     // Nor does a result.json beside it.
     const fs::path result = folder.path / "result";
@@ -218,19 +204,19 @@ TEST(Report, ReplacesOnlyFilesOfItsManifest) {
     std::ofstream(result / "result.json") << "{\n \"schema\": \"elastocheck/result/3\"}";
     std::ofstream(result / "curves.csv") << "measured by hand";
     before = contents_of(result);
-    EXPECT_TRUE(contains(refusal(result), "curves.csv: is no part of a report"));
+    expect_parts(refusal(result), {"curves.csv: is no part of a report"});
     EXPECT_EQ(contents_of(result), before);
     // A link in the place of a file.
     write_report(small_result("old"), "result.json", folder.path / "r");
     fs::remove(folder.path / "r" / "report.md");
     fs::create_symlink(theirs / "thesis.tex", folder.path / "r" / "report.md");
-    EXPECT_TRUE(contains(refusal(folder.path / "r"), "report.md: is no part of a report"));
+    expect_parts(refusal(folder.path / "r"), {"report.md: is no part of a report"});
     fs::remove(folder.path / "r" / "report.md");
     EXPECT_EQ(refusal(folder.path / "r"), "written");
     // A manifest of older versions, with a hash before each name.
     std::ofstream(folder.path / "r" / "files.txt") << "elastocheck files 1\n"
                                                       "0123456789abcdef  report.html\n";
-    EXPECT_TRUE(contains(refusal(folder.path / "r"), "curves.csv: is no part of a report"));
+    expect_parts(refusal(folder.path / "r"), {"curves.csv: is no part of a report"});
 }
 
 TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
@@ -243,7 +229,7 @@ TEST(Report, ReplacesAFolderBehindALinkAndLeavesTheLink) {
     fs::create_symlink(folder.path / "loop", folder.path / "loop");
     EXPECT_TRUE(contains(refusal(folder.path / "loop"), "Too many levels of symbolic links"))
         << refusal(folder.path / "loop");
-    EXPECT_TRUE(contains(refusal(""), "is not a folder name"));
+    expect_parts(refusal(""), {"is not a folder name"});
 }
 
 TEST(Report, ADocumentThatCannotBeDrawnLeavesTheOldReport) {
@@ -274,10 +260,9 @@ TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
         expect_said(support::says(command + " report --from " +
                                   folder.write("d.json", doubtful.dump()) + " -o " + out),
                     3);
-    EXPECT_TRUE(
-        contains(text_of(folder.path / "out" / "report.html"), "class=\"badge\">inconclusive"));
-    EXPECT_TRUE(contains(text_of(folder.path / "out" / "report.html"),
-                         "<p class=\"answer\">Not judged: nothing was compared; "));
+    expect_parts(
+        text_of(folder.path / "out" / "report.html"),
+        {"class=\"badge\">inconclusive", "<p class=\"answer\">Not judged: nothing was compared; "});
 }
 
 TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
@@ -322,11 +307,9 @@ TEST(ReportCommand, SolvesAndDrawsAScene) {
         support::says(command + " report " + scene + " -o " + (folder.path / "out").string()), 0,
         {.out = {"The page: " + (folder.path / "out" / "report.html").string()}});
     const json result = json::parse(text_of(folder.path / "out" / "result.json"));
-    EXPECT_TRUE(contains(said.out,
-                         ": Every number on these pages: two independent solutions agree "
-                         "to "))
-        << said.out;
-    EXPECT_TRUE(contains(said.out, "The cheapest method within 0.01\u00a0mm is ")) << said.out;
+    expect_parts(said.out, {": Every number on these pages: two independent solutions agree "
+                            "to ",
+                            "The cheapest method within 0.01\u00a0mm is "});
     for (const char* part : {"model", "branches", "drawing", "convergence", "trade", "recommended",
                              "precision", "verdict", "judgement"})
         EXPECT_TRUE(result["scenes"][0].contains(part)) << part;

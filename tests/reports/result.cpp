@@ -12,9 +12,7 @@
 #include "reports/document/document.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/studies/precision_tables.hpp"
-#include "reports/tables/studies/study_tables.hpp"
-#include "reports/tables/studies/work_precision_tables.hpp"
+#include "reports/tables/study_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {
@@ -25,7 +23,7 @@ namespace {
 
 json compared(const Scene& scene, const Model& model, const compare::Comparison& comparison,
               const std::string& name) {
-    json part = scene_document(scene, "input", model, recursive::diagnose(model));
+    json part = scene_document(scene, "input", model);
     part["source"] = name + ".yaml";
     add_comparison(part, scene, model, comparison);
     return part;
@@ -73,6 +71,14 @@ const json& sample_result(const std::string& name) {
     part["judgement"] =
         judgement_json(compare::assess(model, comparison, compare::default_tolerance, false));
     return made[name] = document_of(std::move(part), name);
+}
+
+json small_result(const std::string& name) {
+    json result = sample_result("pinned_bar");
+    auto& scene = result["scenes"][0];
+    scene["name"] = name;
+    for (const char* part : {"convergence", "trade", "precision", "drawing"}) scene.erase(part);
+    return result;
 }
 
 }  // namespace elastocheck::reports

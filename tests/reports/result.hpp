@@ -9,6 +9,9 @@ namespace elastocheck::reports {
 // As read from result.json: NaN is null. Made once per scene.
 const nlohmann::ordered_json& sample_result(const std::string& scene = "chrono_mcpherson");
 
+// Of a scene of this name, without studies and drawing: two figures.
+nlohmann::ordered_json small_result(const std::string& name = "small");
+
 // Without the studies and the judgement: trimmed and compared alone.
 const nlohmann::ordered_json& compared_result(const std::string& scene);
 

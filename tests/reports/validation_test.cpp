@@ -61,7 +61,7 @@ TEST(Validation, TheCommittedNumbersAreTheCodes) {
         const Scene scene = compare::trim(support::scene(name)).scene;
         const Model model = compile(scene);
         const auto comparison = compare::compare(model);
-        auto part = scene_document(scene, "", model, recursive::diagnose(model));
+        auto part = scene_document(scene, "", model);
         add_comparison(part, scene, model, comparison);
         add_verdict(part, comparison.compared, reasons_of(comparison));
         result["scenes"].push_back(part);

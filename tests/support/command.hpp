@@ -37,6 +37,19 @@ inline bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
+// The claim about a text: it has these parts and not the others. A failure shows the text.
+inline void expect_parts(const std::string& text, const std::vector<std::string>& parts,
+                         const std::vector<std::string>& absent = {},
+                         std::source_location at = std::source_location::current()) {
+    std::string wrong;
+    for (const auto& part : parts)
+        if (!contains(text, part)) wrong += "missing: " + part + "\n";
+    for (const auto& part : absent)
+        if (contains(text, part)) wrong += "unwanted: " + part + "\n";
+    if (!wrong.empty())
+        ADD_FAILURE_AT(at.file_name(), static_cast<int>(at.line())) << wrong << "---- in\n" << text;
+}
+
 // Parts of what a command says, and what it must not say.
 struct Parts {
     std::vector<std::string> out = {}, err = {}, not_out = {}, not_err = {};
