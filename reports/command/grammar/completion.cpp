@@ -11,7 +11,8 @@
 namespace elastocheck::reports {
 namespace {
 
-constexpr const char* bash = R"sh(# bash completion of elastocheck. Made by `elastocheck completion bash`.
+constexpr const char* bash =
+    R"sh(# bash completion of elastocheck. Made by `elastocheck completion bash`.
 _elastocheck() {
     local word=${COMP_WORDS[COMP_CWORD]} offers
     [ "$word" != = ] || word= # --option=value comes as three words
@@ -23,9 +24,8 @@ _elastocheck() {
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$word"; compgen -f -X "!${offers#:files }" -- "$word")
         ;;
-    *) mapfile -t COMPREPLY < <(compgen -W "$(cut -f 1 <<< "$offers")" -- "$word") ;
-;
-esac
+    *) mapfile -t COMPREPLY < <(compgen -W "$(cut -f 1 <<< "$offers")" -- "$word") ;;
+    esac
 }
 complete -F _elastocheck elastocheck
 )sh";
@@ -57,7 +57,8 @@ constexpr const char* fish =
     R"sh(# fish completion of elastocheck. Made by `elastocheck completion fish`.
 function __elastocheck_offers
     set -l token (commandline -ct)
-    set -l offers ((commandline -opc)[1] complete (commandline -cp) 2>/dev/null)
+    set -l words (commandline -opc)
+    set -l offers ($words[1] complete (commandline -cp) 2>/dev/null)
     set -l before (string match -r -- '^--[^=]*=' $token)
     switch "$offers[1]"
         case ':folders'
