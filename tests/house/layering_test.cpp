@@ -218,10 +218,11 @@ TEST(Layering, TheRoomsOfReportsIncludeOnlyWhatTheyShow) {
         for (const auto& [room, rooms] : allowed)
             for (const auto& [target, quoted] : includes(text))
                 if (is_below(file, room) &&
-                    (is_below(target, "compare") || is_below(target, "recursive")))
+                    (is_below(target, "compare") || is_below(target, "recursive"))) {
                     EXPECT_TRUE(std::ranges::any_of(
                         rooms, [&](const std::string& r) { return is_below(target, r); }))
                         << file << " includes " << target;
+                }
 }
 
 // A visit that asks what a kind can do, instead of saying what is done with each, leaves a new

@@ -315,9 +315,9 @@ TEST(Completion, OffersEveryCommandAndOption) {
         const std::string name = (*at)[1],
                           offers = elastocheck_says("complete 'elastocheck " + name + " --'").out,
                           of_command = elastocheck_says(name + " --help").out;
-        expect_parts(commands, {"\n" + name + "\t"});
+        expect_parts(commands, {"\n" + name + "  "});
         for (std::sregex_iterator o(of_command.begin(), of_command.end(), option); o != end; ++o)
-            expect_parts(offers, {"--" + (*o)[2].str() + "\t"});
+            expect_parts(offers, {"--" + (*o)[2].str() + "  "});
     }
     EXPECT_GT(count, 10);
     expect_parts(help + commands, {}, {"completion"});

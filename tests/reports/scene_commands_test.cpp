@@ -380,7 +380,7 @@ TEST(TooLarge, IsSaidAndTheEnergyLegBearsWitness) {
     const std::string scene = folder.write("chain.yaml", chain_of(150)),
                       out = (folder.path / "out").string();
     expect_says("solve " + scene + " --method energy", 3,
-                {.err = {"too large: branch 'push': about 2e+11 operations for 900 coordinates"}});
+                {.err = {"too large: branch 'push': about 3e+11 operations for 900 coordinates"}});
     expect_says(
         "compare " + scene + " -o " + out, 0,
         {.out = {

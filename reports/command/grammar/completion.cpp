@@ -24,7 +24,7 @@ _elastocheck() {
         compopt -o filenames
         mapfile -t COMPREPLY < <(compgen -d -- "$word"; compgen -f -X "!${offers#:files }" -- "$word")
         ;;
-    *) mapfile -t COMPREPLY < <(compgen -W "$(cut -f 1 <<< "$offers")" -- "$word") ;;
+    *) mapfile -t COMPREPLY < <(compgen -W "$(sed 's/  .*//' <<< "$offers")" -- "$word") ;;
     esac
 }
 complete -F _elastocheck elastocheck
@@ -41,7 +41,7 @@ _elastocheck() {
     :files*) _files -g "${offers[1]#:files }" ;;
     *)
         offers=("${(@)offers//:/\\:}")
-        offers=("${(@)offers/$'\t'/:}")
+        offers=("${(@)offers/  /:}")
         _describe elastocheck offers
         ;;
     esac
@@ -67,7 +67,7 @@ function __elastocheck_offers
             __fish_complete_suffix (string replace ':files *' '' -- $offers[1])
         case '*'
             for offer in $offers
-                echo "$before$offer"
+                echo "$before"(string replace '  ' \t -- $offer)
             end
     end
 end
@@ -87,7 +87,7 @@ void add_names(Offers& list, const std::string& names, const std::string& descri
 std::string text_of(const Offers& list) {
     std::string text;
     for (const auto& [word, description] : list)
-        text += word + (description.empty() ? "" : "\t" + description) + "\n";
+        text += word + (description.empty() ? "" : "  " + description) + "\n";
     return text;
 }
 
