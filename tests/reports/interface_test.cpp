@@ -264,7 +264,7 @@ std::vector<std::string> offered(const std::string& line, const std::string& fol
     const std::string script = own.write("script", elastocheck_says("completion bash").out + R"(
 cd "$1"
 COMP_LINE=$2 COMP_POINT=${#2} COMP_WORDS=(${2//=/ = })  # as bash splits --method=en
-[[ $2 != *\ ]] || COMP_WORDS+=("")
+[[ $2 != *' ' ]] || COMP_WORDS+=("")
 COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
 compopt() { :; }
 _elastocheck "$3"
