@@ -340,7 +340,7 @@ auto member(K& kind) {
 // [rad], the free length of an element [m]; nullptr if it has none.
 template <class K>
 auto driven_number(K& kind) {
-    using Value = std::conditional_t<std::is_const_v<K>, const double, double>;
+    using Value = std::conditional_t<std::is_const_v<K>, const Real, Real>;
     Value* found = nullptr;
     each_member(kind, overloaded{[&](Length<Value> l) { found = &l.value; },
                                  [&](PlaneAngle<Value> a) { found = &a.value; }});
@@ -357,7 +357,7 @@ auto preload(K& kind) {
 template <class K>
 bool is_angle(const K& kind) {
     bool angle = false;
-    each_member(kind, [&](PlaneAngle<const double>) { angle = true; });
+    each_member(kind, [&](PlaneAngle<const Real>) { angle = true; });
     return angle;
 }
 
@@ -378,14 +378,14 @@ inline BodyId body_of(const LoadKind& load) {
 // Its force or moment, and which of the two.
 template <class L>
 auto& load_vector(L& load) {
-    using Value = std::conditional_t<std::is_const_v<L>, const Eigen::Vector3d, Eigen::Vector3d>;
+    using Value = std::conditional_t<std::is_const_v<L>, const Vector3, Vector3>;
     Value* found = nullptr;
     each_member(load, [&](LoadVector<Value> v) { found = &v.value; });
     return *found;
 }
 inline bool is_moment(const LoadKind& load) {
     bool moment = false;
-    each_member(load, [&](LoadVector<const Eigen::Vector3d> v) { moment = v.is_moment; });
+    each_member(load, [&](LoadVector<const Vector3> v) { moment = v.is_moment; });
     return moment;
 }
 inline bool is_follower(const LoadKind& load) {
@@ -397,7 +397,7 @@ inline bool is_follower(const LoadKind& load) {
 inline bool is_direction(const ConstraintKind& kind) { return member<Point>(kind) == nullptr; }
 
 // The rate of a linear law, the curve of another; nullptr where the law is not of this kind.
-inline const double* rate_of(const ScalarLaw& law) {
+inline const Real* rate_of(const ScalarLaw& law) {
     const auto* linear = std::get_if<LinearRate>(&law);
     return linear != nullptr ? &linear->k : nullptr;
 }

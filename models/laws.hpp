@@ -9,7 +9,7 @@ namespace elastocheck {
 
 // f(x), for compile() and the reader, which need the force at the design position. Each leg has its
 // own evaluation.
-double force(const ScalarLaw& law, double x);
+Real force(const ScalarLaw& law, Real x);
 
 // No force at any deformation.
 bool is_zero(const ScalarLaw& law);
@@ -24,12 +24,12 @@ SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
 // The law for a deformation `stretch` times and a force `force` times as large:
 // f'(x) = force · f(x / stretch). A full matrix remains symmetric: its coupling terms take the
 // square roots of the factors of both axes.
-ScalarLaw scaled(const ScalarLaw& law, double stretch, double force);
+ScalarLaw scaled(const ScalarLaw& law, Real stretch, Real force);
 SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
 
 // Calls f for every number of a law; the entries of a symmetric matrix once each.
-void each_number(ScalarLaw& law, const std::function<void(double&)>& f);
-void each_number(SpatialLaw& law, const std::function<void(double&)>& f);
+void each_number(ScalarLaw& law, const std::function<void(Real&)>& f);
+void each_number(SpatialLaw& law, const std::function<void(Real&)>& f);
 
 // The same bushing with its markers i and j swapped; deformations, preload and undeformed offset
 // change sign. A frame on j becomes a frame on i and vice versa.

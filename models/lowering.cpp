@@ -7,17 +7,14 @@
 namespace elastocheck {
 namespace {
 
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
-
-Quaterniond axes(const std::vector<Body>& bodies, BodyId body) {
-    return body == ground ? Quaterniond::Identity()
+Quaternion axes(const std::vector<Body>& bodies, BodyId body) {
+    return body == ground ? Quaternion::Identity()
                           : bodies[static_cast<std::size_t>(body)].design.p;
 }
 
 // Two directions on the same body, perpendicular to `axis` and to each other.
 std::pair<Direction, Direction> across(const Direction& axis) {
-    const Vector3d a = axis.u_local.unitOrthogonal();
+    const Vector3 a = axis.u_local.unitOrthogonal();
     return {{axis.body, a}, {axis.body, axis.u_local.cross(a).normalized()}};
 }
 

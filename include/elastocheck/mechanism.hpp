@@ -11,17 +11,30 @@
 #include <variant>
 #include <vector>
 
+// Real is the type of the numbers of a scene and of a model. models/rates/ compiles the reader and
+// compile() a second time, in another namespace and with dual numbers (models/rates/dual.hpp).
+#ifdef ELASTOCHECK_REAL
+#include ELASTOCHECK_REAL
+#else
+namespace elastocheck {
+using Real = double;
+}
+#endif
+
 namespace elastocheck {
 
 using BodyId = int;  // position in Scene::bodies or Model::bodies
 inline constexpr BodyId ground = -1;
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Vector3 = Eigen::Matrix<Real, 3, 1>;
+using Matrix3 = Eigen::Matrix<Real, 3, 3>;
+using Quaternion = Eigen::Quaternion<Real>;
+using Matrix6 = Eigen::Matrix<Real, 6, 6>;
+using Vector6 = Eigen::Matrix<Real, 6, 1>;
 
 struct Pose {
-    Eigen::Vector3d r = Eigen::Vector3d::Zero();            // origin of the body [m]
-    Eigen::Quaterniond p = Eigen::Quaterniond::Identity();  // body axes to ground axes, unit
+    Vector3 r = Vector3::Zero();            // origin of the body [m]
+    Quaternion p = Quaternion::Identity();  // body axes to ground axes, unit
 };
 
 struct Body {
@@ -31,18 +44,18 @@ struct Body {
 
 struct Point {
     BodyId body = ground;
-    Eigen::Vector3d s_local = Eigen::Vector3d::Zero();  // from the body's origin [m]
+    Vector3 s_local = Vector3::Zero();  // from the body's origin [m]
 };
 
 struct Direction {
     BodyId body = ground;
-    Eigen::Vector3d u_local = Eigen::Vector3d::UnitZ();  // unit
+    Vector3 u_local = Vector3::UnitZ();  // unit
 };
 
 struct Marker {
     BodyId body = ground;
-    Eigen::Vector3d s_local = Eigen::Vector3d::Zero();            // from the body's origin [m]
-    Eigen::Quaterniond A_local = Eigen::Quaterniond::Identity();  // marker axes to body axes
+    Vector3 s_local = Vector3::Zero();            // from the body's origin [m]
+    Quaternion A_local = Quaternion::Identity();  // marker axes to body axes
 };
 
 // ---- Joints, under their usual names. `i` is the first body, `j` the second. lowering.hpp lists
@@ -77,13 +90,13 @@ struct Fixed {
 };  // x, y: the same two perpendicular directions on each
 struct Distance {
     Point i, j;
-    double length = 0;
+    Real length = 0;
 };  // [m] > 0
 struct InPlane {
     Point i, j;
     Direction normal_j;
-    double offset = 0;  // of the plane from j along its normal [m]
-};                      // i stays in the plane
+    Real offset = 0;  // of the plane from j along its normal [m]
+};                    // i stays in the plane
 struct InLine {
     Point i, j;
     Direction axis_j;
@@ -100,7 +113,7 @@ struct Parallel {
 struct Angle {
     Direction i;
     Direction j, y_j;  // perpendicular
-    double angle = 0;  // [rad]
+    Real angle = 0;    // [rad]
 };
 
 using JointKind = std::variant<Spherical, Revolute, Universal, Cylindrical, Translational, Planar,
@@ -116,8 +129,8 @@ struct Joint {
 
 // Laws of one deformation x.
 struct LinearRate {
-    double k = 0;  // [N/m] or [N·m/rad] ≥ 0
-};                 // u(x) = ½ k x²
+    Real k = 0;  // [N/m] or [N·m/rad] ≥ 0
+};               // u(x) = ½ k x²
 
 // Force over a deformation, a piecewise cubic polynomial:
 //
@@ -128,8 +141,8 @@ struct LinearRate {
 // Its slope is continuous for a smooth interpolant; it jumps at the rows of a piecewise linear
 // table and where a stop closes.
 struct Curve {
-    std::vector<double> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
-    std::vector<std::array<double, 4>>
+    std::vector<Real> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
+    std::vector<std::array<Real, 4>>
         pieces;                 // c [N, N/m, ...] of the piece before the first knot, about it,
                                 // then of the piece behind each knot, about that knot
     bool known_outside = true;  // false: undefined beyond the end knots, and a branch ends there
@@ -149,7 +162,7 @@ using SpatialLaw = std::variant<LinearStiffness, PerAxis>;
 struct AxialSpring {
     Point i, j;
     ScalarLaw law;
-    double free_length = 0;  // ℓ₀ [m]
+    Real free_length = 0;  // ℓ₀ [m]
 };
 
 // Deformation measure of a bushing and the direction of its forces. Programs differ here and all
@@ -215,19 +228,19 @@ struct Elastic {
 
 struct DeadForce {
     Point at;
-    Eigen::Vector3d f = Eigen::Vector3d::Zero();  // [N]; [-] if a driver multiplies it by newtons
+    Vector3 f = Vector3::Zero();  // [N]; [-] if a driver multiplies it by newtons
 };
 struct DeadMoment {
     BodyId body = ground;
-    Eigen::Vector3d m = Eigen::Vector3d::Zero();  // [N·m]; [m] or [-] where a driver multiplies it
+    Vector3 m = Vector3::Zero();  // [N·m]; [m] or [-] where a driver multiplies it
 };
 struct FollowerForce {
     Point at;
-    Eigen::Vector3d f_local = Eigen::Vector3d::Zero();  // [N] or [-], body axes
+    Vector3 f_local = Vector3::Zero();  // [N] or [-], body axes
 };
 struct FollowerMoment {
     BodyId body = ground;
-    Eigen::Vector3d m_local = Eigen::Vector3d::Zero();  // [N·m], [m] or [-], body axes
+    Vector3 m_local = Vector3::Zero();  // [N·m], [m] or [-], body axes
 };
 using LoadKind = std::variant<DeadForce, DeadMoment, FollowerForce, FollowerMoment>;
 struct Load {

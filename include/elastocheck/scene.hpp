@@ -30,8 +30,8 @@ using Driven = std::variant<Load, Motion, FreeLength, Preload>;
 
 struct Driver {
     Driven what;
-    double start = 0;  // at a = 0, constant while a changes
-    double rate = 0;   // per unit of a
+    Real start = 0;  // at a = 0, constant while a changes
+    Real rate = 0;   // per unit of a
 };
 
 enum class ParameterUnit { newton, newton_metre, metre, radian, none };
@@ -42,8 +42,8 @@ enum class ParameterUnit { newton, newton_metre, metre, radian, none };
 // N, 300 steps each.
 struct Branch {
     std::string name;
-    double from = 0;  // of the parameter a
-    double to = 0;
+    Real from = 0;  // of the parameter a
+    Real to = 0;
     int steps = 0;  // equal increments of a in the published sweep, over the whole branch
     ParameterUnit unit = ParameterUnit::newton;  // of a
     std::vector<Driver> drivers;
@@ -59,12 +59,12 @@ struct SteeringAxis {
 struct Wheel {
     std::string name;  // "left"; empty if the scene has one wheel
     BodyId body = ground;
-    Eigen::Vector3d centre_local = Eigen::Vector3d::Zero();  // [m]
-    Eigen::Vector3d contact_local =
-        Eigen::Vector3d::Zero();  // contact patch at the design pose, a point of the body [m]
-    Eigen::Vector3d spin_axis_local = Eigen::Vector3d::UnitY();  // unit, pointing outboard
-    int side = +1;                                               // +1 left, -1 right
-    double tyre_rate =
+    Vector3 centre_local = Vector3::Zero();  // [m]
+    Vector3 contact_local =
+        Vector3::Zero();  // contact patch at the design pose, a point of the body [m]
+    Vector3 spin_axis_local = Vector3::UnitY();  // unit, pointing outboard
+    int side = +1;                               // +1 left, -1 right
+    Real tyre_rate =
         0;  // vertical, k_t [N/m]; 0: no tyre given. Ride rate: 1 / (1/k_wheel + 1/k_t)
     // none where the geometry has none, as in a multi-link
     std::optional<SteeringAxis> steering_axis = {};
@@ -85,18 +85,18 @@ struct Damper {
 // Vehicle data for the outputs that depend on it: anti-dive, Ackermann.
 enum class Axle { front, rear };
 struct Vehicle {
-    double wheelbase = 0;  // [m] > 0
-    double cg_height =
+    Real wheelbase = 0;  // [m] > 0
+    Real cg_height =
         0;  // of the whole vehicle, above the contact patches of the design position [m] > 0
     Axle axle = Axle::front;  // axle of the scene's wheels
-    double brake_share = 0;   // of the vehicle's braking force, at this axle, 0 ... 1
-    double drive_share = 0;   // of the driving force, 0 ... 1
+    Real brake_share = 0;     // of the vehicle's braking force, at this axle, 0 ... 1
+    Real drive_share = 0;     // of the driving force, 0 ... 1
 };
 
 // A named position of the design, ground axes [m]. For drawings; the legs do not read it.
 struct Hardpoint {
     std::string name;
-    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Vector3 position = Vector3::Zero();
 };
 
 // A number of the scene file, as written and in the unit declared there.
@@ -131,13 +131,13 @@ struct Trim {
         // relative to its value in the scene; never a Load
         Driven what;
         // change of `what` for one unit of the named quantity [SI/SI]
-        double per_unit = 1;
+        Real per_unit = 1;
         ParameterUnit unit = ParameterUnit::newton;  // of the named quantity
     };
     struct Condition {
         std::string name;  // "left.travel"
         ConditionKind what;
-        std::optional<double> value;  // SI; none: its value in the scene at the design position
+        std::optional<Real> value;  // SI; none: its value in the scene at the design position
     };
     std::vector<Adjustment> adjust;
     std::vector<Condition> until;

@@ -12,7 +12,7 @@ namespace {
 
 // Point of a joint's end on its body.
 Point place(const Point& end) { return end; }
-Point place(const Direction& end) { return {end.body, Eigen::Vector3d::Zero()}; }
+Point place(const Direction& end) { return {end.body, Vector3::Zero()}; }
 
 ModelJoint summary(const Joint& joint) {
     const auto [i, j] = ends(joint.kind);

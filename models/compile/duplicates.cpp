@@ -6,18 +6,17 @@
 #include "models/compile/parts.hpp"
 #include "models/compile/passes.hpp"
 #include "models/lowering.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reduce {
 namespace {
 
-using Eigen::Vector3d;
-
-bool same(double a, double b) { return std::abs(a - b) <= as_drawn; }
+bool same(Real a, Real b) { return are_near(a, b, as_drawn); }
 bool same(const Point& a, const Point& b) {
-    return a.body == b.body && (a.s_local - b.s_local).norm() <= as_drawn;
+    return a.body == b.body && are_near(a.s_local, b.s_local, as_drawn);
 }
 bool same(const Direction& a, const Direction& b) {
-    return a.body == b.body && (a.u_local - b.u_local).norm() <= as_drawn;
+    return a.body == b.body && are_near(a.u_local, b.u_local, as_drawn);
 }
 bool same_line(const Direction& a, const Direction& b) {
     return same(a, b) || same(a, {b.body, -b.u_local});

@@ -5,18 +5,19 @@
 
 #include "models/laws.hpp"
 #include "models/lowering.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reduce {
 namespace {
 
-using Eigen::Vector3d;
+using std::cos, std::sin;
 
 // Whether the law has zero force at x within the rounding of a position [m] or [rad].
-bool is_free(const ScalarLaw& law, double x, double rounding) {
-    const double below = force(law, x - rounding), above = force(law, x + rounding);
+bool is_free(const ScalarLaw& law, Real x, Real rounding) {
+    const Real below = force(law, x - rounding), above = force(law, x + rounding);
     return std::min(below, above) <= 0 && 0 <= std::max(below, above);
 }
-bool is_free(const SpatialLaw& law, const Vector6& e, double rounding) {
+bool is_free(const SpatialLaw& law, const Vector6& e, Real rounding) {
     return std::visit(
         overloaded{[&](const LinearStiffness& u) { return Vector6(u.K * e).isZero(0); },
                    [&](const PerAxis& u) {
@@ -66,11 +67,11 @@ DrivenParts driven_parts(const Scene& scene) {
 Pose design(const Scene& scene, BodyId body) {
     return body == ground ? Pose{} : scene.bodies[static_cast<std::size_t>(body)].design;
 }
-Vector3d position(const Scene& scene, const Point& p) {
+Vector3 position(const Scene& scene, const Point& p) {
     const Pose pose = design(scene, p.body);
     return pose.r + pose.p * p.s_local;
 }
-Vector3d direction(const Scene& scene, const Direction& u) {
+Vector3 direction(const Scene& scene, const Direction& u) {
     return design(scene, u.body).p * u.u_local;
 }
 
@@ -80,19 +81,18 @@ bool is_strained_at_design(const JointKind& joint, const Scene& scene) {
     return std::visit(
         overloaded{[](const CoincidentPoints&) { return false; },
                    [&](const PointInPlane& c) {
-                       const Vector3d d = position(scene, c.i) - position(scene, c.j);
-                       return !(std::abs(direction(scene, c.normal_j).dot(d) - c.offset) <=
-                                as_drawn);
+                       const Vector3 d = position(scene, c.i) - position(scene, c.j);
+                       return !are_near(direction(scene, c.normal_j).dot(d), c.offset, as_drawn);
                    },
                    [](const PerpendicularDirections&) { return false; },
                    [&](const DistanceBetween& c) {
-                       const double drawn = (position(scene, c.j) - position(scene, c.i)).norm();
-                       return !(std::abs(drawn - c.length) <= as_drawn * c.length);
+                       const Real drawn = (position(scene, c.j) - position(scene, c.i)).norm();
+                       return !are_near(drawn, c.length, as_drawn * value_of(c.length));
                    },
                    [&](const DirectionAtAngle& c) {
-                       const Vector3d u = std::cos(c.angle) * direction(scene, c.y_j) -
-                                          std::sin(c.angle) * direction(scene, c.j);
-                       return !(std::abs(direction(scene, c.i).dot(u)) <= as_drawn);
+                       const Vector3 u = cos(c.angle) * direction(scene, c.y_j) -
+                                         sin(c.angle) * direction(scene, c.j);
+                       return !are_near(direction(scene, c.i).dot(u), 0, as_drawn);
                    }},
         rows.front());
 }
@@ -101,9 +101,9 @@ bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     const auto axes = [&](const Marker& m) { return design(scene, m.body).p * m.A_local; };
     bool free = false;  // an element between other members counts as loaded
     const std::vector<Point> points = points_of(elastic);
-    const double* free_length = driven_number(elastic);
+    const Real* free_length = driven_number(elastic);
     if (points.size() == 2 && free_length != nullptr) {
-        const double length = (position(scene, points[1]) - position(scene, points[0])).norm();
+        const Real length = (position(scene, points[1]) - position(scene, points[0])).norm();
         const ScalarLaw* law = scalar_law(elastic, 0);
         free = law != nullptr && is_free(*law, length - *free_length, as_drawn * length);
     }

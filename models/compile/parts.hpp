@@ -42,8 +42,8 @@ DrivenParts driven_parts(const Scene& scene);
 inline constexpr double as_drawn = 1e-12;
 
 Pose design(const Scene& scene, BodyId body);
-Eigen::Vector3d position(const Scene& scene, const Point& p);
-Eigen::Vector3d direction(const Scene& scene, const Direction& u);
+Vector3 position(const Scene& scene, const Point& p);
+Vector3 direction(const Scene& scene, const Direction& u);
 
 // Whether a length, offset or angle of the joint differs from the drawing, so that it moves without
 // load.

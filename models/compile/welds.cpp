@@ -10,16 +10,13 @@
 
 #include "models/compile/parts.hpp"
 #include "models/compile/passes.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reduce {
 namespace {
 
-using Eigen::Vector3d;
-
 bool is_as_drawn(const Fixed& s, const Scene& scene) {
-    const auto same = [&](const Vector3d& a, const Vector3d& b) {
-        return (a - b).norm() <= as_drawn;
-    };
+    const auto same = [&](const Vector3& a, const Vector3& b) { return are_near(a, b, as_drawn); };
     return same(position(scene, s.i), position(scene, s.j)) &&
            same(direction(scene, s.x_i), direction(scene, s.x_j)) &&
            same(direction(scene, s.y_i), direction(scene, s.y_j));
@@ -80,7 +77,7 @@ struct OnMerged {
         m = {c, at.s_local,
              (design(scene, c).p.conjugate() * design(scene, m.body).p * m.A_local).normalized()};
     }
-    void operator()(LoadVector<Vector3d> v) const {
+    void operator()(LoadVector<Vector3> v) const {
         Direction u{v.axes, v.value};
         (*this)(u);
         v.value = u.u_local;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "elastocheck/read_scene.hpp"
@@ -26,7 +28,12 @@ struct SceneAndWarnings {
     Scene scene;
     std::vector<std::string> warnings;
 };
-// read_scene() with the warnings.
+// of the scene's file; none if the scene is text
+using Folder = std::optional<std::filesystem::path>;
+
+// parse_scene() and read_scene() with the warnings.
+SceneAndWarnings read_whole(std::string_view text, const std::string& name,
+                            std::span<const Setting> settings, const Folder& folder);
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,
                                           std::span<const Setting> settings);
 

@@ -20,15 +20,13 @@
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/plausibility.hpp"
 #include "models/reader/settings.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck {
 namespace reader {
 namespace {
 
 constexpr int format_version = 1;
-
-// of the scene's file; none if the scene is text
-using Folder = std::optional<std::filesystem::path>;
 
 void check_version(const Cursor& scene) {
     const Cursor version = scene.require("elastocheck");
@@ -252,9 +250,12 @@ SceneAndWarnings read_tree(const Cursor& scene, const Folder& folder) {
     check_all_held(scene, result);
     read_trim(scene, defs.units, by_name, drivable, result);
     read_branches(scene, defs.units, by_name, drivable, result);
+    [[maybe_unused]] const ByValue by_value;
     auto warnings = implausible(scene, defs.units, result);
     return {std::move(result), std::move(warnings)};
 }
+
+}  // namespace
 
 SceneAndWarnings read_whole(std::string_view text, const std::string& name,
                             std::span<const Setting> settings, const Folder& folder) {
@@ -266,8 +267,6 @@ SceneAndWarnings read_whole(std::string_view text, const std::string& name,
     read.scene.numbers = std::move(numbers);
     return read;
 }
-
-}  // namespace
 
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,
                                           std::span<const Setting> settings) {

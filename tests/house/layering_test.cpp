@@ -25,6 +25,7 @@ struct Part {
 const std::vector<Part> parts{
     {"models/reader", {"read_scene"}, {"models"}},  // before the part whose folder it is in
     {"models/import", {}, {"models/reader", "models"}},
+    {"models/rates", {"model_rates"}, {"models/reader", "models"}},
     {"models", {"mechanism", "scene", "model", "compile", "equilibrium_path"}, {}},
     {"recursive", {"recursive", "recursive_method"}, {"models"}},
     {"reference/equilibrium", {"equilibrium"}, {"models"}},

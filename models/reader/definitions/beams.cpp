@@ -8,12 +8,12 @@
 
 #include "models/reader/definitions/look_up.hpp"
 #include "models/reader/document/limits.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using std::pow;
 
 constexpr double parallel = 1e-6;  // sine of the angle below which directions count as parallel
 
@@ -21,7 +21,7 @@ constexpr double parallel = 1e-6;  // sine of the angle below which directions c
 
 struct Course {
     std::vector<std::string> hardpoints;  // on the path
-    std::vector<Vector3d> nodes;          // from end to end [m]
+    std::vector<Vector3> nodes;           // from end to end [m]
     std::vector<std::size_t> corners;     // positions in `nodes` of the hardpoints
     BodyId first = ground, last = ground;
 
@@ -31,7 +31,7 @@ struct Course {
 // Segments of each leg: one each, and further ones where segments are longest. Among equal legs the
 // first is served first, then the last, and so inwards, which keeps a symmetric beam symmetric
 // where possible.
-std::vector<int> shared_out(int segments, const std::vector<double>& lengths) {
+std::vector<int> shared_out(int segments, const std::vector<Real>& lengths) {
     const std::size_t legs = lengths.size();
     std::vector<std::size_t> inwards;
     for (std::size_t k = 0; k < legs; ++k) inwards.push_back(k % 2 == 0 ? k / 2 : legs - 1 - k / 2);
@@ -56,8 +56,8 @@ Course read_course(const Cursor& at, const Definitions& defs) {
     if (!through.is_list() || points.size() < 2)
         through.fail(
             fmt::format("expected a list of two hardpoints or more, found {}", through.found()));
-    std::vector<Vector3d> places;
-    std::vector<double> lengths;
+    std::vector<Vector3> places;
+    std::vector<Real> lengths;
     for (const Cursor& point : points) {
         places.push_back(hardpoint(point, defs));
         course.hardpoints.push_back(point.value->text);
@@ -95,9 +95,9 @@ Course read_course(const Cursor& at, const Definitions& defs) {
 }
 
 // Whether the points in reverse order are their own mirror image.
-bool is_own_image(const std::vector<Vector3d>& points) {
+bool is_own_image(const std::vector<Vector3>& points) {
     for (std::size_t k = 0; k < points.size(); ++k)
-        if (!((reflected(points[k]) - points[points.size() - 1 - k]).norm() <= coincident))
+        if (!are_near(reflected(points[k]), points[points.size() - 1 - k], coincident))
             return false;
     return true;
 }
@@ -107,7 +107,7 @@ bool is_shared_evenly(const Cursor& at, const Course& course, const Definitions&
     const BodyId image =
         course.first == ground ? ground : defs.twin_of[static_cast<std::size_t>(course.first)];
     if (image != course.last) return false;
-    std::vector<Vector3d> corners;
+    std::vector<Vector3> corners;
     for (const std::size_t k : course.corners) corners.push_back(course.nodes[k]);
     if (!is_own_image(corners)) return false;
     if (!is_own_image(course.nodes)) {
@@ -142,7 +142,7 @@ void add_bodies(const Cursor& at, const std::string& name, const Course& course,
     for (std::size_t k = 1; k < course.segments(); ++k) {
         defs.twin_of.push_back(static_cast<BodyId>(defs.bodies.size()));
         defs.bodies.push_back(
-            {numbered(name, k), {.r = course.nodes[k], .p = Eigen::Quaterniond::Identity()}});
+            {numbered(name, k), {.r = course.nodes[k], .p = Quaternion::Identity()}});
     }
     if (defs.bodies.size() > most_bodies)
         at.fail(fmt::format("{} bodies including its nodes; allowed: at most {}",
@@ -150,7 +150,7 @@ void add_bodies(const Cursor& at, const std::string& name, const Course& course,
 }
 
 Course image(Course course, const Mirror& mirror) {
-    for (Vector3d& node : course.nodes) node = reflected(node);
+    for (Vector3& node : course.nodes) node = reflected(node);
     for (std::string& point : course.hardpoints) point = turned(mirror, point).value_or(point);
     return course;
 }
@@ -158,14 +158,14 @@ Course image(Course course, const Mirror& mirror) {
 // ---- Cross-section, and stiffness of a segment.
 
 struct CrossSection {
-    double EA = 0;              // [N]
-    double EI_y = 0, EI_z = 0;  // [N·m²]
-    double GJ = 0;              // [N·m²]
-    double GA_y = 0, GA_z = 0;  // [N]; 0: no shear deformation
+    Real EA = 0;              // [N]
+    Real EI_y = 0, EI_z = 0;  // [N·m²]
+    Real GJ = 0;              // [N·m²]
+    Real GA_y = 0, GA_z = 0;  // [N]; 0: no shear deformation
     bool is_round() const { return EI_y == EI_z && GA_y == GA_z; }
 };
 
-double positive(const Cursor& at, const Unit& unit) { return above_zero(at, "too small", unit); }
+Real positive(const Cursor& at, const Unit& unit) { return above_zero(at, "too small", unit); }
 
 // force/length², length², length⁴
 Unit modulus(const Units& u) {
@@ -173,32 +173,32 @@ Unit modulus(const Units& u) {
     return {u.force.name + "/" + u.length.name + "²", 1, u.force.multiply * L * L};
 }
 Unit power_of_length(const Units& u, int n) {
-    return {u.length.name + (n == 2 ? "²" : "⁴"), std::pow(u.length.divide, n)};
+    return {u.length.name + (n == 2 ? "²" : "⁴"), pow(u.length.divide, n)};
 }
 
 // Rod or tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
-CrossSection read_round(const Cursor& at, const Cursor& diameter, double E, double G,
+CrossSection read_round(const Cursor& at, const Cursor& diameter, Real E, Real G,
                         const Units& units) {
     for (const char* field : {"A", "I_y", "I_z", "J", "shear_y", "shear_z", "up"})
         if (const auto given = at.optional(field))
             given->fail(
                 "given together with diameter; allowed: diameter and wall, or A, I_y, I_z and J");
-    const double D = positive(diameter, units.length);
-    double d = 0;
+    const Real D = positive(diameter, units.length);
+    Real d = 0;
     if (const auto wall = at.optional("wall")) {
         d = D - 2 * positive(*wall, units.length);
         if (!(d >= -1e-12 * D))
             wall->fail(fmt::format("{} is more than half the diameter", wall->found()));
-        d = std::max(d, 0.0);
+        d = std::max(d, Real(0));
     }
-    const auto power = [&](int n) { return std::pow(D, n) - std::pow(d, n); };
-    const double A = std::numbers::pi / 4 * power(2), I = std::numbers::pi / 64 * power(4);
+    const auto power = [&](int n) { return pow(D, n) - pow(d, n); };
+    const Real A = std::numbers::pi / 4 * power(2), I = std::numbers::pi / 64 * power(4);
     return {.EA = E * A, .EI_y = E * I, .EI_z = E * I, .GJ = G * 2 * I};
 }
 
 CrossSection read_cross_section(const Cursor& at, const Units& units) {
-    const double E = positive(at.require("E"), modulus(units)),
-                 G = positive(at.require("G"), modulus(units));
+    const Real E = positive(at.require("E"), modulus(units)),
+               G = positive(at.require("G"), modulus(units));
     if (const auto diameter = at.optional("diameter"))
         return read_round(at, *diameter, E, G, units);
     if (const auto wall = at.optional("wall"))
@@ -218,9 +218,9 @@ CrossSection read_cross_section(const Cursor& at, const Units& units) {
             .GA_z = shear("shear_z")};
 }
 
-Matrix6 stiffness(const CrossSection& s, double L) {
-    const auto shear = [&](double EI, double GA) {
-        const double phi = GA > 0 ? 12 * EI / (GA * L * L) : 0;
+Matrix6 stiffness(const CrossSection& s, Real L) {
+    const auto shear = [&](Real EI, Real GA) {
+        const Real phi = GA > 0 ? 12 * EI / (GA * L * L) : 0;
         return 12 * EI / (L * L * L * (1 + phi));
     };
     Vector6 k;
@@ -229,8 +229,8 @@ Matrix6 stiffness(const CrossSection& s, double L) {
 }
 
 // Direction closest to z; none for a round section, where any direction will do.
-std::optional<Vector3d> read_up(const Cursor& at, const CrossSection& section,
-                                const Definitions& defs) {
+std::optional<Vector3> read_up(const Cursor& at, const CrossSection& section,
+                               const Definitions& defs) {
     if (const auto up = at.optional("up")) return direction(*up, defs);
     if (!section.is_round())
         at.fail(
@@ -239,17 +239,17 @@ std::optional<Vector3d> read_up(const Cursor& at, const CrossSection& section,
 }
 
 // x along the leg, z perpendicular to it towards `up`.
-Eigen::Quaterniond axes(const Cursor& at, const Vector3d& leg, const std::optional<Vector3d>& up) {
-    const Vector3d x = leg.normalized();
-    const Vector3d across = up ? Vector3d(*up - up->dot(x) * x) : x.unitOrthogonal();
+Quaternion axes(const Cursor& at, const Vector3& leg, const std::optional<Vector3>& up) {
+    const Vector3 x = leg.normalized();
+    const Vector3 across = up ? Vector3(*up - up->dot(x) * x) : x.unitOrthogonal();
     if (!(across.norm() > parallel))
         at.require("up").fail(
             "parallel to a straight part of the beam; z must be perpendicular to it");
-    Matrix3d A;
+    Matrix3 A;
     A.col(0) = x;
     A.col(2) = across.normalized();
     A.col(1) = A.col(2).cross(x);
-    return Eigen::Quaterniond(A).normalized();
+    return quaternion_of(A);
 }
 
 std::vector<Elastic> segments(const std::string& name, const Cursor& at, const Definitions& defs) {
@@ -262,8 +262,8 @@ std::vector<Elastic> segments(const std::string& name, const Cursor& at, const D
     };
     std::vector<Elastic> list;
     for (std::size_t k = 1; k <= course.segments(); ++k) {
-        const Vector3d from = course.nodes[k - 1], to = course.nodes[k];
-        const Eigen::Quaterniond A = axes(at, to - from, up);
+        const Vector3 from = course.nodes[k - 1], to = course.nodes[k];
+        const Quaternion A = axes(at, to - from, up);
         const auto marker = [&](BodyId id) {
             return Marker{id, point_of(id, 0.5 * (from + to), defs).s_local, A};
         };

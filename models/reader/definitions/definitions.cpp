@@ -8,11 +8,10 @@
 #include "models/reader/definitions/beams.hpp"
 #include "models/reader/definitions/look_up.hpp"
 #include "models/reader/document/limits.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
-
-using Eigen::Vector3d;
 
 struct Moment {
     const char *name, *dot, *star;  // "N·m", and its keyboard forms
@@ -68,9 +67,9 @@ void read_bodies(const Cursor& section, Definitions& defs) {
         if (name == "ground")
             at.fail("ground is predefined and cannot be defined again; choose another name");
         at.only_keys({"origin", "mass", "centre_of_gravity"});  // the last two: gravity.cpp
-        const Vector3d origin = hardpoint(at.require("origin"), defs);
+        const Vector3 origin = hardpoint(at.require("origin"), defs);
         defs.body_ids[name] = static_cast<BodyId>(defs.bodies.size());
-        defs.bodies.push_back({name, {.r = origin, .p = Eigen::Quaterniond::Identity()}});
+        defs.bodies.push_back({name, {.r = origin, .p = Quaternion::Identity()}});
     }
     if (defs.bodies.empty()) section.fail("empty; at least one body is needed");
     const std::size_t written = defs.bodies.size();
@@ -91,13 +90,13 @@ void read_bodies(const Cursor& section, Definitions& defs) {
 }
 
 // x, y, z or -x, -y, -z
-Vector3d named_axis(const Cursor& at) {
+Vector3 named_axis(const Cursor& at) {
     const std::string& word = at.value->text;
-    const double sign = word.starts_with('-') ? -1 : 1;
+    const Real sign = word.starts_with('-') ? -1 : 1;
     const std::string letter = sign < 0 ? word.substr(1) : word;
-    if (letter == "x") return sign * Vector3d::UnitX();
-    if (letter == "y") return sign * Vector3d::UnitY();
-    if (letter == "z") return sign * Vector3d::UnitZ();
+    if (letter == "x") return sign * Vector3::UnitX();
+    if (letter == "y") return sign * Vector3::UnitY();
+    if (letter == "z") return sign * Vector3::UnitZ();
     at.fail(
         fmt::format("{} is not a direction; allowed: x, y, z, -x, -y, -z, [x, y, z] or two "
                     "hardpoints [from, to]",
@@ -116,38 +115,38 @@ Definitions read_definitions(const Cursor& scene) {
     return defs;
 }
 
-double rate(const Cursor& at, const Unit& unit) {
-    const double k = at.number(unit.name);
+Real rate(const Cursor& at, const Unit& unit) {
+    const Real k = at.number(unit.name);
     if (k < 0) at.fail(fmt::format("negative rate {}; allowed: zero or more", at.found()));
     return unit.si(k);
 }
 
-double above_zero(const Cursor& at, const char* what, const Unit& unit) {
-    const double x = unit.si(at.number(unit.name));
+Real above_zero(const Cursor& at, const char* what, const Unit& unit) {
+    const Real x = unit.si(at.number(unit.name));
     if (!(x > 0)) at.fail(fmt::format("{} is {}; allowed: above zero", at.found(), what));
     return x;
 }
 
-Vector3d vector(const Cursor& at, const Unit& unit) {
+Vector3 vector(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "numbers");
     const auto si = [&](std::size_t k) { return unit.si(items[k].number(unit.name)); };
     return {si(0), si(1), si(2)};  // braces: in this order
 }
 
-Vector3d hardpoint(const Cursor& at, const Definitions& defs) {
+Vector3 hardpoint(const Cursor& at, const Definitions& defs) {
     return look_up(at, "hardpoint", defs.points);
 }
 
-Vector3d direction(const Cursor& at, const Definitions& defs) {
+Vector3 direction(const Cursor& at, const Definitions& defs) {
     const auto items = at.items();
     if (at.is_list() && items.size() == 2) {
-        const Vector3d u = hardpoint(items[1], defs) - hardpoint(items[0], defs);
+        const Vector3 u = hardpoint(items[1], defs) - hardpoint(items[0], defs);
         if (!(u.norm() > coincident))
             at.fail("the two hardpoints coincide; a direction needs two different ones");
         return u.normalized();
     }
     if (at.is_list() && items.size() == 3) {
-        const Vector3d u = vector(at);
+        const Vector3 u = vector(at);
         if (u.isZero(0)) at.fail("the vector has length zero; a direction needs a length");
         return u.normalized();
     }
@@ -178,21 +177,26 @@ BodyPair body_pair(const Cursor& at, const Definitions& defs) {
     return pair;
 }
 
-Point point_of(BodyId body, const Vector3d& p, const Definitions& defs) {
+Point point_of(BodyId body, const Vector3& p, const Definitions& defs) {
     if (body == ground) return {ground, p};
     return {body, p - defs.bodies[static_cast<std::size_t>(body)].design.r};
 }
 
-Marker marker_of(BodyId body, const Vector3d& p, const Eigen::Matrix3d& axes,
-                 const Definitions& defs) {
-    return {body, point_of(body, p, defs).s_local, Eigen::Quaterniond(axes).normalized()};
+// Which of several formulas Eigen takes decides on the sign only.
+Quaternion quaternion_of(const Matrix3& axes) {
+    [[maybe_unused]] const ByValue by_value;
+    return Quaternion(axes).normalized();
+}
+
+Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Definitions& defs) {
+    return {body, point_of(body, p, defs).s_local, quaternion_of(axes)};
 }
 
 Between between(const Cursor& at, const Definitions& defs, const char* what) {
     const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Vector3d from = hardpoint(at.require("from"), defs),
-                   to = hardpoint(at.require("to"), defs);
-    const double length = (to - from).norm();
+    const Vector3 from = hardpoint(at.require("from"), defs),
+                  to = hardpoint(at.require("to"), defs);
+    const Real length = (to - from).norm();
     if (!(length > coincident))
         at.require("to").fail(fmt::format("the same position as `from`; {} needs a length", what));
     return {point_of(i, from, defs), point_of(j, to, defs), length};

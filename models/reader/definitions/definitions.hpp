@@ -18,8 +18,8 @@ namespace elastocheck::reader {
 struct Unit {
     std::string name;
     double divide = 1, multiply = 1;
-    double si(double x) const { return x / divide * multiply; }
-    double written(double si) const { return si * divide / multiply; }
+    Real si(Real x) const { return x / divide * multiply; }
+    Real written(Real si) const { return si * divide / multiply; }
 };
 
 struct Units {
@@ -34,11 +34,11 @@ struct Units {
 struct Definitions {
     Units units;
     std::optional<Mirror> mirror;
-    std::map<std::string, Eigen::Vector3d> points;  // [m], ground axes
-    std::map<std::string, BodyId> body_ids;         // with ground
-    std::vector<Body> bodies;                       // twins at the end
-    std::vector<BodyId> twin_of;                    // of each body; itself if it is shared
-    std::optional<std::filesystem::path> folder;    // folder of the files that the scene refers to
+    std::map<std::string, Vector3> points;        // [m], ground axes
+    std::map<std::string, BodyId> body_ids;       // with ground
+    std::vector<Body> bodies;                     // twins at the end
+    std::vector<BodyId> twin_of;                  // of each body; itself if it is shared
+    std::optional<std::filesystem::path> folder;  // folder of the files that the scene refers to
 };
 
 Definitions read_definitions(const Cursor& scene);
@@ -46,13 +46,13 @@ Definitions read_definitions(const Cursor& scene);
 // Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
-double rate(const Cursor& at, const Unit& unit);  // zero or more, SI
+Real rate(const Cursor& at, const Unit& unit);  // zero or more, SI
 // SI; `what` completes "'0' is ...; allowed: above zero".
-double above_zero(const Cursor& at, const char* what, const Unit& unit = {});
-Eigen::Vector3d vector(const Cursor& at, const Unit& unit = {});       // three numbers, SI
-Eigen::Vector3d hardpoint(const Cursor& at, const Definitions& defs);  // [m]
-Eigen::Vector3d direction(const Cursor& at, const Definitions& defs);  // unit
-BodyId body(const Cursor& at, const Definitions& defs);                // or ground
+Real above_zero(const Cursor& at, const char* what, const Unit& unit = {});
+Vector3 vector(const Cursor& at, const Unit& unit = {});       // three numbers, SI
+Vector3 hardpoint(const Cursor& at, const Definitions& defs);  // [m]
+Vector3 direction(const Cursor& at, const Definitions& defs);  // unit
+BodyId body(const Cursor& at, const Definitions& defs);        // or ground
 BodyId moving_body(const Cursor& at, const Definitions& defs, const char* what);  // not ground
 
 struct BodyPair {
@@ -61,15 +61,16 @@ struct BodyPair {
 BodyPair body_pair(const Cursor& at, const Definitions& defs);  // [i, j], different
 
 // A ground position as a point of the body: s_local = p - r, since bodies start parallel to ground.
-Point point_of(BodyId body, const Eigen::Vector3d& p, const Definitions& defs);
-Marker marker_of(BodyId body, const Eigen::Vector3d& p, const Eigen::Matrix3d& axes,
-                 const Definitions& defs);
+Point point_of(BodyId body, const Vector3& p, const Definitions& defs);
+// The unit quaternion of a rotation matrix.
+Quaternion quaternion_of(const Matrix3& axes);
+Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Definitions& defs);
 
 // The fields `bodies`, `from` and `to` of what lies between two points; `what` completes "... needs
 // a length".
 struct Between {
     Point i, j;
-    double length;  // [m]
+    Real length;  // [m]
 };
 Between between(const Cursor& at, const Definitions& defs, const char* what);
 

@@ -14,8 +14,6 @@
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Vector3d;
-
 // Of any language.
 bool is_any_letter(char c) { return is_letter(c) || static_cast<unsigned char>(c) >= 0x80; }
 
@@ -42,7 +40,7 @@ BodyId twin(BodyId body, const Definitions& defs) {
 
 // p' = S p:  s' = S (r + s) - r' = S s + (S r - r'). The bracket is exactly 0 unless the body is
 // shared and its origin is off the plane.
-Vector3d twin_place(BodyId body, const Vector3d& s_local, const Definitions& defs) {
+Vector3 twin_place(BodyId body, const Vector3& s_local, const Definitions& defs) {
     if (body == ground) return reflected(s_local);
     const auto origin = [&](BodyId b) { return defs.bodies[static_cast<std::size_t>(b)].design.r; };
     return reflected(s_local) + (reflected(origin(body)) - origin(twin(body, defs)));
@@ -51,9 +49,9 @@ Vector3d twin_place(BodyId body, const Vector3d& s_local, const Definitions& def
 // A' = S A S. The vector part of a quaternion is parallel to its rotation axis, an axial vector:
 // v' = -S v.
 Marker twin(const Marker& m, const Definitions& defs) {
-    const Vector3d v = -reflected(Vector3d(m.A_local.vec()));
+    const Vector3 v = -reflected(Vector3(m.A_local.vec()));
     return {twin(m.body, defs), twin_place(m.body, m.s_local, defs),
-            Eigen::Quaterniond(m.A_local.w(), v.x(), v.y(), v.z())};
+            Quaternion(m.A_local.w(), v.x(), v.y(), v.z())};
 }
 
 }  // namespace
@@ -116,11 +114,11 @@ void require_both_sides(const Cursor& section, const Definitions& defs) {
     }
 }
 
-Vector3d reflected(const Vector3d& v) { return {v.x(), 0 - v.y(), v.z()}; }  // 0, not -0, for 0
+Vector3 reflected(const Vector3& v) { return {v.x(), 0 - v.y(), v.z()}; }  // 0, not -0, for 0
 
 Vector6 reflected(const Vector6& v) {
     Vector6 result;
-    result << reflected(Vector3d(v.head<3>())), -reflected(Vector3d(v.tail<3>()));
+    result << reflected(Vector3(v.head<3>())), -reflected(Vector3(v.tail<3>()));
     return result;
 }
 
@@ -149,7 +147,7 @@ K twin_of(K kind, const Definitions& defs) {
             [&](SpatialLaw& law) { law = with_signs(law, signs); },
             [&](ForceAndMoment<Vector6> w) { w.value = reflected(w.value); },
             [&](Deformation<Vector6> e) { e.value = reflected(e.value); },
-            [&](LoadVector<Vector3d> v) {
+            [&](LoadVector<Vector3> v) {
                 v.value = reflected(v.value);
                 if (v.is_moment) v.value = -v.value;
             }});

@@ -43,8 +43,8 @@ void require_both_sides(const Cursor& section, const Definitions& defs);
 // Driven quantities are mirrored: equal values on both sides are a symmetric motion. So the axis of
 // a revolute or cylindrical joint, about which its angle is measured, is mirrored as an axial
 // vector.
-Eigen::Vector3d reflected(const Eigen::Vector3d& v);  // S v
-Vector6 reflected(const Vector6& v);                  // P v
+Vector3 reflected(const Vector3& v);  // S v
+Vector6 reflected(const Vector6& v);  // P v
 JointKind twin(const JointKind& joint, const Definitions& defs);
 ElasticKind twin(const ElasticKind& elastic, const Definitions& defs);
 LoadKind twin(const LoadKind& load, const Definitions& defs);

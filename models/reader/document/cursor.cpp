@@ -10,6 +10,7 @@
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -117,7 +118,7 @@ const std::string& Cursor::text(const std::string& what) const {
     return value->text;
 }
 
-double Cursor::number(const std::string& unit) const {
+Real Cursor::number(const std::string& unit) const {
     if (accesses) accesses->read.insert(value);
     std::string_view digits = value->text;
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
@@ -134,7 +135,7 @@ double Cursor::number(const std::string& unit) const {
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(),
                          least_size, largest_size));
     numbers->push_back({path + item, x, unit});
-    return x;
+    return as_read(numbers->back());
 }
 
 bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
@@ -149,6 +150,7 @@ int Cursor::whole_number(int least, int most) const {
         n > most)
         fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));
     numbers->push_back({path + item, static_cast<double>(n), ""});
+    as_counted(numbers->back());
     return n;
 }
 

@@ -10,24 +10,27 @@
 #include "models/kinds.hpp"
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
 constexpr double round_off = 1e-12;  // relative, of numbers that should be equal
 constexpr double least_sine = 1e-6;  // sine of the angle below which axes count as parallel
 
-Vector3d rates(const Cursor& at, const Unit& unit) {
+Vector3 rates(const Cursor& at, const Unit& unit) {
     const auto items = at.list(3, "rates");
     return {rate(items[0], unit), rate(items[1], unit), rate(items[2], unit)};
 }
 
+// The larger size of the two.
+double larger_of(const Real& a, const Real& b) {
+    return std::max(std::abs(value_of(a)), std::abs(value_of(b)));
+}
+
 // ---- The frame of a bushing.
 
-using Axes = Matrix3d;  // columns: the frame's axes in ground axes
+using Axes = Matrix3;  // columns: the frame's axes in ground axes
 
 struct FrameField {
     Axes axes = Axes::Identity();
@@ -36,8 +39,8 @@ struct FrameField {
 };
 
 // The right-handed frame with the axes a and b (0 x, 1 y, 2 z) along e_a and e_b.
-Axes completed(int a, const Vector3d& e_a, int b, const Vector3d& e_b) {
-    const double sign = b == (a + 1) % 3 ? 1 : -1;  // e_x × e_y = e_z, but e_y × e_x = -e_z
+Axes completed(int a, const Vector3& e_a, int b, const Vector3& e_b) {
+    const Real sign = b == (a + 1) % 3 ? 1 : -1;  // e_x × e_y = e_z, but e_y × e_x = -e_z
     Axes frame;
     frame.col(a) = e_a;
     frame.col(b) = e_b;
@@ -52,12 +55,12 @@ FrameField read_frame(const Cursor& at, const Definitions& defs) {
     if (keys.size() != 1 && keys.size() != 2)
         at.fail(fmt::format("{} axes given; allowed: one or two", keys.size()));
     const int a = keys[0][0] - 'x';
-    const Vector3d e_a = direction(at.require(keys[0]), defs);
+    const Vector3 e_a = direction(at.require(keys[0]), defs);
     if (keys.size() == 1) return {completed(a, e_a, (a + 1) % 3, e_a.unitOrthogonal()), a};
 
     const int b = keys[1][0] - 'x';
-    const Vector3d d_b = direction(at.require(keys[1]), defs);
-    const Vector3d across = d_b - d_b.dot(e_a) * e_a;
+    const Vector3 d_b = direction(at.require(keys[1]), defs);
+    const Vector3 across = d_b - d_b.dot(e_a) * e_a;
     if (!(across.norm() > least_sine))
         at.fail(fmt::format("axes {} and {} are parallel; two different directions are needed",
                             keys[0], keys[1]));
@@ -76,22 +79,25 @@ Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& 
 
 // ---- The stiffness of a bushing.
 
+using ValueMatrix6 = Eigen::Matrix<double, 6, 6>;
+using ValueVector6 = Eigen::Matrix<double, 6, 1>;
+
 // S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do
 // not mix units. Where K_ii = 0, D_ii makes the largest entry of the row 1, so that a non-zero row
 // makes S clearly indefinite.
-Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
+ValueMatrix6 scaled_to_unit_diagonal(const ValueMatrix6& K) {
     const auto one_if_zero = [](double x) { return x == 0 ? 1 : x; };
-    Vector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
-    const Vector6 known = d.unaryExpr(one_if_zero);
+    ValueVector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
+    const ValueVector6 known = d.unaryExpr(one_if_zero);
     for (int i = 0; i < 6; ++i)
         if (d[i] == 0) d[i] = one_if_zero((K.col(i).array().abs() / known.array()).maxCoeff());
     return (K.array() / (d * d.transpose()).array()).matrix();
 }
 
 void require_semidefinite(const Cursor& at, const Matrix6& K) {
-    const Matrix6 S = scaled_to_unit_diagonal(K);
+    const ValueMatrix6 S = scaled_to_unit_diagonal(values_of(K));
     const double lowest =
-        Eigen::SelfAdjointEigenSolver<Matrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
+        Eigen::SelfAdjointEigenSolver<ValueMatrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
     if (!(lowest >= -round_off))
         at.fail(
             fmt::format("indefinite, its lowest eigenvalue is {:g} when scaled to a unit diagonal; "
@@ -102,8 +108,7 @@ void require_semidefinite(const Cursor& at, const Matrix6& K) {
 void require_symmetric(const Cursor& at, const Matrix6& K) {
     for (int i = 0; i < 6; ++i)
         for (int j = i + 1; j < 6; ++j)
-            if (!(std::abs(K(i, j) - K(j, i)) <=
-                  round_off * std::max(std::abs(K(i, j)), std::abs(K(j, i)))))
+            if (!are_near(K(i, j), K(j, i), round_off * larger_of(K(i, j), K(j, i))))
                 at.fail(
                     fmt::format("not symmetric: row {}, column {} is {}, row {}, column {} is {}",
                                 i + 1, j + 1, K(i, j), j + 1, i + 1, K(j, i)));
@@ -230,7 +235,7 @@ Formulation read_formulation(const Cursor& at) {
 // is invariant under any rotation. It only swaps entries, without rounding.
 Matrix6 quarter_turn(int axis) {
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
-    Matrix3d turn = Matrix3d::Zero();
+    Matrix3 turn = Matrix3::Zero();
     turn(axis, axis) = 1;
     turn(c, b) = 1;
     turn(b, c) = -1;
@@ -245,7 +250,7 @@ std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
     const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
         Matrix6 K = Matrix6::Zero();
         for (int k = 0; k < 6; ++k) {
-            const double* rate = rate_of(u.axis[static_cast<std::size_t>(k)]);
+            const Real* rate = rate_of(u.axis[static_cast<std::size_t>(k)]);
             if (!rate && k % 3 != axis) return std::nullopt;
             K(k, k) = rate ? *rate : 0;
         }
@@ -263,12 +268,16 @@ void require_round_about(const Cursor& frame, int axis, const Bushing& bushing) 
     };
     const Matrix6 turn = quarter_turn(axis);
     const auto is_same = [](const auto& x, const auto& y) {
-        return ((x - y).array().abs() <= round_off * x.array().abs().max(y.array().abs())).all();
+        for (Eigen::Index j = 0; j < x.cols(); ++j)
+            for (Eigen::Index i = 0; i < x.rows(); ++i)
+                if (!are_near(x(i, j), y(i, j), round_off * larger_of(x(i, j), y(i, j))))
+                    return false;
+        return true;
     };
-    const auto is_round = [&](const Vector6& v) { return is_same(v, turn * v); };
+    const auto is_round = [&](const Vector6& v) { return is_same(v, Vector6(turn * v)); };
     const auto K = rates_round(axis, bushing.law);
     if (!K) refuse("a curve across it is not axisymmetric");
-    if (!is_same(*K, turn * *K * turn.transpose()) || !is_round(bushing.preload))
+    if (!is_same(*K, Matrix6(turn * *K * turn.transpose())) || !is_round(bushing.preload))
         refuse("the rates or the preload across it are not axisymmetric");
     if (!is_round(bushing.undeformed)) refuse("the undeformed position is not on it");
     if (bushing.formulation.angles != Formulation::Angles::rotation_vector)
@@ -282,7 +291,7 @@ Elastic read_bushing(const std::string& name, const Cursor& at, const Definition
                   "curves", "preload", "preload_moment", "undeformed", "undeformed_angles",
                   "formulation"});
     const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Vector3d p = hardpoint(at.require("at"), defs);
+    const Vector3 p = hardpoint(at.require("at"), defs);
     const auto frame_field = at.optional("frame");
     const FrameField frame = frame_field ? read_frame(*frame_field, defs) : FrameField{};
     const auto frame_j = at.optional("frame_j");

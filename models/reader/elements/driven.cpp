@@ -12,14 +12,12 @@
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr int no_joint = -1;
 
 // Bodies start parallel to ground: a direction has the same components on both.
 Angle angle_about(const Direction& axis_i, const Direction& axis_j) {
-    const Vector3d x = axis_j.u_local.unitOrthogonal();
-    const Vector3d y = axis_j.u_local.cross(x).normalized();
+    const Vector3 x = axis_j.u_local.unitOrthogonal();
+    const Vector3 y = axis_j.u_local.cross(x).normalized();
     return {.i = {axis_i.body, x}, .j = {axis_j.body, x}, .y_j = {axis_j.body, y}, .angle = 0};
 }
 
@@ -65,10 +63,10 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
 // length.
 void add_spring(int k, const std::string& name, const ScalarLaw& law, const Units& units,
                 Drivables& result) {
-    const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
+    const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, Real factor) {
         result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
     };
-    const double* rate = rate_of(law);
+    const Real* rate = rate_of(law);
     if (rate != nullptr && *rate == 0) {
         for (const char* field : {".free_length", ".preload"})
             result.not_driven[name + field] = "of a spring of rate zero, on which it has no effect";
@@ -115,12 +113,12 @@ void add_elements(const Scene& scene, const Units& units, const NamedElements& e
 // ground position in the design.
 void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
     for (const Wheel& wheel : scene.wheels) {
-        const Vector3d& r = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r;
+        const Vector3& r = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r;
         const std::string of_wheel = wheel.name.empty() ? "" : wheel.name + ".";
-        const auto add = [&](const char* quantity, const char* joint, const Vector3d& s_local) {
+        const auto add = [&](const char* quantity, const char* joint, const Vector3& s_local) {
             const InPlane jack{.i = {wheel.body, s_local},
                                .j = {ground, r + s_local},
-                               .normal_j = {ground, Vector3d::UnitZ()},
+                               .normal_j = {ground, Vector3::UnitZ()},
                                .offset = 0};
             result.table[of_wheel + quantity] = {ParameterUnit::metre, units.length,
                                                  Motion{no_joint}, 1,

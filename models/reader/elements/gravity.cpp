@@ -8,10 +8,8 @@
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Vector3d;
-
-Vector3d read_acceleration(const Cursor& at, const Definitions& defs) {
-    const Vector3d g = vector(at, {"m/s²"});
+Vector3 read_acceleration(const Cursor& at, const Definitions& defs) {
+    const Vector3 g = vector(at, {"m/s²"});
     if (defs.mirror && g.y() != 0)
         at.fail(
             "has a y component, which is not symmetric; allowed in a scene with a mirror: [x, 0, "
@@ -20,7 +18,7 @@ Vector3d read_acceleration(const Cursor& at, const Definitions& defs) {
 }
 
 // [kg]; none if the body has no mass
-std::optional<double> read_mass(const Cursor& body) {
+std::optional<Real> read_mass(const Cursor& body) {
     const auto mass = body.optional("mass");
     if (!mass) {
         if (const auto centre = body.optional("centre_of_gravity"))
@@ -28,7 +26,7 @@ std::optional<double> read_mass(const Cursor& body) {
                 "centre of gravity of a body without mass; give its mass or remove this field");
         return std::nullopt;
     }
-    const double m = mass->number("kg");
+    const Real m = mass->number("kg");
     if (m < 0) mass->fail(fmt::format("negative mass {}; allowed: zero or more", mass->found()));
     return m;
 }
@@ -46,7 +44,7 @@ void add_weight(const Cursor& body, const Load& weight, Scene& scene) {
 
 void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result) {
     const auto field = scene.optional("gravity");
-    const Vector3d g = field ? read_acceleration(*field, defs) : Vector3d::Zero();
+    const Vector3 g = field ? read_acceleration(*field, defs) : Vector3::Zero();
     bool any_mass = false;
     for (const auto& [name, at] : scene.require("bodies").entries()) {
         const auto mass = read_mass(at);
@@ -54,7 +52,7 @@ void read_gravity(const Cursor& scene, const Definitions& defs, Scene& result) {
         any_mass = true;
         const BodyId id = defs.body_ids.at(name);
         const auto centre = at.optional("centre_of_gravity");
-        const Vector3d p = hardpoint(centre ? *centre : at.require("origin"), defs);
+        const Vector3 p = hardpoint(centre ? *centre : at.require("origin"), defs);
         if (!field) {
             result.omitted.push_back({"mass of body '" + name + "'", "the scene has no gravity"});
             continue;

@@ -8,11 +8,10 @@
 
 #include "models/kinds.hpp"
 #include "models/reader/elements/sections.hpp"
+#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double square = 1e-9;  // largest cosine between axes that must be perpendicular
 
@@ -22,7 +21,7 @@ struct JointFields {
     const Definitions& defs;
     BodyPair bodies;
 
-    Vector3d position(const char* key) const { return hardpoint(at.require(key), defs); }
+    Vector3 position(const char* key) const { return hardpoint(at.require(key), defs); }
     Point i(const char* key) const { return point_of(bodies.i, position(key), defs); }
     Point j(const char* key) const { return point_of(bodies.j, position(key), defs); }
     Direction axis_i(const char* key) const { return {bodies.i, direction(at.require(key), defs)}; }
@@ -34,10 +33,10 @@ struct JointFields {
 std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
     const Direction i = f.axis_i("axis_i");
     Direction j = f.axis_j("axis_j");
-    const double cosine = i.u_local.dot(j.u_local);
-    if (!(std::abs(cosine) <= square)) {
-        const double angle = std::atan2(i.u_local.cross(j.u_local).norm(), cosine) * 180 /
-                             std::numbers::pi;  // [deg]
+    const Real cosine = i.u_local.dot(j.u_local);
+    if (!are_near(cosine, 0, square)) {
+        const double sine = value_of(i.u_local.cross(j.u_local).norm());
+        const double angle = std::atan2(sine, value_of(cosine)) * 180 / std::numbers::pi;  // [deg]
         f.at.require("axis_j").fail(
             fmt::format("{:.10g} deg from axis_i; the two axes must be perpendicular", angle));
     }
@@ -63,7 +62,7 @@ JointKind universal(const JointFields& f) {
 
 JointKind fixed(const JointFields& f) {
     const auto [i, j] = f.bodies;
-    const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY();
+    const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();
     return Fixed{f.i("at"), f.j("at"), {i, x}, {i, y}, {j, x}, {j, y}};
 }
 

@@ -18,14 +18,14 @@ Load load_in(const std::string& name, const Cursor& at, const Definitions& defs,
     const bool is_follower = follows && follows->yes_or_no();
     if (force) {
         const Point point = point_of(on, hardpoint(at.require("at"), defs), defs);
-        const Eigen::Vector3d f = vector(*force, force_unit);
+        const Vector3 f = vector(*force, force_unit);
         return {name,
                 is_follower ? LoadKind(FollowerForce{point, f}) : LoadKind(DeadForce{point, f})};
     }
     if (!moment) at.fail("no load; required: force with at, or moment");
     if (const auto point = at.optional("at"))
         point->fail("a moment has no point of application; remove this field");
-    const Eigen::Vector3d m = vector(*moment, moment_unit);
+    const Vector3 m = vector(*moment, moment_unit);
     return {name, is_follower ? LoadKind(FollowerMoment{on, m}) : LoadKind(DeadMoment{on, m})};
 }
 

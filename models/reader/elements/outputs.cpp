@@ -6,10 +6,8 @@
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Vector3d;
-
 struct Place {
-    Vector3d position;
+    Vector3 position;
     Point point;
 };
 
@@ -18,7 +16,7 @@ Place end_of_axis(const Cursor& at, BodyId wheel, const Definitions& defs) {
     const bool elsewhere = at.value->kind == Value::Kind::map;
     if (elsewhere) at.only_keys({"on", "at"});
     const BodyId on = elsewhere ? body(at.require("on"), defs) : wheel;
-    const Vector3d position = hardpoint(elsewhere ? at.require("at") : at, defs);
+    const Vector3 position = hardpoint(elsewhere ? at.require("at") : at, defs);
     return {position, point_of(on, position, defs)};
 }
 
@@ -31,8 +29,8 @@ SteeringAxis read_steering_axis(const Cursor& at, BodyId wheel, const Definition
     return {lower.point, upper.point};
 }
 
-double share(const Cursor& at) {
-    const double x = at.number();
+Real share(const Cursor& at) {
+    const Real x = at.number();
     if (!(x >= 0 && x <= 1)) at.fail(fmt::format("{} is not a share; allowed: 0 to 1", at.found()));
     return x;
 }

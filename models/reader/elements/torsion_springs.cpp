@@ -6,7 +6,7 @@ namespace elastocheck::reader {
 namespace {
 
 SpatialLaw about_z(const ScalarLaw& law) {
-    if (const double* rate = rate_of(law)) {
+    if (const Real* rate = rate_of(law)) {
         LinearStiffness all;
         all.K(5, 5) = *rate;
         return all;
@@ -22,9 +22,8 @@ SpatialLaw about_z(const ScalarLaw& law) {
 Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs) {
     at.only_keys({"bodies", "at", "axis", "rate", "curve", "preload_moment"});
     const auto [i, j] = body_pair(at.require("bodies"), defs);
-    const Eigen::Vector3d p = hardpoint(at.require("at"), defs),
-                          z = direction(at.require("axis"), defs);
-    Eigen::Matrix3d frame;
+    const Vector3 p = hardpoint(at.require("at"), defs), z = direction(at.require("axis"), defs);
+    Matrix3 frame;
     frame.col(2) = z;
     frame.col(0) = z.unitOrthogonal();
     frame.col(1) = z.cross(frame.col(0));

@@ -16,8 +16,6 @@
 namespace elastocheck::reader {
 namespace {
 
-using Eigen::Vector3d;
-
 std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
     if (scene.wheels.empty()) tyre.fail("the scene has no wheel; give wheel or wheels");
     const auto named = tyre.optional("wheel");
@@ -31,12 +29,12 @@ std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
 }
 
 struct Tyre {
-    double k = 0;  // [N/m] > 0
-    double P = 0;  // force that pushes the wheel up at the design position [N]
+    Real k = 0;  // [N/m] > 0
+    Real P = 0;  // force that pushes the wheel up at the design position [N]
 };
 
 Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {
-    const Vector3d& r = defs.bodies[static_cast<std::size_t>(wheel.body)].design.r;
+    const Vector3& r = defs.bodies[static_cast<std::size_t>(wheel.body)].design.r;
     Matrix6 K = Matrix6::Zero();
     K(2, 2) = tyre.k;
     return {.i = {ground, r + wheel.contact_local},

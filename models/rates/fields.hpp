@@ -1,0 +1,142 @@
+// Visits all data of a scene or a model in one fixed order, to write it to and read it from plain
+// lists. Compiled with numbers of both types.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "elastocheck/model.hpp"
+#include "models/kinds.hpp"
+#include "models/rates/bridge.hpp"
+
+namespace elastocheck::rates {
+
+// ---- Members of what is no kind (models/kinds.hpp lists the members of those).
+
+template <class X, class T>
+concept Is = std::is_same_v<std::remove_const_t<X>, T>;
+
+void fields(Is<Pose> auto& x, auto&& f) { f(x.r, x.p); }
+void fields(Is<Body> auto& x, auto&& f) { f(x.name, x.design); }
+void fields(Is<Point> auto& x, auto&& f) { f(x.body, x.s_local); }
+void fields(Is<Direction> auto& x, auto&& f) { f(x.body, x.u_local); }
+void fields(Is<Marker> auto& x, auto&& f) { f(x.body, x.s_local, x.A_local); }
+void fields(Is<Formulation> auto& x, auto&& f) {
+    f(x.frame, x.angles, x.conjugate, x.offset_moment);
+}
+void fields(Is<LinearRate> auto& x, auto&& f) { f(x.k); }
+void fields(Is<Curve> auto& x, auto&& f) { f(x.knots, x.pieces, x.known_outside); }
+void fields(Is<LinearStiffness> auto& x, auto&& f) { f(x.K); }
+void fields(Is<PerAxis> auto& x, auto&& f) { f(x.axis); }
+void fields(Is<Joint> auto& x, auto&& f) { f(x.name, x.kind, x.active_only_where_driven); }
+void fields(Is<Elastic> auto& x, auto&& f) {
+    f(x.name, x.kind, x.active_only_where_driven, x.written_as, x.markers_swapped);
+}
+void fields(Is<Load> auto& x, auto&& f) { f(x.name, x.kind); }
+void fields(Is<Driver> auto& x, auto&& f) { f(x.what, x.start, x.rate); }
+void fields(Is<Branch> auto& x, auto&& f) { f(x.name, x.from, x.to, x.steps, x.unit, x.drivers); }
+void fields(Is<SteeringAxis> auto& x, auto&& f) { f(x.lower, x.upper); }
+void fields(Is<Wheel> auto& x, auto&& f) {
+    f(x.name, x.body, x.centre_local, x.contact_local, x.spin_axis_local, x.side, x.tyre_rate,
+      x.steering_axis);
+}
+void fields(Is<Probe> auto& x, auto&& f) { f(x.name, x.at); }
+void fields(Is<Damper> auto& x, auto&& f) { f(x.name, x.i, x.j); }
+void fields(Is<Vehicle> auto& x, auto&& f) {
+    f(x.wheelbase, x.cg_height, x.axle, x.brake_share, x.drive_share);
+}
+void fields(Is<Hardpoint> auto& x, auto&& f) { f(x.name, x.position); }
+void fields(Is<Number> auto& x, auto&& f) { f(x.path, x.unit); }  // its value is no Real
+void fields(Is<WheelTravel> auto& x, auto&& f) { f(x.wheel); }
+void fields(Is<WheelToe> auto& x, auto&& f) { f(x.wheel); }
+void fields(Is<WheelCamber> auto& x, auto&& f) { f(x.wheel); }
+void fields(Is<ProbeCoordinate> auto& x, auto&& f) { f(x.probe, x.axis); }
+void fields(Is<Trim::Adjustment> auto& x, auto&& f) { f(x.name, x.what, x.per_unit, x.unit); }
+void fields(Is<Trim::Condition> auto& x, auto&& f) { f(x.name, x.what, x.value); }
+void fields(Is<Trim> auto& x, auto&& f) { f(x.adjust, x.until, x.line); }
+void fields(Is<Omission> auto& x, auto&& f) { f(x.what, x.why); }
+void fields(Is<Scene> auto& x, auto&& f) {
+    f(x.name, x.source, x.numbers, x.hardpoints, x.bodies, x.joints, x.elastics, x.static_loads,
+      x.branches, x.wheels, x.probes, x.dampers, x.vehicle, x.trim, x.omitted);
+}
+void fields(Is<Constraint> auto& x, auto&& f) { f(x.joint, x.kind); }
+void fields(Is<ModelJoint> auto& x, auto&& f) {
+    f(x.name, x.i, x.j, x.at, x.driven, x.active_only_where_driven);
+}
+void fields(Is<Size> auto& x, auto&& f) { f(x.bodies, x.joints, x.elastics, x.rows); }
+void fields(Is<Model> auto& x, auto&& f) {
+    f(x.name, x.bodies, x.joints, x.constraints, x.elastics, x.static_loads, x.branches, x.wheels,
+      x.probes, x.dampers, x.vehicle, x.omitted, x.as_written, x.as_solved);
+}
+
+// ---- Traversal.
+
+template <class T, template <class...> class Template>
+inline constexpr bool is_a = false;
+template <template <class...> class Template, class... A>
+inline constexpr bool is_a<Template<A...>, Template> = true;
+template <class T>
+inline constexpr bool is_array = false;
+template <class T, std::size_t n>
+inline constexpr bool is_array<std::array<T, n>> = true;
+
+// Makes the alternative `index` of the variant.
+template <class V, std::size_t k = 0>
+void hold(V& variant, std::size_t index) {
+    if (k == index)
+        variant.template emplace<k>();
+    else if constexpr (k + 1 < std::variant_size_v<V>)
+        hold<V, k + 1>(variant, index);
+}
+
+// Calls visit.text(std::string&), visit.whole(T&) or visit.number(Real&) for every datum of x. A
+// visitor that `writes` sets sizes and alternatives of what it visits.
+template <class Visitor, class X>
+void each_datum(Visitor& visit, X& x) {
+    using T = std::remove_const_t<X>;
+    const auto all = [&](auto&&... members) { (each_datum(visit, members), ...); };
+    if constexpr (std::is_same_v<T, Real>) {
+        visit.number(x);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        visit.text(x);
+    } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
+        visit.whole(x);
+    } else if constexpr (std::is_same_v<T, Quaternion>) {
+        each_datum(visit, x.coeffs());
+    } else if constexpr (std::is_base_of_v<Eigen::PlainObjectBase<T>, T>) {
+        for (Eigen::Index k = 0; k < x.size(); ++k) visit.number(x.data()[k]);
+    } else if constexpr (is_array<T>) {
+        for (auto& entry : x) each_datum(visit, entry);
+    } else if constexpr (is_a<T, std::vector>) {
+        std::size_t size = x.size();
+        visit.whole(size);
+        if constexpr (Visitor::writes) x.resize(size);
+        for (auto& entry : x) each_datum(visit, entry);
+    } else if constexpr (is_a<T, std::optional>) {
+        bool exists = x.has_value();
+        visit.whole(exists);
+        if constexpr (Visitor::writes) x = exists ? T(std::in_place) : T();
+        if (exists) each_datum(visit, *x);
+    } else if constexpr (is_a<T, std::variant>) {
+        std::size_t index = x.index();
+        visit.whole(index);
+        if constexpr (Visitor::writes) hold(x, index);
+        std::visit([&](auto& kind) { each_datum(visit, kind); }, x);
+    } else if constexpr (requires { fields(x, all); }) {
+        fields(x, all);
+    } else if constexpr (requires { Kind<T>::members(x, all); }) {
+        Kind<T>::members(x, all);
+    } else if constexpr (requires { x.direction; }) {
+        each_datum(visit, x.direction);  // RotationAxis
+    } else {
+        each_datum(visit, x.value);  // Length and the other names of members in kinds.hpp
+    }
+}
+
+}  // namespace elastocheck::rates
