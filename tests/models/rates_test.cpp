@@ -150,7 +150,7 @@ double size_of(std::size_t entry, const Differences& by, const Original& origina
                      1e-12 / size_of(number)});
 }
 
-// The entry that differs most, relative to what it may differ by: the tolerance, ten uncertainties
+// The entry that differs most, relative to what it may differ by: the tolerance, twenty uncertainties
 // of its neighbours, and their round-off.
 struct Worst {
     double error = 0;
@@ -165,7 +165,7 @@ Worst worst(const std::vector<double>& rates, const Differences& by, const Origi
         ++(by.jump[n] || by.uncertainty[n] > allowed ? result.unknown : result.known);
         const double error =
             std::abs(rates[n] - by.rates[n]) /
-            (allowed + 10 * largest(by.uncertainty, n) + 1e-12 * largest(by.rates, n));
+            (allowed + 20 * largest(by.uncertainty, n) + 1e-12 * largest(by.rates, n));
         if (!by.jump[n] && !(error <= result.error)) result.error = error, result.entry = n;
     }
     return result;
