@@ -75,6 +75,45 @@ void fields(Is<Model> auto& x, auto&& f) {
       x.probes, x.dampers, x.vehicle, x.omitted, x.as_written, x.as_solved);
 }
 
+// ---- Members of the kinds, and the names that some of these have.
+
+template <class X, class F>
+auto fields(X& x, F&& f) -> decltype(Kind<std::remove_const_t<X>>::members(x, f)) {
+    Kind<std::remove_const_t<X>>::members(x, f);
+}
+template <class T>
+void fields(Length<T>& x, auto&& f) {
+    f(x.value);
+}
+template <class T>
+void fields(PlaneAngle<T>& x, auto&& f) {
+    f(x.value);
+}
+template <class T>
+void fields(ForceAndMoment<T>& x, auto&& f) {
+    f(x.value);
+}
+template <class T>
+void fields(Deformation<T>& x, auto&& f) {
+    f(x.value);
+}
+template <class T>
+void fields(LoadVector<T>& x, auto&& f) {
+    f(x.value);
+}
+template <class T>
+void fields(RotationAxis<T>& x, auto&& f) {
+    f(x.direction);
+}
+template <class T>
+void fields(JointIndex<T>& x, auto&& f) {
+    f(x.value);
+}
+template <class T>
+void fields(ElasticIndex<T>& x, auto&& f) {
+    f(x.value);
+}
+
 // ---- Traversal.
 
 template <class T, template <class...> class Template>
@@ -128,14 +167,8 @@ void each_datum(Visitor& visit, X& x) {
         visit.whole(index);
         if constexpr (Visitor::writes) hold(x, index);
         std::visit([&](auto& kind) { each_datum(visit, kind); }, x);
-    } else if constexpr (requires { fields(x, all); }) {
-        fields(x, all);
-    } else if constexpr (requires { Kind<T>::members(x, all); }) {
-        Kind<T>::members(x, all);
-    } else if constexpr (requires { x.direction; }) {
-        each_datum(visit, x.direction);  // RotationAxis
     } else {
-        each_datum(visit, x.value);  // Length and the other names of members in kinds.hpp
+        fields(x, all);
     }
 }
 

@@ -8,7 +8,8 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <set>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 #include "elastocheck/compile.hpp"
@@ -250,6 +251,48 @@ TEST_P(Rates, OfASceneAreCompiledToThoseOfItsModel) {
         EXPECT_EQ(compiled.undefined, "");
         EXPECT_EQ(data(compiled.rate).numbers, data(rate.rate).numbers);
     }
+}
+
+// ---- A member that fields.hpp forgets would have no derivative.
+
+struct Anything {
+    template <class T>
+    operator T() const;
+};
+template <class T, class... A>
+concept Takes = requires {
+    T{A{}...};
+};
+template <class T, class... A>
+constexpr std::size_t members() {
+    if constexpr (Takes<T, A..., Anything>)
+        return members<T, A..., Anything>();
+    else
+        return sizeof...(A);
+}
+template <class T>
+std::size_t visited() {
+    T x;
+    std::size_t count = 0;
+    rates::fields(x, [&](auto&... all) { count = sizeof...(all); });
+    return count;
+}
+template <class T>
+void expect_visited() {
+    EXPECT_EQ(visited<T>(), members<T>()) << typeid(T).name();
+}
+template <class... T>
+void expect_all_visited() {
+    (expect_visited<T>(), ...);
+}
+
+TEST(ModelRates, HaveEveryMember) {
+    expect_all_visited<Pose, Body, Point, Direction, Marker, Formulation, LinearRate, Curve,
+                       LinearStiffness, PerAxis, Joint, Elastic, Load, Driver, Branch, SteeringAxis,
+                       Wheel, Probe, Damper, Vehicle, Hardpoint, WheelTravel, WheelToe, WheelCamber,
+                       ProbeCoordinate, Trim::Adjustment, Trim::Condition, Trim, Omission, Scene,
+                       Constraint, ModelJoint, Size, Model>();
+    EXPECT_EQ(visited<Number>() + 1, members<Number>());  // all but the value
 }
 
 // ---- Closed forms.
