@@ -402,21 +402,12 @@ Extent distance(const Piece& piece, const StateAt& at) {
     return distance(at, z);
 }
 
-// Upper bounds over the tube of the wrench that holds idle motions, and of the gap of redundant
-// rows.
-struct Held {
-    double held = 0, gap = 0;
-};
 Held held_over(const NodeSolver& solver, const Piece& piece) {
-    const Index k = solver.border.count(), n = solver.system.n(),
-                balances = 6 * solver.system.bodies;
-    if (k == 0) return {};
+    const Index k = solver.border.count(), n = solver.system.n();
     VectorXd mu = piece.r.tail(k);
     for (Index i = 0; i < k; ++i)
         mu[i] += mag(expanded<0>(powers(piece, n + i), Interval(-1, 1)).c[0]);
-    const VectorXd all = solver.border.U.cwiseAbs() * mu * (1 + 1e-12);
-    return {balances > 0 ? all.head(balances).maxCoeff() : 0,
-            solver.system.rows > 0 ? all.segment(balances, solver.system.rows).maxCoeff() : 0};
+    return held_by(solver.system, solver.border, mu);
 }
 
 }  // namespace
@@ -431,20 +422,16 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         return tube;
     };
     if (states.size() < 2) return open("a path between states needs two of them");
-    if (!arithmetic_is_as_proved())
-        return open(
-            "the arithmetic does not round to nearest, or flushes denormals to zero: nothing can "
-            "be proved");
     const System system = make_system(model, branch, Corners::apart);
-    if (const auto why = too_large(system); !why.empty()) return open(why);
+    if (const auto why = why_not_tried(system); !why.empty()) return open(why);
     std::vector<StateAt> at;
     for (const auto& state : states) at.push_back(state_at(system, state));
     tube.from = tube.to = states.front().load;
-    const double end = states.back().load, way = end - tube.from;
+    const double end = states.back().load, range = end - tube.from;
     for (std::size_t k = 0; k < at.size(); ++k) {
         if (!at[k].z.allFinite() || !std::isfinite(states[k].load))
             return open("a state is not finite");
-        if (k > 0 && !((states[k].load - states[k - 1].load) * way > 0))
+        if (k > 0 && !((states[k].load - states[k - 1].load) * range > 0))
             return open(fmt::format("the states turn back at {:.9g}", states[k].load));
     }
     const StateAt& middle = at[at.size() / 2];
@@ -455,7 +442,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     // Step-size control: halved after a failure, enlarged by three fifths after a success.
     constexpr double shortest = 1e-13, first_share = 0.02, bridge = 1e-6;
     constexpr int most_bridges = 40;  // consecutive
-    double h = first_share * way;
+    double h = first_share * range;
     Held held, pushed;
     Node from = solver.node(tube.from), middle_node, to;
     if (!from.found)
@@ -474,7 +461,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
                 fmt::format("past {:.12g} the path stays on a knot, or close to one", tube.to));
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
-        if (a1 == tube.to || std::abs(h) < shortest * std::abs(way)) {
+        if (a1 == tube.to || std::abs(h) < shortest * std::abs(range)) {
             if (pushed.held > tolerance.held)
                 return open(fmt::format(
                     "past {:.12g} the idle motion of {} is loaded by up to {:.2g} N or N·m",
@@ -504,7 +491,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
                          prove(solver, piece, middle_node.Y, joint, tolerance);
             }
             over_knot = false;
-            if (!proved && to.found && std::abs(h) < bridge * std::abs(way)) {
+            if (!proved && to.found && std::abs(h) < bridge * std::abs(range)) {
                 piece = straight(from, to);
                 proved = over_knot = prove_over_knot(solver, piece, joint, tolerance);
             }
@@ -545,28 +532,16 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         from = to;
         h *= 1.6;
         // the knot is passed
-        if (over_knot && std::abs(h) < std::abs(first_share * way)) h = first_share * way;
+        if (over_knot && std::abs(h) < std::abs(first_share * range)) h = first_share * range;
         bridges = over_knot ? bridges + 1 : 0;
-        if (std::abs(h) > std::abs(way)) h = way;
+        if (std::abs(h) > std::abs(range)) h = range;
     }
-    const bool near = tube.width.length <= tolerance.length &&
-                      tube.width.angle <= tolerance.angle && tube.width.force <= tolerance.force &&
-                      tube.width.moment <= tolerance.moment;
-    if (!near)
-        return open(
-            fmt::format("a curve of equilibria is proved, but up to {:.2g} mm, {:.2g} deg, {:.2g} "
-                        "N and {:.2g} N·m from the states, beyond the tolerance",
-                        1e3 * tube.width.length, tube.width.angle * 180 / std::numbers::pi,
-                        tube.width.force, tube.width.moment));
+    if (!within(tube.width, tolerance))
+        return open(fmt::format(
+            "a curve of equilibria is proved, but up to {} from the states, beyond the tolerance",
+            as_text(tube.width)));
     tube.answer = Answer::proved;
-    if (solver.border.count() > solver.border.redundant)
-        tube.detail =
-            fmt::format("idle motion of {} as in the states, held by at most {:.1e} N or N·m",
-                        idle_bodies(system, solver.border), held.held);
-    if (solver.border.redundant > 0)
-        tube.detail += fmt::format(
-            "{}joints {} are redundant: load sharing as in the states, gap at most {:.1e} m or rad",
-            tube.detail.empty() ? "" : "; ", redundant_joints(system, solver.border), held.gap);
+    tube.detail = statement(system, solver.border, held, "states");
     return tube;
 }
 

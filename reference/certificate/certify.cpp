@@ -30,14 +30,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-Near near_of(const Tolerance& tolerance) {
-    return {tolerance.length, tolerance.angle, tolerance.force, tolerance.moment};
-}
-bool within(const Extent& far, const Tolerance& tolerance) {
-    return far.length <= tolerance.length && far.angle <= tolerance.angle &&
-           far.force <= tolerance.force && far.moment <= tolerance.moment;
-}
-
 // ---- The smallest box
 
 struct Box {
@@ -183,11 +175,10 @@ bool none_within(const StateAt& at, const Tolerance& tolerance) {
     const Problem problem{system, border_at(system, at.z, load, little_is_nothing), at.z, false, {},
                           {}};
     const Index n = system.n(), k = problem.border.count();
-    const Near near = near_of(tolerance);
-    const VectorXd delta = radii(at, near);
+    const VectorXd delta = radii(at, tolerance);
     if (!delta.head(7 * system.bodies).allFinite()) return false;
     const auto around_state = box(at.z, delta);
-    if (delta.allFinite() && wrenches_apart(at, around_state, near)) return true;
+    if (delta.allFinite() && wrenches_apart(at, around_state, tolerance)) return true;
 
     VectorXd y = VectorXd::Zero(n + k);
     y.head(n) = at.z;
@@ -257,28 +248,6 @@ void say(std::string& detail, const std::string& more) {
     detail += more;
 }
 
-// Upper bounds of μ: in the balances the wrench that holds idle motions, in the rows Φ the gap.
-void set_held(Certificate& certificate, const Problem& problem, const VectorXd& mu) {
-    const Index balances = 6 * problem.system.bodies;
-    const VectorXd all = problem.border.U.cwiseAbs() * mu * (1 + 1e-12);
-    if (all.size() == 0) return;
-    certificate.held = balances > 0 ? all.head(balances).maxCoeff() : 0;
-    certificate.gap = all.size() > balances ? all.tail(all.size() - balances).maxCoeff() : 0;
-}
-
-std::string theorem(const Problem& problem, const Certificate& certificate) {
-    std::string words;
-    const Border& border = problem.border;
-    if (border.count() > border.redundant)
-        say(words, fmt::format("idle motion of {} as in the state, held by at most {:.1e} N or N·m",
-                               idle_bodies(problem.system, border), certificate.held));
-    if (border.redundant > 0)
-        say(words, fmt::format("joints {} are redundant: load sharing as in the state, gap at most "
-                               "{:.1e} m or rad",
-                               redundant_joints(problem.system, border), certificate.gap));
-    return words;
-}
-
 Certificate certify(const System& system, const Equilibrium& state, const Tolerance& tolerance) {
     const StateAt at = state_at(system, state);
     Certificate certificate;
@@ -287,12 +256,8 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         certificate.detail = why;
         return certificate;
     };
-    if (!arithmetic_is_as_proved())
-        return open(
-            "the arithmetic does not round to nearest, or flushes denormals to zero: nothing can "
-            "be proved");
     if (!at.z.allFinite() || !std::isfinite(state.load)) return open("the state is not finite");
-    if (const auto why = too_large(system); !why.empty()) return open(why);
+    if (const auto why = why_not_tried(system); !why.empty()) return open(why);
 
     auto [problem, found, there] = approach(system, at.z, state.load);
     const Interval a = state.load;
@@ -307,14 +272,15 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             certificate.centre = centre_of(at, found.y.head(system.n()));
             const VectorXd mu =
                 (found.y.tail(problem.border.count()).cwiseAbs() + r.tail(problem.border.count()));
-            set_held(certificate, problem, mu);
+            const Held held = held_by(system, problem.border, mu);
+            certificate.held = held.held, certificate.gap = held.gap;
             const bool balanced = there.sound && certificate.held <= tolerance.held &&
                                   certificate.gap <= tolerance.gap;
             if (within(certificate.error, tolerance) && balanced) {
                 certificate.answer = Answer::proved;
                 certificate.unique = unique_around(at, found, alone(problem, found, state.load, r));
                 certificate.stable = stable(problem, z, smallest_box.J);
-                say(certificate.detail, theorem(problem, certificate));
+                certificate.detail = statement(system, problem.border, held, "state");
                 if (const auto knots = on_knots(system, z, a); !knots.empty())
                     say(certificate.detail,
                         fmt::format(
@@ -328,14 +294,12 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
         certificate.answer = Answer::excluded;
         if (std::isfinite(certificate.error.length))
             certificate.detail = fmt::format(
-                "the nearest equilibrium found{} is {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m "
-                "away",
+                "the nearest equilibrium found{} is {} away",
                 problem.border.count() > problem.border.redundant
                     ? fmt::format(", with the idle motion of {} at its position in the state,",
                                   idle_bodies(system, problem.border))
                     : "",
-                1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
-                certificate.error.force, certificate.error.moment);
+                as_text(certificate.error));
         else
             certificate.detail = "no equilibrium is found near the state either";
         if (there.pushed)
@@ -354,10 +318,9 @@ Certificate certify(const System& system, const Equilibrium& state, const Tolera
             "Krawczyk's operator contracts in no box: the stiffness is too close to singular for "
             "double precision, or a law ends here");
     return open(fmt::format(
-        "an equilibrium is proved within {:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m, beyond "
-        "the tolerance; that none is within the tolerance could not be proved",
-        1e3 * certificate.error.length, certificate.error.angle * 180 / std::numbers::pi,
-        certificate.error.force, certificate.error.moment));
+        "an equilibrium is proved within {}, beyond the tolerance; that none is within the "
+        "tolerance could not be proved",
+        as_text(certificate.error)));
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "reference/certificate/state.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/QR>
+#include <numbers>
 #include <stdexcept>
 
 namespace elastocheck::reference::certificate {
@@ -113,7 +116,7 @@ StateAt state_at(const System& system, const Equilibrium& state) {
 // divided by L, as in w.
 //
 // Separated corners: their deformation over the box of poses, and the law over that interval.
-VectorXd radii(const StateAt& at, const Near& near) {
+VectorXd radii(const StateAt& at, const Tolerance& near) {
     const System& system = at.system;
     VectorXd r = VectorXd::Zero(system.n());
     for (BodyId body = 0; body < system.bodies; ++body) {
@@ -214,7 +217,7 @@ Extent distance(const StateAt& at, const std::vector<Interval>& z) {
     return far;
 }
 
-bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Near& near) {
+bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Tolerance& near) {
     const auto all = wrenches(at.system, z, Interval(at.state.load));
     for (std::size_t joint = 0; joint < all.size(); ++joint) {
         const auto w = given(at.state, joint);
@@ -224,6 +227,38 @@ bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Nea
                 return true;
     }
     return false;
+}
+
+bool within(const Extent& far, const Tolerance& tolerance) {
+    return far.length <= tolerance.length && far.angle <= tolerance.angle &&
+           far.force <= tolerance.force && far.moment <= tolerance.moment;
+}
+
+std::string as_text(const Extent& far) {
+    return fmt::format("{:.2g} mm, {:.2g} deg, {:.2g} N and {:.2g} N·m", 1e3 * far.length,
+                       far.angle * 180 / std::numbers::pi, far.force, far.moment);
+}
+
+// μ acts in the balances as the wrench that holds idle motions, in the rows Φ as the gap.
+Held held_by(const System& system, const Border& border, const VectorXd& mu) {
+    const Index balances = 6 * system.bodies;
+    const VectorXd all = border.U.cwiseAbs() * mu * (1 + 1e-12);
+    if (all.size() == 0 || mu.size() == 0) return {};
+    return {balances > 0 ? all.head(balances).maxCoeff() : 0,
+            all.size() > balances ? all.tail(all.size() - balances).maxCoeff() : 0};
+}
+
+std::string statement(const System& system, const Border& border, const Held& held,
+                      const char* as_in) {
+    std::string text;
+    if (border.count() > border.redundant)
+        text = fmt::format("idle motion of {} as in the {}, held by at most {:.1e} N or N·m",
+                           idle_bodies(system, border), as_in, held.held);
+    if (border.redundant > 0)
+        text += fmt::format(
+            "{}joints {} are redundant: load sharing as in the {}, gap at most {:.1e} m or rad",
+            text.empty() ? "" : "; ", redundant_joints(system, border), as_in, held.gap);
+    return text;
 }
 
 }  // namespace elastocheck::reference::certificate

@@ -6,11 +6,6 @@
 
 namespace elastocheck::reference::certificate {
 
-// Neighbourhood of a state: bounds for every origin, orientation and wrench.
-struct Near {
-    double length = 0, angle = 0, force = 0, moment = 0;
-};
-
 struct StateAt {
     const System& system;
     const Equilibrium& state;
@@ -24,11 +19,23 @@ StateAt state_at(const System& system, const Equilibrium& state);
 
 // Radii about `state.z` of a box that contains every z whose poses and joint wrenches are near the
 // state; infinite for reactions that the wrench of their joint does not determine.
-Eigen::VectorXd radii(const StateAt& at, const Near& near);
+Eigen::VectorXd radii(const StateAt& at, const Tolerance& near);
 
 // Upper bound of the distance of a box from the state; and whether its whole box is outside `near`
 // in some wrench.
 Extent distance(const StateAt& at, const std::vector<Interval>& z);
-bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Near& near);
+bool wrenches_apart(const StateAt& at, const std::vector<Interval>& z, const Tolerance& near);
+
+bool within(const Extent& far, const Tolerance& tolerance);
+std::string as_text(const Extent& far);  // "1 mm, 2 deg, 3 N and 4 N·m"
+
+// Upper bounds of the wrench that holds idle motions and of the gap of redundant rows, from those
+// of |μ|; and their statement, with the load sharing and the positions `as_in` a state or states.
+struct Held {
+    double held = 0, gap = 0;
+};
+Held held_by(const System& system, const Border& border, const Eigen::VectorXd& mu);
+std::string statement(const System& system, const Border& border, const Held& held,
+                      const char* as_in);
 
 }  // namespace elastocheck::reference::certificate

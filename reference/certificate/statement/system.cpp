@@ -122,7 +122,10 @@ bool has_corners(const Model& model) {
     return any;
 }
 
-std::string too_large(const System& system) {
+std::string why_not_tried(const System& system) {
+    if (!arithmetic_is_as_proved())
+        return "the arithmetic does not round to nearest, or flushes denormals to zero: nothing "
+               "can be proved";
     if (system.n() <= most_unknowns) return {};
     return fmt::format("not tried: {} unknowns, proofs are tried up to {}", system.n(),
                        most_unknowns);

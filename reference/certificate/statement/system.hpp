@@ -88,8 +88,8 @@ bool has_corners(const Model& model);
 // Largest number of unknowns for a proof. Its matrices are dense, so its time grows with the cube
 // (0.3 s per point at 500).
 inline constexpr int most_unknowns = 500;
-// Reason why no proof is tried; empty where one is.
-std::string too_large(const System& system);
+// Reason why no proof is tried, the size or the arithmetic of the thread; empty where one is.
+std::string why_not_tried(const System& system);
 const ScalarLaw& law_of(const System& system, const Apart& corner);
 // Sets x and f of the corners from the poses of z.
 void set_corners(const System& system, Eigen::VectorXd& z, double a);
