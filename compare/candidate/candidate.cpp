@@ -23,9 +23,7 @@ constexpr double end_met = 1e-9;     // of a branch's length: tolerance of a poi
 // of a branch's length: a larger missing part counts as not given
 constexpr double part_left = 1e-6;
 
-const Curve& truth_of(const BranchComparison& branch) {
-    return branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
-}
+const Curve& truth_of(const BranchComparison& branch) { return branch.run(Leg::equilibrium).curve; }
 
 // Limit of an output on any branch; infinite where the limit is a share of the output's extent on a
 // branch.
@@ -41,8 +39,8 @@ class Reference {
   public:
     Reference(const Model& model, const Branch& branch, int steps, std::vector<Channel> channels)
         : model_(model),
-          ways_(sides_of(model, branch, steps)),
-          sorted_(requested_parameters(ways_, 1)),
+          sides_(sides_of(model, branch, steps)),
+          sorted_(requested_parameters(sides_, 1)),
           channels_(std::move(channels)) {
         std::ranges::sort(sorted_);
     }
@@ -59,8 +57,8 @@ class Reference {
         const double length = sorted_.back() - sorted_.front();
         const auto near = std::ranges::lower_bound(sorted_, load - same_load * length);
         if (near != sorted_.end() && *near - load <= same_load * length) return *near;
-        for (const auto& way : ways_) {
-            const double to = way.branch.to;
+        for (const auto& side : sides_) {
+            const double to = side.branch.to;
             if (load * to < 0) continue;
             if (std::abs(load) <= std::abs(to)) return load;
             if (std::abs(load) <= std::abs(to) * (1 + end_met)) return to;
@@ -70,28 +68,28 @@ class Reference {
 
     void visit(const std::vector<double>& loads) {
         Analyses analyses;
-        for (const auto& way : ways_) {
-            const double to = way.branch.to;
-            std::vector<double> asked;
+        for (const auto& side : sides_) {
+            const double to = side.branch.to;
+            std::vector<double> requested;
             for (const double load : loads)
                 if (std::isfinite(load) && load * to >= 0 && std::abs(load) <= std::abs(to) &&
                     at(load) == nullptr)
-                    asked.push_back(load);
-            if (asked.empty()) continue;
+                    requested.push_back(load);
+            if (requested.empty()) continue;
             const auto nearer = [](double a, double b) { return std::abs(a) < std::abs(b); };
-            std::ranges::sort(asked, nearer);
-            std::vector<double> all = requested_parameters({way}, 1);
-            std::erase_if(all, [&](double a) { return std::abs(a) > std::abs(asked.back()); });
-            std::ranges::copy(asked, std::back_inserter(all));
+            std::ranges::sort(requested, nearer);
+            std::vector<double> all = requested_parameters({side}, 1);
+            std::erase_if(all, [&](double a) { return std::abs(a) > std::abs(requested.back()); });
+            std::ranges::copy(requested, std::back_inserter(all));
             std::ranges::sort(all, nearer);
             all.erase(std::unique(all.begin(), all.end()), all.end());
             bool ended = false;
             reference::equilibrium::solve(
-                way.model, way.branch, all, {}, [&](const Equilibrium& state) {
-                    ended = ended || !ends_at_table(way.model, way.branch, state).empty();
-                    if (ended || !std::ranges::binary_search(asked, state.load, nearer)) return;
+                side.model, side.branch, all, {}, [&](const Equilibrium& state) {
+                    ended = ended || !ends_at_table(side.model, side.branch, state).empty();
+                    if (ended || !std::ranges::binary_search(requested, state.load, nearer)) return;
                     known_[state.load] =
-                        row_of(model_, channels_, way, {.leg = Leg::equilibrium}, state, analyses)
+                        row_of(model_, channels_, side, {.leg = Leg::equilibrium}, state, analyses)
                             .values;
                 });
         }
@@ -99,7 +97,7 @@ class Reference {
 
   private:
     const Model& model_;
-    std::vector<BranchSide> ways_;
+    std::vector<BranchSide> sides_;
     std::vector<double> sorted_;  // loads of its steps
     std::vector<Channel> channels_;
     std::map<double, std::vector<double>> known_;
@@ -107,28 +105,28 @@ class Reference {
 
 // ---- One reading of one branch.
 
-struct Asked {  // points of the candidate on one branch
+struct Requested {  // points of the candidate on one branch
     std::vector<std::size_t> points;
     std::vector<double> x;     // position given by the candidate: parameter [unit] or abscissa
     std::vector<double> load;  // load requested from the reference [SI]; NaN beyond its range
 };
 
 // Compares candidate and reference column by column.
-CandidateReading compared(const Asked& asked, const std::vector<PointColumn>& columns,
+CandidateReading compared(const Requested& requested, const std::vector<PointColumn>& columns,
                           Reference& reference, const BranchComparison& branch) {
     CandidateReading reading;
     std::vector<const std::vector<double>*> rows;
     std::vector<std::size_t> points;
-    for (std::size_t k = 0; k < asked.points.size(); ++k) {
-        if (std::isnan(asked.x[k])) continue;  // the candidate gives no position
-        const auto* row = std::isnan(asked.load[k]) ? nullptr : reference.at(asked.load[k]);
+    for (std::size_t k = 0; k < requested.points.size(); ++k) {
+        if (std::isnan(requested.x[k])) continue;  // the candidate gives no position
+        const auto* row = std::isnan(requested.load[k]) ? nullptr : reference.at(requested.load[k]);
         if (row == nullptr) {
             ++reading.outside;
             continue;
         }
         rows.push_back(row);
-        points.push_back(asked.points[k]);
-        reading.at.push_back(asked.x[k]);
+        points.push_back(requested.points[k]);
+        reading.at.push_back(requested.x[k]);
     }
     for (std::size_t c = 0; c < columns.size(); ++c) {
         std::vector<double> mine, truth, at, all_mine, all_truth;
@@ -160,13 +158,13 @@ CandidateReading at_equal_parameter(const std::vector<std::size_t>& points,
         none.not_compared = fmt::format("it says no {}", parameter_word(symbol(branch.unit)));
         return none;
     }
-    Asked asked{points, {}, {}};
+    Requested requested{points, {}, {}};
     for (const std::size_t k : points) {
-        asked.x.push_back(candidate.points.a[k]);
-        asked.load.push_back(reference.placed(candidate.points.a[k] / in_unit(branch.unit)));
+        requested.x.push_back(candidate.points.a[k]);
+        requested.load.push_back(reference.placed(candidate.points.a[k] / in_unit(branch.unit)));
     }
-    reference.visit(asked.load);
-    return compared(asked, columns, reference, branch);
+    reference.visit(requested.load);
+    return compared(requested, columns, reference, branch);
 }
 
 // Abscissa values of the candidate's points, or null.
@@ -209,11 +207,11 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
         const auto* row = reference.at(load);
         return row == nullptr ? nan : row->back();
     };
-    Asked asked{points, {}, {}};
+    Requested requested{points, {}, {}};
     std::vector<double> slope;  // Δa/Δt [SI per unit]
     for (const std::size_t k : points) {
         const double at = (*placed)[k];
-        asked.x.push_back(at);
+        requested.x.push_back(at);
         double load = nan, rate = nan;
         if (at >= std::min(t.front(), t.back()) - rounding &&
             at <= std::max(t.front(), t.back()) + rounding) {
@@ -222,35 +220,36 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
             rate = (truth.a[i] - truth.a[i - 1]) / (t[i] - t[i - 1]) * per_unit;
             load = reference.placed(per_unit * truth.a[i - 1] + (at - t[i - 1]) * rate);
         }
-        asked.load.push_back(load), slope.push_back(rate);
+        requested.load.push_back(load), slope.push_back(rate);
     }
     constexpr int passes = 12;
-    reference.visit(asked.load);
+    reference.visit(requested.load);
     for (int pass = 0; pass < passes; ++pass) {
         std::vector<double> next(points.size(), nan);
         for (std::size_t k = 0; k < points.size(); ++k) {
-            const double off = asked.x[k] - travel(asked.load[k]);
-            if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(asked.x[k]))))
+            const double off = requested.x[k] - travel(requested.load[k]);
+            if (!(std::abs(off) > 1e-13 * std::max(length, std::abs(requested.x[k]))))
                 continue;  // converged, or no load
-            const double load = reference.placed(asked.load[k] + off * slope[k]);
-            if (load != asked.load[k]) next[k] = load;
+            const double load = reference.placed(requested.load[k] + off * slope[k]);
+            if (load != requested.load[k]) next[k] = load;
         }
         reference.visit(next);
         bool better = false;
         for (std::size_t k = 0; k < points.size(); ++k) {
-            const double now = travel(asked.load[k]), there = travel(next[k]);
-            if (!(std::abs(asked.x[k] - there) < std::abs(asked.x[k] - now)))
+            const double now = travel(requested.load[k]), there = travel(next[k]);
+            if (!(std::abs(requested.x[k] - there) < std::abs(requested.x[k] - now)))
                 continue;  // no further improvement
-            slope[k] = (next[k] - asked.load[k]) / (there - now);
-            asked.load[k] = next[k];
+            slope[k] = (next[k] - requested.load[k]) / (there - now);
+            requested.load[k] = next[k];
             better = true;
         }
         if (!better) break;
     }
     // a knot of a curve, or a branch that ends early
     for (std::size_t k = 0; k < points.size(); ++k)
-        if (!(std::abs(travel(asked.load[k]) - asked.x[k]) <= rounding)) asked.load[k] = nan;
-    return compared(asked, columns, reference, branch);
+        if (!(std::abs(travel(requested.load[k]) - requested.x[k]) <= rounding))
+            requested.load[k] = nan;
+    return compared(requested, columns, reference, branch);
 }
 
 // ---- Missing parts.
@@ -262,22 +261,22 @@ std::string omitted(std::vector<double> at, double low, double high, std::string
     const double length = high - low;
     std::ranges::sort(at);
     std::string parts;
-    const auto tell = [&](double from, double to, double share) {
+    const auto add = [&](double from, double to, double share) {
         if (to - from > share * length)
             parts += fmt::format("{} from {:.6g} to {:.6g} {}", parts.empty() ? "" : " and",
                                  from + 0.0, to + 0.0, unit);
     };
-    tell(low, at.empty() ? high : at.front(), part_left);
-    for (std::size_t k = 1; k < at.size(); ++k) tell(at[k - 1], at[k], widest * (1 + part_left));
-    if (!at.empty()) tell(at.back(), high, part_left);
+    add(low, at.empty() ? high : at.front(), part_left);
+    for (std::size_t k = 1; k < at.size(); ++k) add(at[k - 1], at[k], widest * (1 + part_left));
+    if (!at.empty()) add(at.back(), high, part_left);
     return parts;
 }
 
 // Missing parts of the judged columns; a column that is complete in either reading has none.
 // "branch 'jounce' from 1500 to 3000 N", "camber on branch 'jounce' from 1500 to 3000 N"
-void tell_what_is_missing(const Branch& branch, const BranchComparison& of,
-                          const CandidateBranch& given, const CandidateJudgement& judgement,
-                          const std::vector<Channel>& channels, std::vector<std::string>& list) {
+void add_missing_parts(const Branch& branch, const BranchComparison& of,
+                       const CandidateBranch& given, const CandidateJudgement& judgement,
+                       const std::vector<Channel>& channels, std::vector<std::string>& list) {
     const double unit = in_unit(of.unit);
     const auto missing = [&](std::size_t c) {
         std::optional<std::string> least;
@@ -337,8 +336,7 @@ void keep_worst(std::vector<CandidateWorst>& list, const CandidateWorst& worst) 
 bool none_has_moved(const CandidateJudgement& judgement, const Comparison& comparison) {
     bool moving_reference = false;
     for (const auto& branch : judgement.branches) {
-        const Curve& truth = truth_of(
-            *std::ranges::find(comparison.branches, branch.branch, &BranchComparison::branch));
+        const Curve& truth = truth_of(comparison.branch(branch.branch));
         for (const auto kind : {ReadingKind::equal_parameter, ReadingKind::equal_abscissa}) {
             const auto& reading = branch.reading(kind);
             for (std::size_t c = 0; c < reading.columns.size(); ++c) {
@@ -383,8 +381,7 @@ Beside beside(const CandidateJudgement& judgement, const Comparison& comparison,
         const auto& reading =
             branch.equal_parameter.columns.empty() ? branch.equal_abscissa : branch.equal_parameter;
         if (reading.columns.empty()) continue;
-        const auto& of =
-            *std::ranges::find(comparison.branches, branch.branch, &BranchComparison::branch);
+        const auto& of = comparison.branch(branch.branch);
         const Curve& truth = truth_of(of);
         for (std::size_t k = 0; k < reading.at.size(); ++k) {
             if (!std::isfinite(reading.candidate[c][k]) || !std::isfinite(reading.truth[c][k]))
@@ -421,11 +418,11 @@ Beside beside(const CandidateJudgement& judgement, const Comparison& comparison,
 
 CandidateJudgement judge_candidate(const Model& model, const Comparison& comparison,
                                    const Candidate& candidate, const Tolerance& tolerance,
-                                   bool asked) {
+                                   bool tolerance_given) {
     CandidateJudgement result;
     result.name = candidate.name;
     result.tolerance = tolerance;
-    result.asked = asked;
+    result.tolerance_given = tolerance_given;
     result.leftovers = candidate.leftovers;
     result.notes = candidate.notes;
     result.columns = as_they_stand(model, comparison, candidate.points.columns);
@@ -489,7 +486,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
             at_equal_parameter(points, candidate, result.columns, reference, of);
         given.equal_abscissa =
             at_equal_abscissa(points, candidate, result.columns, channels, reference, of);
-        tell_what_is_missing(model.branches[b], of, given, result, channels, result.not_given);
+        add_missing_parts(model.branches[b], of, given, result, channels, result.not_given);
         result.outside += std::max(given.equal_parameter.outside, given.equal_abscissa.outside);
         result.branches.push_back(std::move(given));
     }
@@ -501,8 +498,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
             const auto& reading = branch.reading(kind);
             const bool by_abscissa = kind == ReadingKind::equal_abscissa;
             if (by_abscissa && branch.abscissa >= 0 && !reading.columns.empty()) {
-                const auto t = truth_of(*std::ranges::find(comparison.branches, branch.branch,
-                                                           &BranchComparison::branch))
+                const auto t = truth_of(comparison.branch(branch.branch))
                                    .channel(static_cast<std::size_t>(branch.abscissa));
                 const auto [low, high] = std::ranges::minmax(t);
                 if (!(high - low >= least_travel)) continue;  // range too short for a reading
@@ -513,8 +509,7 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                 result.compared += d.compared;
                 if (!result.judged[c] || d.compared == 0) continue;
                 judged += d.compared;
-                const BranchComparison& of = *std::ranges::find(comparison.branches, branch.branch,
-                                                                &BranchComparison::branch);
+                const BranchComparison& of = comparison.branch(branch.branch);
                 const double extent = of.extents[result.columns[c].channel],
                              limit = limit_of(channel, extent, tolerance);
                 CandidateWorst worst;

@@ -225,8 +225,7 @@ std::string describe(const Explanation& e, const Comparison& comparison, const P
                                e.kind == Kind::other_turned ? ", its sign turned" : "");
         }
         case Kind::from_there_on: {
-            const auto& branch =
-                *std::ranges::find(comparison.branches, e.branch, &BranchComparison::branch);
+            const auto& branch = comparison.branch(e.branch);
             return fmt::format(
                 "{} agrees to {:.1e} {} up to {:.6g} {} of branch '{}', and is off from there on",
                 channel.name, e.left, unit, e.at,

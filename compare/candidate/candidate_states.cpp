@@ -27,13 +27,6 @@ Pose broken_where_not_finite(Pose pose) {
     return pose;
 }
 
-// The branch side that contains a load.
-const BranchSide& way_to(const std::vector<BranchSide>& ways, double load) {
-    const auto found =
-        std::ranges::find_if(ways, [&](const BranchSide& w) { return w.branch.to * load >= 0; });
-    return found == ways.end() ? ways.front() : *found;
-}
-
 }  // namespace
 
 Comparison outline(const Model& model) {
@@ -64,7 +57,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
 
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
         const Branch& branch = model.branches[b];
-        const auto ways = sides_of(model, branch);
+        const auto sides = sides_of(model, branch);
         Leftover left;
         left.branch = branch.name;
         left.unit = unit_of(branch.unit);
@@ -81,19 +74,19 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
                                                          Eigen::Vector3d::Constant(nan)});
             const bool whole = std::ranges::all_of(found.poses, is_said);
             if (whole && std::isfinite(state.load)) {
-                const BranchSide& way = way_to(ways, state.load);
-                found.reactions = reference::equilibrium::reactions_at(way.model, way.branch,
+                const BranchSide& side = side_at(sides, state.load);
+                found.reactions = reference::equilibrium::reactions_at(side.model, side.branch,
                                                                        state.load, found.poses);
                 const Leg second = left.second == Leg::energy ? Leg::energy : Leg::recursive;
                 left.a.push_back(a);
-                left.truth.push_back(judge(Leg::equilibrium, way, found));
-                left.by_second.push_back(judge(second, way, found));
+                left.truth.push_back(judge(Leg::equilibrium, side, found));
+                left.by_second.push_back(judge(second, side, found));
             } else {
                 left.why_not = "it does not say where every body is";
             }
             const bool broken =
                 !std::isfinite(state.load) || std::ranges::any_of(found.poses, is_broken);
-            auto values = evaluate(model, ways.front().branch, channels, found);
+            auto values = evaluate(model, sides.front().branch, channels, found);
             if (broken) std::ranges::fill(values, INFINITY);
             for (std::size_t c = 0; c < values.size(); ++c)
                 result.points.columns[c].values.push_back(values[c]);
@@ -114,9 +107,10 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
         const Branch& branch = model.branches[b];
         bool first = true;
-        for (const auto& way : sides_of(model, branch, comparison.branches[b].steps)) {
-            const EquilibriumPath path = solver(
-                way.model, way.branch, requested_parameters({way}, comparison.branches[b].every));
+        for (const auto& side : sides_of(model, branch, comparison.branches[b].steps)) {
+            const EquilibriumPath path =
+                solver(side.model, side.branch,
+                       requested_parameters({side}, comparison.branches[b].every));
             for (const auto& point : path.points) {
                 if (!first && point.load == 0) continue;
                 CandidateState& state =
@@ -124,8 +118,8 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
                 std::ranges::transform(state.poses, state.poses.begin(), broken_where_not_finite);
             }
             if (path.outcome != Outcome::converged)
-                notes.push_back(fmt::format("{}: {}: {}", way.name, elastocheck::name(path.outcome),
-                                            path.detail));
+                notes.push_back(fmt::format("{}: {}: {}", side.name,
+                                            elastocheck::name(path.outcome), path.detail));
             first = false;
         }
     }

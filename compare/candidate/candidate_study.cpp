@@ -17,16 +17,16 @@ std::string branch_of(const Model& model, const Points& points, std::size_t k) {
 }
 
 // Points of a level on one branch side, from a = 0 on; missing channels are NaN.
-Curve curve_on(const Model& model, const BranchSide& way, const std::string& branch,
+Curve curve_on(const Model& model, const BranchSide& side, const std::string& branch,
                const std::vector<Channel>& all, const Comparison& outline, const Points& points) {
-    const double unit = in_unit(unit_of(way.branch.unit)), to = unit * way.branch.to;
+    const double unit = in_unit(unit_of(side.branch.unit)), to = unit * side.branch.to;
     const auto columns = as_they_stand(model, outline, points.columns);
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < points.a.size(); ++k)
         if (branch_of(model, points, k) == branch && points.a[k] * to >= 0) order.push_back(k);
     std::ranges::stable_sort(order, {}, [&](std::size_t k) { return std::abs(points.a[k]); });
     Curve curve;
-    curve.unit = unit_of(way.branch.unit);
+    curve.unit = unit_of(side.branch.unit);
     for (const std::size_t k : order) {
         std::vector<double> values(all.size(), nan);
         for (const auto& column : columns)
@@ -70,24 +70,18 @@ Study study_candidate(const Model& model, const std::string& name,
     if (studied.empty()) return refuse("it gives no main output");
 
     for (const auto& branch : model.branches)
-        for (const auto& [way, steps] : ways_with_steps(model, branch, result.steps)) {
-            if (progress) progress(fmt::format("{}: references", way.name), nan);
-            const References known = references(model, all, way.branch, {way});
-            std::ranges::move(unfit(known, way.name), std::back_inserter(result.inconclusive));
+        for (const auto& side : sides_with_steps(model, branch, result.steps)) {
+            if (progress) progress(fmt::format("{}: references", side.name), nan);
+            const References known = references(model, all, side.branch, {side});
+            std::ranges::move(unfit(known, side.name), std::back_inserter(result.inconclusive));
             if (!known.failures.empty()) continue;
-            const int abscissa = default_abscissa(all, known.truth);
-            BranchStudy b{way.name,
-                          branch.name,
-                          unit_of(branch.unit),
-                          abscissa < 0 ? "" : all[static_cast<std::size_t>(abscissa)].name,
-                          steps,
-                          {}};
+            BranchStudy b{studied_branch(side, all, known.truth.curve), side.steps, {}};
             MethodStudy& study = b.methods.emplace_back();
             study.method = name;
             std::vector<Curve> curves;
             for (std::size_t l = 0; l < levels.size(); ++l) {
                 study.constraint_error.push_back(nan);
-                curves.push_back(curve_on(model, way, branch.name, all, by, levels[l].points));
+                curves.push_back(curve_on(model, side, branch.name, all, by, levels[l].points));
                 const Trend course = trend(curves.back().a);
                 bool finite = course.monotonic();
                 for (const auto& values : curves.back().values)
@@ -101,7 +95,7 @@ Study study_candidate(const Model& model, const std::string& name,
                                                    : "a load stands there twice, or is no number");
             }
             if (study.not_studied.empty())
-                study_levels(study, all, studied, steps, curves, known, nan);
+                study_levels(study, all, studied, side.steps, curves, known, nan);
             result.branches.push_back(std::move(b));
         }
     return result;

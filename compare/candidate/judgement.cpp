@@ -62,12 +62,12 @@ const char* name(Grade verdict) {
 double as_position(const RateError& rate) { return std::abs(rate.off * rate.over); }
 
 Assessment assess(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
-                  bool asked) {
+                  bool tolerance_given) {
     Assessment j;
     j.tolerance = tolerance;
-    j.asked = asked;
+    j.tolerance_given = tolerance_given;
     for (const auto& branch : comparison.branches) {
-        j.method = branch.runs[static_cast<std::size_t>(Leg::recursive)].method;
+        j.method = branch.run(Leg::recursive).method;
         for (const auto& reason : branch.inconclusive.texts())
             j.reasons.push_back(branch.branch + ": " + reason);
     }

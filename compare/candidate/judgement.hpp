@@ -14,8 +14,8 @@ struct Assessment {
     std::vector<std::string> reasons;  // reasons for not_judged
     std::string method;                // of the recursion
     Tolerance tolerance = default_tolerance;
-    bool asked = false;  // the tolerance was given, not the default
-    // A verdict was asked for, by a method or a tolerance; else only the deviations are given.
+    bool tolerance_given = false;  // the tolerance was given, not the default
+    // A verdict is requested, by a method or a tolerance; else only the deviations are given.
     bool requested = true;
     // Largest deviations by reading; empty where nothing is compared. They are taken from the main
     // outputs, unless these are within their limits and another position or angle takes a larger
@@ -44,6 +44,6 @@ double as_position(const RateError& rate);
 // Judges every determined output of every branch, at equal parameter and, where possible, at equal
 // abscissa, against limit_of(its extent on the branch), and every wheel rate as a position.
 Assessment assess(const Model& model, const Comparison& comparison, const Tolerance& tolerance,
-                  bool asked = true);
+                  bool tolerance_given = true);
 
 }  // namespace elastocheck::compare

@@ -11,10 +11,6 @@
 namespace elastocheck::compare {
 namespace {
 
-const Curve& curve_of(const BranchComparison& branch, Leg leg) {
-    return branch.runs[static_cast<std::size_t>(leg)].curve;
-}
-
 // Curve of a leg along one branch in one reading; built once for all points.
 struct Line {
     std::vector<double> over;     // values that place points; empty where not monotonic
@@ -29,7 +25,7 @@ Lines lines_of(const Comparison& comparison, std::optional<std::size_t> placed) 
     for (std::size_t b = 0; b < lines.size(); ++b)
         for (const Leg leg : legs)
             lines[b][static_cast<std::size_t>(leg)].over =
-                placed_by(curve_of(comparison.branches[b], leg), placed);
+                placed_by(comparison.branches[b].run(leg).curve, placed);
     return lines;
 }
 
@@ -54,7 +50,7 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
             for (std::size_t b = 0; b < lines.size(); ++b)
                 for (const Leg leg : legs)
                     lines[b][static_cast<std::size_t>(leg)].channel =
-                        curve_of(comparison.branches[b], leg).channel(column.channel);
+                        comparison.branches[b].run(leg).curve.channel(column.channel);
             for (std::size_t k = 0; k < x.size(); ++k) {
                 if (branch[k] < 0) continue;
                 std::array<double, legs.size()> now{};

@@ -33,7 +33,7 @@ double seconds_alone(const std::vector<BranchSide>& sides, SolverSettings solver
     return processor_time() - start;
 }
 
-bool asks_for_characteristics(const std::vector<Channel>& channels) {
+bool has_characteristics(const std::vector<Channel>& channels) {
     return std::ranges::any_of(
         channels, [](const Channel& c) { return std::holds_alternative<Characteristic>(c.reads); });
 }
@@ -159,17 +159,13 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     run.messages = messages(error_bound, branch.unit);
     if (!marks.front) marks.front = marks.start, responses.front = responses.start;
     if (!marks.back) marks.back = marks.start, responses.back = responses.start;
-    if (!model.wheels.empty() && asks_for_characteristics(channels))
+    if (!model.wheels.empty() && has_characteristics(channels))
         run.compliance = compliance_of(model, side, solver, run, responses);
     if (!times)
         run.seconds = nan;
     else if (solver.leg == Leg::recursive || solver.leg == Leg::series)
         run.seconds = seconds_alone(sides, solver);
     return run;
-}
-
-const LegRun& run_of(const BranchComparison& branch, Leg leg) {
-    return branch.runs[static_cast<std::size_t>(leg)];
 }
 
 // Ratio to the bound; above 1 is a violation, and so is a value that is not finite.
@@ -232,12 +228,10 @@ std::string on_two_branches(const Model& model, const Branch& requested, const L
             if (apart > length) length = apart, farthest = b;
             angle = std::max(angle, here->poses[b].p.angularDistance(there->poses[b].p));
         }
-        const auto side = std::ranges::find_if(
-            sides, [&](const BranchSide& w) { return w.branch.to * here->load >= 0; });
-        if (side == sides.end()) continue;
-        const Certificate of_here = certify(side->model, side->branch, *here);
+        const BranchSide& side = side_at(sides, here->load);
+        const Certificate of_here = certify(side.model, side.branch, *here);
         if (of_here.answer != Answer::proved) continue;
-        const Certificate of_there = certify(side->model, side->branch, *there);
+        const Certificate of_there = certify(side.model, side.branch, *there);
         if (of_there.answer != Answer::proved) continue;
         if (!(length > of_here.error.length + of_there.error.length ||
               angle > of_here.error.angle + of_there.error.angle))
@@ -308,8 +302,7 @@ std::vector<std::string> Objections::texts() const {
 }
 
 bool energy_judges_states(const BranchComparison& branch) {
-    return branch.second != Leg::energy &&
-           run_of(branch, Leg::energy).outcome == Outcome::too_large;
+    return branch.second != Leg::energy && branch.run(Leg::energy).outcome == Outcome::too_large;
 }
 
 Objections disagreements(const Model& model, const std::vector<Channel>& channels,
@@ -324,8 +317,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
                                        elastocheck::name(run.outcome), run.detail));
     }
     if (!objections.empty()) return objections;
-    const LegRun &equilibrium = run_of(branch, Leg::equilibrium),
-                 &second = run_of(branch, branch.second);
+    const LegRun &equilibrium = branch.run(Leg::equilibrium), &second = branch.run(branch.second);
     if (const auto why = nothing_moves(model, channels, requested, equilibrium.curve); !why.empty())
         objections.add(why);
 
@@ -388,7 +380,7 @@ namespace {
 // Deviations between the runs of one branch, the k-th of the model.
 BranchComparison compare_runs(const Model& model, const std::vector<Channel>& channels,
                               const std::vector<BranchSide>& sides, std::vector<LegRun> runs,
-                              std::vector<bool> determined, std::size_t k, int asked_abscissa,
+                              std::vector<bool> determined, std::size_t k, int requested_abscissa,
                               const Options& options) {
     const Branch& branch = model.branches[k];
     BranchComparison b;
@@ -398,14 +390,15 @@ BranchComparison compare_runs(const Model& model, const std::vector<Channel>& ch
     b.every = options.every;
     b.determined = std::move(determined);
     b.runs = std::move(runs);
-    if (const LegRun& energy = run_of(b, Leg::energy); is_not_applicable(energy.outcome))
-        b.second = Leg::series, b.not_asked = energy.detail;
+    if (const LegRun& energy = b.run(Leg::energy); is_not_applicable(energy.outcome))
+        b.second = Leg::series, b.why_not_energy = energy.detail;
     for (std::size_t c = 0; c < channels.size(); ++c)
         b.determined[c] = b.determined[c] && !is_undefined_somewhere(channels[c], c, b.runs);
-    const LegRun& truth = run_of(b, Leg::equilibrium);
-    b.abscissa = asked_abscissa >= 0 ? asked_abscissa : default_abscissa(channels, truth.curve);
+    const LegRun& truth = b.run(Leg::equilibrium);
+    b.abscissa =
+        requested_abscissa >= 0 ? requested_abscissa : default_abscissa(channels, truth.curve);
     const auto pair = [&](Leg a, Leg c) {
-        const Curve &of_a = run_of(b, a).curve, &of_c = run_of(b, c).curve;
+        const Curve &of_a = b.run(a).curve, &of_c = b.run(c).curve;
         return Pair{
             a, c, at_equal_parameter(of_a, of_c),
             at_equal_abscissa(of_a, of_c, compare::abscissa(channels, b.abscissa, of_a, of_c))};
@@ -425,6 +418,10 @@ bool Comparison::conclusive() const {
     for (const auto& branch : branches)
         if (!branch.inconclusive.empty()) return false;
     return compared > 0;
+}
+
+const BranchComparison& Comparison::branch(std::string_view name) const {
+    return *std::ranges::find(branches, name, &BranchComparison::branch);
 }
 
 LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::Options& recursion) {

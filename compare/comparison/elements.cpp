@@ -19,8 +19,6 @@
 namespace elastocheck::compare {
 namespace {
 
-constexpr double nothing = 1e-6;  // [mm], [deg], [N], [N·m]: smaller values are rounding
-
 const Elastic& elastic_of(const Model& model, int k) {
     return model.elastics[static_cast<std::size_t>(k)];
 }
@@ -140,11 +138,11 @@ std::string free_name(const std::string& name, const std::string& output,
     return who;
 }
 
+}  // namespace
+
 std::string element_of(const Channel& channel) {
     return channel.name.substr(0, channel.name.rfind('.'));
 }
-
-}  // namespace
 
 std::vector<Channel> element_channels(const Model& model) {
     std::vector<Channel> list;
@@ -214,7 +212,7 @@ void LargestForces::add(const Equilibrium& state) {
                                  ? in_unit(channel.unit) * at.component(of->component)
                                  : evaluate(*model, std::span(&channel, 1), state).front();
         LargestForce& most = largest[entry[c]];
-        if (!(std::abs(value) > std::max(nothing, std::abs(most.value)))) continue;
+        if (!(std::abs(value) > std::max(zero_value, std::abs(most.value)))) continue;
         most.output = channel.name;
         most.value = value;
         most.a = parameter_in(unit_of(branch->unit), state.load);
@@ -228,41 +226,6 @@ std::vector<LargestForce> LargestForces::list() const {
     std::vector<LargestForce> list;
     for (const auto& one : largest)
         if (!one.output.empty()) list.push_back(one);
-    return list;
-}
-
-std::vector<ElementValue> element_values(const Model& model, const Comparison& comparison) {
-    const auto channels = element_channels(model);
-    std::vector<ElementValue> list;
-    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
-        const BranchComparison& branch = comparison.branches[b];
-        const auto landmarks = [&](Leg leg) -> const Landmarks& {
-            return branch.runs[static_cast<std::size_t>(leg)].landmarks;
-        };
-        for (const auto end : {&Landmarks::front, &Landmarks::back}) {
-            const auto &truth = landmarks(Leg::equilibrium).*end,
-                       &reached = landmarks(Leg::recursive).*end;
-            // A one-sided branch starts at its front; a leg that ended early is at another load.
-            if (!truth || !reached || truth->load == 0 ||
-                !(std::abs(truth->load - reached->load) <= 1e-9 * std::abs(truth->load)))
-                continue;
-            const auto values = evaluate(model, model.branches[b], channels, *truth),
-                       others = evaluate(model, model.branches[b], channels, *reached);
-            for (std::size_t c = 0; c < channels.size(); ++c) {
-                const double off = others[c] - values[c], size = std::abs(values[c]);
-                if (std::isnan(values[c])) continue;  // inactive here
-                list.push_back({.branch = branch.branch,
-                                .a = parameter_in(branch.unit, truth->load),
-                                .a_unit = branch.unit,
-                                .element = element_of(channels[c]),
-                                .output = channels[c].name,
-                                .unit = channels[c].unit,
-                                .value = values[c],
-                                .off = off,
-                                .share = size > nothing ? off / size : nan});
-            }
-        }
-    }
     return list;
 }
 

@@ -34,6 +34,10 @@ namespace elastocheck::compare {
 // second is named "NAME#2". No name equals one of channels(model): bushings and joints may share
 // theirs.
 std::vector<Channel> element_channels(const Model& model);
+std::string element_of(const Channel& channel);  // its element or link: "lower_front"
+
+// [mm], [deg], [N], [N·m]: smaller values are rounding.
+inline constexpr double zero_value = 1e-6;
 
 // Values of these and any other channels; NaN for a tyre that is inactive on the branch.
 std::vector<double> evaluate(const Model& model, const Branch& branch,
@@ -54,22 +58,5 @@ struct LargestForces {
     std::vector<std::size_t> entry = {};  // of each channel, in `largest`
     std::vector<LargestForce> largest = {};
 };
-
-// ---- Values at the ends of the branches.
-
-// One output of one element at one end of a branch.
-struct ElementValue {
-    std::string branch;
-    double a = 0;  // parameter at that end, in `a_unit`
-    Unit a_unit = Unit::newton;
-    std::string element, output;  // "lower_front", "lower_front.elastic_force_x"
-    Unit unit = Unit::newton;
-    double value = 0;  // of the equilibrium leg
-    double off = 0;    // recursion minus equilibrium leg
-    double share = 0;  // `off` relative to `value`; NaN where `value` is zero to rounding
-};
-
-// Both ends of a two-sided branch; no values where a leg did not reach the end.
-std::vector<ElementValue> element_values(const Model& model, const Comparison& comparison);
 
 }  // namespace elastocheck::compare

@@ -79,7 +79,7 @@ EquilibriumPath walk_anywhere(const BranchSide& side, const SolverSettings& solv
 // Outcome and counts of two sides. Path: EquilibriumPath or PathCurve.
 template <class Path>
 void end_as_both(const std::vector<BranchSide>& sides, Path& first, const Path& second) {
-    const auto tell = [](const BranchSide& side, const std::string& detail) {
+    const auto labelled = [](const BranchSide& side, const std::string& detail) {
         return fmt::format("{}: {}", side.name, detail);
     };
     // A leg that does not apply to one side does not apply to either.
@@ -87,9 +87,9 @@ void end_as_both(const std::vector<BranchSide>& sides, Path& first, const Path& 
         first.detail = second.detail, first.counts = second.counts;
         return;
     }
-    if (first.outcome != Outcome::converged) first.detail = tell(sides.front(), first.detail);
+    if (first.outcome != Outcome::converged) first.detail = labelled(sides.front(), first.detail);
     if (second.outcome != Outcome::converged) {
-        first.detail += (first.detail.empty() ? "" : "; ") + tell(sides.back(), second.detail);
+        first.detail += (first.detail.empty() ? "" : "; ") + labelled(sides.back(), second.detail);
         if (first.outcome == Outcome::converged) first.outcome = second.outcome;
     }
     first.counts.factorisations += second.counts.factorisations;
@@ -162,6 +162,12 @@ std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, i
         std::ranges::copy(side, std::back_inserter(a));
     }
     return a;
+}
+
+const BranchSide& side_at(const std::vector<BranchSide>& sides, double a) {
+    const auto found = std::ranges::find_if(
+        sides, [&](const BranchSide& side) { return side.branch.to * a >= 0; });
+    return found == sides.end() ? sides.back() : *found;
 }
 
 EquilibriumPath walk(const BranchSide& side, const SolverSettings& solver, const Visit& visit) {
@@ -348,59 +354,56 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
     return all;
 }
 
-ReferenceRuns run_references(const Model& model, const std::vector<Channel>& channels,
-                             const Branch& branch, const std::vector<BranchSide>& sides) {
-    ReferenceRuns runs;
+PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,
+                           const Branch& branch, const std::vector<BranchSide>& sides, Leg& leg) {
+    leg = Leg::energy;
+    PathCurve path = walk(model, channels, branch, sides, {.leg = leg});
+    if (!is_not_applicable(path.outcome)) return path;
+    leg = Leg::series;
+    return walk(model, channels, branch, sides, {.leg = leg});
+}
+
+References run_references(const Model& model, const std::vector<Channel>& channels,
+                          const Branch& branch, const std::vector<BranchSide>& sides) {
+    References runs;
     const Model& standing = sides.front().model;
     runs.scale = scale_of(standing, branch, {});
     runs.truth = walk(model, channels, branch, sides, {.leg = Leg::equilibrium},
                       [&](const Equilibrium& state, const WheelResponse*) {
                           runs.scale = larger(runs.scale, scale_of(standing, branch, {&state, 1}));
                       });
-    runs.other = walk(model, channels, branch, sides, {.leg = Leg::energy});
-    if (is_not_applicable(runs.other.outcome)) {
-        runs.second_leg = Leg::series;
-        runs.not_asked = runs.other.detail;
-        runs.other = walk(model, channels, branch, sides, {.leg = Leg::series});
-    }
+    runs.other = second_reference(model, channels, branch, sides, runs.second_leg);
     return runs;
+}
+
+void judge_references(const Model& model, const std::vector<Channel>& channels,
+                      const Branch& branch, const std::vector<BranchSide>& sides,
+                      References& references) {
+    for (const auto& [leg, run] : {std::pair{Leg::equilibrium, &references.truth},
+                                   {references.second_leg, &references.other}})
+        if (run->outcome != Outcome::converged)
+            references.failures.push_back(fmt::format(
+                "{} leg: {}: {}", name(leg), elastocheck::name(run->outcome), run->detail));
+    references.uncertainty = {nan, nan, nan};
+    if (!references.failures.empty()) return;
+    const Curve &truth = references.truth.curve, &other = references.other.curve;
+    auto& extents = references.extents = extents_of(channels, truth, references.scale);
+    const Model& standing = sides.front().model;
+    const auto determined =
+        determined_channels(channels, standing, recursive::diagnose(standing).determined);
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (!determined[c]) extents[c] = std::numeric_limits<double>::infinity();
+    references.uncertainty =
+        worse(distance(channels, truth, other, extents), rounding_of(channels, truth, extents));
+    if (const auto why = nothing_moves(model, channels, branch, truth); !why.empty())
+        references.failures.push_back(why);
 }
 
 References references(const Model& model, const std::vector<Channel>& channels,
                       const Branch& branch, const std::vector<BranchSide>& sides) {
-    return references(model, channels, branch, sides,
-                      run_references(model, channels, branch, sides));
-}
-
-References references(const Model& model, const std::vector<Channel>& channels,
-                      const Branch& branch, const std::vector<BranchSide>& sides,
-                      ReferenceRuns runs) {
-    References result;
-    const Model& standing = sides.front().model;
-    PathCurve &equilibrium = runs.truth, &second = runs.other;
-    result.scale = runs.scale;
-    result.second_leg = runs.second_leg;
-    result.not_asked = runs.not_asked;
-    for (const auto& [leg, walked] :
-         {std::pair{Leg::equilibrium, &equilibrium}, {result.second_leg, &second}})
-        if (walked->outcome != Outcome::converged)
-            result.failures.push_back(fmt::format(
-                "{} leg: {}: {}", name(leg), elastocheck::name(walked->outcome), walked->detail));
-    result.truth_ended = equilibrium.outcome;
-    result.truth = std::move(equilibrium.curve);
-    result.other = std::move(second.curve);
-    result.uncertainty = {nan, nan, nan};
-    if (!result.failures.empty()) return result;
-    result.extents = extents_of(channels, result.truth, result.scale);
-    const auto determined =
-        determined_channels(channels, standing, recursive::diagnose(standing).determined);
-    for (std::size_t c = 0; c < channels.size(); ++c)
-        if (!determined[c]) result.extents[c] = std::numeric_limits<double>::infinity();
-    result.uncertainty = worse(distance(channels, result.truth, result.other, result.extents),
-                               rounding_of(channels, result.truth, result.extents));
-    if (const auto why = nothing_moves(model, channels, branch, result.truth); !why.empty())
-        result.failures.push_back(why);
-    return result;
+    References both = run_references(model, channels, branch, sides);
+    judge_references(model, channels, branch, sides, both);
+    return both;
 }
 
 Settled settled(const Model& model, const std::vector<Channel>& channels, const Branch& branch) {

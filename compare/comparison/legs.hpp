@@ -17,6 +17,9 @@ namespace elastocheck::compare {
 // `from` to `to` for two.
 std::vector<double> requested_parameters(const std::vector<BranchSide>& sides, int every);
 
+// The side that contains a; the last one if none does.
+const BranchSide& side_at(const std::vector<BranchSide>& sides, double a);
+
 // Whether the outcome means that the energy leg does not apply here, in contrast to a failure.
 bool is_not_applicable(Outcome outcome);
 
@@ -47,14 +50,14 @@ EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings&
                      const std::function<void(Row)>& hand_over);
 
 // The same path as a curve. `also` is called with every point when it is found, and with its
-// response where an output has asked for it.
+// response where an output is read from it.
 using VisitResponse = std::function<void(const Equilibrium&, const WheelResponse*)>;
 PathCurve walk(const Model& model, std::span<const Channel> channels, const Branch& branch,
                const std::vector<BranchSide>& sides, const SolverSettings& solver,
                const VisitResponse& also = {});
 
 // The runs of the sides of a branch as one, as walk() joins them.
-PathCurve joined(const std::vector<BranchSide>& ways, const std::vector<PathCurve>& sides);
+PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves);
 
 // Start of a branch side by this leg: one point, the settled state at a = 0; no point where it does
 // not settle.
@@ -62,13 +65,11 @@ EquilibriumPath rest(const BranchSide& side, Leg leg);
 
 // ---- The references along a branch.
 
-// The equilibrium leg, and the energy leg; or the series, where the energy leg does not apply.
+// Runs of the equilibrium leg and of the energy leg, or of the series where the energy leg does not
+// apply, on the requested channels; and their judgement.
 struct References {
-    // of the equilibrium leg and of the second reference, on the requested channels
-    Curve truth, other;
-    Outcome truth_ended = Outcome::converged;
+    PathCurve truth, other;
     Leg second_leg = Leg::energy;
-    std::string not_asked;        // why the energy leg does not apply, if second_leg is the series
     Scale scale;                  // of the acting forces on the branch, from the equilibrium leg
     std::vector<double> extents;  // of the channels (tolerance.hpp); infinite: not determined here
     // distance of the two references on the main channels, forces and moments, at least their
@@ -77,21 +78,17 @@ struct References {
     // why there is no reference: a leg failed, nothing drives the branch, or no output moves
     std::vector<std::string> failures;
 };
-
-// What both find, before it is judged.
-struct ReferenceRuns {
-    PathCurve truth, other;
-    Leg second_leg = Leg::energy;
-    std::string not_asked;
-    Scale scale;
-};
-ReferenceRuns run_references(const Model& model, const std::vector<Channel>& channels,
-                             const Branch& branch, const std::vector<BranchSide>& ways);
-References references(const Model& model, const std::vector<Channel>& channels,
-                      const Branch& branch, const std::vector<BranchSide>& ways,
-                      ReferenceRuns runs);
+// Runs them without a judgement, judges their runs, or both.
+References run_references(const Model& model, const std::vector<Channel>& channels,
+                          const Branch& branch, const std::vector<BranchSide>& sides);
+void judge_references(const Model& model, const std::vector<Channel>& channels,
+                      const Branch& branch, const std::vector<BranchSide>& sides,
+                      References& references);
 References references(const Model& model, const std::vector<Channel>& channels,
                       const Branch& branch, const std::vector<BranchSide>& sides);
+// Runs the second reference alone; `leg` receives which leg that is.
+PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,
+                           const Branch& branch, const std::vector<BranchSide>& sides, Leg& leg);
 
 // Reason why a branch gives no information: it has no driver left, or no main channel moves by more
 // than its rounding. Empty otherwise.

@@ -66,8 +66,7 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                                 all[b].branch, all[a].branch));
     std::vector<std::vector<double>> over;
     for (const auto& branch : all)
-        over.push_back(
-            placed_by(branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve, channel));
+        over.push_back(placed_by(branch.run(Leg::equilibrium).curve, channel));
     for (const double at : x) {
         const auto found = std::ranges::find_if(
             over, [&](const std::vector<double>& of_branch) { return reaches(of_branch, at); });

@@ -20,8 +20,9 @@ bool is_wrench(const Channel& channel) {
 
 }  // namespace
 
-Tolerance parse_tolerance(std::string_view text, Asks asks) {
-    const bool shares = asks != Asks::motion, forces = asks == Asks::forces_too;
+Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed) {
+    const bool shares = allowed != ToleranceParts::motion,
+               forces = allowed == ToleranceParts::with_forces;
     const auto refuse = [&](std::string_view why) {
         throw std::invalid_argument(fmt::format(
             "tolerance '{}': {}; allowed: {}, each above 0, such as 0.01mm,0.001deg{}", text, why,

@@ -9,11 +9,11 @@
 namespace elastocheck::compare {
 
 // Parses "0.01mm,0.001deg,1%": a length, an angle and a share, or some of these, in any order; with
-// `forces_too` also a force (N) and a moment (Nm). A share that is not given is default_share;
+// `with_forces` also a force (N) and a moment (Nm). A share that is not given is default_share;
 // `motion` accepts lengths and angles only, and leaves the share infinite. Throws
 // std::invalid_argument with the allowed forms.
-enum class Asks { motion, shares_too, forces_too };
-Tolerance parse_tolerance(std::string_view text, Asks asks = Asks::motion);
+enum class ToleranceParts { motion, with_shares, with_forces };
+Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed = ToleranceParts::motion);
 
 // Whether the output is a position or an angle of the configuration: its limit is a length or an
 // angle.

@@ -262,8 +262,8 @@ void add_curves(const BranchComparison& branch, std::size_t c, const Channel& ch
         result.series.push_back(
             {branch.branch, quantity, channel.name, unit, std::move(values), main});
     };
-    const Curve& of_r = branch.runs[static_cast<std::size_t>(Leg::recursive)].curve;
-    const Curve& of_e = branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
+    const Curve& of_r = branch.run(Leg::recursive).curve;
+    const Curve& of_e = branch.run(Leg::equilibrium).curve;
     const std::size_t before = std::min(of_r.start, of_e.start);
     const auto kept_of = [&](const Curve& curve) {
         std::vector<double> values;
@@ -291,7 +291,7 @@ void add_compliance(const Model& model, const Comparison& comparison, std::vecto
     const auto& branch = comparison.branches.front();
     for (const auto& [quantity, leg] : {std::pair{Quantity::compliance_recursive, Leg::recursive},
                                         {Quantity::compliance_equilibrium, Leg::equilibrium}})
-        for (const auto& at : branch.runs[static_cast<std::size_t>(leg)].compliance) {
+        for (const auto& at : branch.run(leg).compliance) {
             if (at.a != 0) continue;
             for (const auto& [point, C] :
                  {std::pair{"wheel centre", &at.centre}, {"contact patch", &at.patch}})
@@ -437,9 +437,9 @@ Measurement measure(const Model& model, const Comparison& comparison) {
     for (const auto& branch : comparison.branches) {
         for (const auto& reason : branch.inconclusive.texts())
             result.inconclusive.push_back(fmt::format("branch '{}': {}", branch.branch, reason));
-        const LegRun& recursive = branch.runs[static_cast<std::size_t>(Leg::recursive)];
-        const LegRun& equilibrium = branch.runs[static_cast<std::size_t>(Leg::equilibrium)];
-        const LegRun& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
+        const LegRun& recursive = branch.run(Leg::recursive);
+        const LegRun& equilibrium = branch.run(Leg::equilibrium);
+        const LegRun& energy = branch.run(Leg::energy);
 
         // Range that both runs reached, around their start.
         const Curve &of_r = recursive.curve, &of_e = equilibrium.curve;

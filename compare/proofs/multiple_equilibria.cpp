@@ -35,14 +35,6 @@ constexpr std::size_t most_bodies = 100;
 // Attempts from one start, each with the newly found states deflated.
 constexpr int tries = 4;
 
-// The branch side that contains a.
-BranchSide side_to(const Model& model, const Branch& branch, double a) {
-    auto all = sides_of(model, branch);
-    const auto there =
-        std::ranges::find_if(all, [&](const BranchSide& side) { return side.branch.to * a > 0; });
-    return there != all.end() ? *there : all.back();
-}
-
 // Uniform in [-1, 1], reproducible with any standard library.
 double draw(std::minstd_rand& random) { return 2 * static_cast<double>(random()) / 2147483647 - 1; }
 
@@ -145,7 +137,8 @@ int AllEquilibria::stable() const {
 AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a,
                               const FindOptions& options) {
     namespace leg = reference::equilibrium;
-    const BranchSide side = side_to(model, branch, a);
+    const auto sides = sides_of(model, branch);
+    const BranchSide& side = side_at(sides, a);
     AllEquilibria all{branch.name, unit_of(branch.unit), a};
     const auto say = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", branch.name, what), nan);

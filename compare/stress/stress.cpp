@@ -132,30 +132,36 @@ struct Found {
     std::string detail;
     bool threw = false;  // an exception, which is a bug; its text is in `detail`
     std::vector<Placement> placements;
-    std::vector<std::vector<Wrench>> reactions;  // per point, of WayRun::joints
+    std::vector<std::vector<Wrench>> reactions;  // per point, of SideRun::joints
     std::vector<ErrorBound> error_bounds;        // error bounds as given, per point
     std::vector<bool> elsewhere;                 // per point: off, but proved
+};
+
+// Accuracy of a state: of every body, or of every place.
+struct Claim {
+    ErrorBound bound = {};
+    bool of_bodies = true;
+
+    double length(const ComparedPoint& place) const {
+        return of_bodies ? of_place(bound, place) : bound.length;
+    }
+    // Largest over all places.
+    ErrorBound most(const std::vector<ComparedPoint>& places) const {
+        ErrorBound worst{0, bound.angle};
+        for (const auto& place : places) worst.length = std::max(worst.length, length(place));
+        return worst;
+    }
 };
 
 // True state of one point: x_T and e.
 struct Known {
     Knowledge how = Knowledge::none;
-    Placement where;
-    ErrorBound within;
-    bool of_bodies = false;              // whether the bound is of the bodies or of the places
+    Placement where = {};
+    Claim within = {.of_bodies = false};
     bool stable = false;                 // proved to be stable; only for a proved state
     bool idle = false;                   // whether the proof held an idle motion
-    std::vector<Wrench> reactions = {};  // of WayRun::joints; empty where they are unknown
+    std::vector<Wrench> reactions = {};  // of SideRun::joints; empty where they are unknown
     double force = 0, moment = 0;        // error bounds of `reactions` [N], [N·m]
-
-    double length(const ComparedPoint& place) const {
-        return of_bodies ? of_place(within, place) : within.length;
-    }
-    double length(const std::vector<ComparedPoint>& places) const {  // largest over all places
-        double most = 0;
-        for (const auto& place : places) most = std::max(most, length(place));
-        return most;
-    }
 };
 
 struct SideRun {
@@ -183,22 +189,6 @@ ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
 bool is_reference(const Solver& solver) {
     return solver.settings.leg == Leg::equilibrium || solver.settings.leg == Leg::energy;
 }
-
-// Accuracy claimed for a state: of every body, or of every place.
-struct Claim {
-    ErrorBound bound = {};
-    bool of_bodies = true;
-
-    double length(const ComparedPoint& place) const {
-        return of_bodies ? of_place(bound, place) : bound.length;
-    }
-    // Largest over all places.
-    ErrorBound most(const std::vector<ComparedPoint>& places) const {
-        ErrorBound worst{0, bound.angle};
-        for (const auto& place : places) worst.length = std::max(worst.length, length(place));
-        return worst;
-    }
-};
 
 Claim claim_of(const Solver& solver, const ErrorBound& error_bound, double size) {
     if (std::isfinite(error_bound.length) && std::isfinite(error_bound.angle)) return {error_bound};
@@ -248,7 +238,7 @@ Known agreed(const std::vector<Solver>& solvers, const SideRun& run, std::size_t
         const ErrorBound within = by_account ? (first ? c_i : c_j) : distance;
         Known known{Knowledge::references,
                     tighter.placements[point],
-                    {within.length + eps * run.reach, within.angle + eps}};
+                    {{within.length + eps * run.reach, within.angle + eps}, false}};
         known.reactions = tighter.reactions[point];
         return known;
     }
@@ -281,8 +271,7 @@ Known proved(const BranchSide& side, const SideRun& run,
         if (certificate.answer == reference::certificate::Answer::proved && !weakly_resisted)
             return {Knowledge::proved,
                     placement(side.model, run.places, path[point]),
-                    {certificate.error.length, certificate.error.angle},
-                    true,
+                    {{certificate.error.length, certificate.error.angle}, true},
                     certificate.stable,
                     certificate.held > 0,
                     reactions_of(run.joints, path[point]),
@@ -306,10 +295,10 @@ Breach breach(const SideRun& run, const Claim& claim, const Placement& where, co
     const double digits = 4 * eps;
     for (std::size_t k = 0; k < run.places.size(); ++k) {
         const ComparedPoint& place = run.places[k];
-        const double within = known.length(place) + digits * run.reach,
+        const double within = known.within.length(place) + digits * run.reach,
                      length = (where.p[k] - known.where.p[k]).norm() - within,
                      angle = where.turns[k].angularDistance(known.where.turns[k]) -
-                             known.within.angle - digits;
+                             known.within.bound.angle - digits;
         if (length <= claim.length(place) && angle <= claim.bound.angle) continue;
         if (!(length <= worst.least.length) || !worst.any())
             worst = {{length, angle}, {claim.length(place), claim.bound.angle}, place.name};
@@ -385,7 +374,7 @@ SideRun walk_all(const Variant& variant, const BranchSide& side,
         if (variant.known == Construction::nothing_moves)
             known = {Knowledge::construction,
                      placement(side.model, run.places, drawn),
-                     {eps * run.reach, eps}};
+                     {{eps * run.reach, eps}, false}};
         // then the truth is taken from the default arithmetic
         const bool same_scene = variant.arithmetic != Arithmetic::nearest;
         if (known.how == Knowledge::none && !same_scene)
@@ -525,7 +514,7 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
         if (cell.knowledge == Knowledge::none || known.how == Knowledge::transforms)
             cell.knowledge = known.how;
         const ErrorBound d = apart(found.placements[k], known.where);
-        worst = std::max(worst, d.length + known.length(run.places));
+        worst = std::max(worst, d.length + known.within.most(run.places).length);
         if (const Breach broken = breach(run, claim_here, found.placements[k], known);
             broken.any()) {
             (found.elsewhere[k] ? elsewhere : breaks) = true;
@@ -572,9 +561,9 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
 // coordinate. The step error depends on the reference point of a body's increments; without a claim
 // the check applies only where rigidly connected bodies use the same reference body. Nor does it
 // apply to steps that an absolute tolerance chooses where lengths have another scale.
-void judge_retold(const Solver& solver, const Found& found, const SideRun& run,
-                  const Found& base_found, const SideRun& base, const Transform& how,
-                  StressCell& cell) {
+void judge_invariance(const Solver& solver, const Found& found, const SideRun& run,
+                      const Found& base_found, const SideRun& base, const Transform& how,
+                      StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
     if (cell.verdict == Verdict::wrong) return;
     const Match both = match(run.places, base.places);
@@ -662,8 +651,8 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     else if (!end.empty())
         cell.verdict = Verdict::wrong, cell.why = "converged where both references report: " + end;
     else if (base != nullptr)
-        judge_retold(solvers[s], found, run, base->found[s], *base, *trial.variant.transforms,
-                     cell);
+        judge_invariance(solvers[s], found, run, base->found[s], *base, *trial.variant.transforms,
+                         cell);
     return cell;
 }
 
@@ -673,10 +662,12 @@ void lend(const SideRun& base, const Transform& how, SideRun& run) {
     if (both.here.size() != run.places.size()) return;
     for (std::size_t k = 0; k < std::min(run.known.size(), base.known.size()); ++k)
         if (run.known[k].how == Knowledge::none && base.known[k].how != Knowledge::none)
-            run.known[k] = {Knowledge::transforms,
-                            transforms(only(base.known[k].where, both.there), how),
-                            {how.length * base.known[k].length(base.places) + eps * run.reach,
-                             base.known[k].within.angle}};
+            run.known[k] = {
+                Knowledge::transforms,
+                transforms(only(base.known[k].where, both.there), how),
+                {{how.length * base.known[k].within.most(base.places).length + eps * run.reach,
+                  base.known[k].within.bound.angle},
+                 false}};
 }
 
 template <class T>

@@ -130,7 +130,7 @@ std::vector<Variant> far_away(const Scene& scene) {
              .transforms = Transform{.t = t}}};
 }
 
-std::vector<Variant> told_otherwise(const Scene& original) {
+std::vector<Variant> invariances(const Scene& original) {
     const Scene scene = first_branch(original);
     const Quaterniond R(Eigen::AngleAxisd(2, Vector3d(1, -2, 0.5).normalized()));
     const Eigen::Matrix3d S = Vector3d(1, -1, 1).asDiagonal();
@@ -164,7 +164,7 @@ std::vector<Variant> arithmetic(const Scene& original) {
 
 const std::vector<Sweep>& sweeps() {
     static const std::vector<Sweep> all{{std::string(as_it_is), itself},
-                                        {"transforms", told_otherwise},
+                                        {"transforms", invariances},
                                         {"units", units},
                                         {"far away", far_away},
                                         {"stiffness", stiffness},

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
-#include <valarray>
 #include <vector>
 
 #include "compare/outputs/not_a_number.hpp"
@@ -21,10 +20,6 @@ void check_steps(Levels levels) {
         if (levels[k].steps <= 0 || (k > 0 && levels[k].steps <= levels[k - 1].steps))
             throw std::invalid_argument("step counts must be positive and strictly increasing");
 }
-
-using Numbers = std::valarray<double>;
-double dot(const Numbers& a, const Numbers& b) { return (a * b).sum(); }
-double mean(const Numbers& a) { return a.sum() / static_cast<double>(a.size()); }
 
 bool all_finite(Levels levels) {
     return std::all_of(levels.begin(), levels.end(), [](const Level& level) {
@@ -119,13 +114,6 @@ Line line(const Shape& at, Values& values) {
             .p_variance = 1 / (b * b * dot(at.psi, at.psi)),
             .limit_variance = 1 / static_cast<double>(values.v.size()) +
                               std::pow(at.phi_mean + 1 / p, 2) / at.phi_phi};
-}
-
-Line line(Levels levels, double p) {
-    Shape at;
-    shape(logarithms(levels), p, at);
-    Values values = values_of(levels);
-    return line(at, values);
 }
 
 struct Fit {
@@ -351,16 +339,6 @@ StepConvergence step_convergence(Levels levels, double formal_order, const Floor
     return result;
 }
 
-double steps_for(const StepConvergence& convergence, Levels levels, double error) {
-    if (convergence.behaviour != Behaviour::converging || !(error > 0)) return nan;
-    const auto first = static_cast<std::size_t>(convergence.first);
-    const auto count = static_cast<std::size_t>(convergence.count);
-    const Levels window = levels.subspan(first, count);
-    const double finest_error = std::abs(line(window, convergence.order).C);  // of the window
-    return std::max(1.0,
-                    window.back().steps * std::pow(finest_error / error, 1 / convergence.order));
-}
-
 bool agrees_with_formal(double order, double order_error, double formal_order) {
     const double two_errors = std::isfinite(order_error) ? 2 * order_error : 0;
     return std::abs(order - formal_order) <=
@@ -374,16 +352,16 @@ struct Slope {
     double p = 0, scatter = 0, stretch = 0;
 };
 Slope slope_of(Levels errors) {
-    Numbers x(errors.size()), y(errors.size());
-    for (std::size_t k = 0; k < errors.size(); ++k) {
-        x[k] = -std::log(errors[k].steps);
-        y[k] = std::log(std::abs(errors[k].value));
+    std::vector<double> x, y;
+    for (const Level& error : errors) {
+        x.push_back(-std::log(error.steps));
+        y.push_back(std::log(std::abs(error.value)));
     }
-    x -= mean(x);
-    y -= mean(y);
-    const double p = dot(x, y) / dot(x, x);
-    y -= p * x;
-    return {p, dot(y, y), dot(x, x)};
+    (void)take_mean(x);
+    (void)take_mean(y);
+    const double stretch = dot(x, x), p = dot(x, y) / stretch;
+    for (std::size_t k = 0; k < x.size(); ++k) y[k] -= p * x[k];
+    return {p, dot(y, y), stretch};
 }
 
 }  // namespace

@@ -52,10 +52,6 @@ struct StepConvergence {
 StepConvergence step_convergence(std::span<const Level> levels, double formal_order,
                                  const Floors& floors);
 
-// Number of steps for a step error of this size (> 0) by the fitted law; not rounded, at least 1;
-// else NaN.
-double steps_for(const StepConvergence& convergence, std::span<const Level> levels, double error);
-
 // Order p of errors against a known truth, |error| = C·steps^-p: slope of a straight line through
 // the logarithms. The order is negative when the errors grow. NaN with fewer than two errors above
 // the floor; its standard error is NaN with fewer than three.

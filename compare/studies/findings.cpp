@@ -11,10 +11,6 @@ namespace {
 
 constexpr double nothing = 1e-9;  // [mm], [deg]: smaller deviations are rounding
 
-const LegRun& run_of(const BranchComparison& branch, Leg leg) {
-    return branch.runs[static_cast<std::size_t>(leg)];
-}
-
 std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& reading) {
     std::optional<Worst> worst;
     for (const auto& branch : comparison.branches) {
@@ -119,7 +115,7 @@ bool is_readable(const Comparison& comparison, const BranchComparison& branch) {
     const auto c = static_cast<std::size_t>(branch.abscissa);
     // an output of a mechanism, whose range may be small; not a wheel's travel
     if (comparison.channels[c].main) return true;
-    const Curve& truth = run_of(branch, Leg::equilibrium).curve;
+    const Curve& truth = branch.run(Leg::equilibrium).curve;
     if (truth.values.empty()) return false;
     const auto x = truth.channel(c);
     const auto [low, high] = std::ranges::minmax(x);
@@ -145,8 +141,8 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
     std::vector<RateError> list;
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
         const BranchComparison& branch = comparison.branches[b];
-        const LegRun &reference = run_of(branch, Leg::equilibrium),
-                     &recursion = run_of(branch, Leg::recursive);
+        const LegRun &reference = branch.run(Leg::equilibrium),
+                     &recursion = branch.run(Leg::recursive);
         const Curve &truth = reference.curve, &fast = recursion.curve;
         if (truth.a.empty() || truth.a.size() != fast.a.size() || truth.start != fast.start)
             continue;
@@ -216,12 +212,12 @@ std::optional<GapPart> gap_part(const Comparison& comparison, const Study& study
                                 const std::string& method) {
     std::optional<GapPart> found;
     for (const auto& branch : comparison.branches) {
-        const BranchStudy* way = nullptr;  // the study of the branch side with the same end
+        const BranchStudy* side = nullptr;  // the study of the branch side with the same end
         for (const auto& candidate : study.branches)
-            if (candidate.belongs_to == branch.branch) way = &candidate;
-        if (way == nullptr) continue;
-        for (const auto& m : way->methods) {
-            if (m.method != method || run_of(branch, Leg::recursive).method != method) continue;
+            if (candidate.belongs_to == branch.branch) side = &candidate;
+        if (side == nullptr) continue;
+        for (const auto& m : side->methods) {
+            if (m.method != method || branch.run(Leg::recursive).method != method) continue;
             for (std::size_t k = 0; k < m.equal_parameter.size(); ++k) {
                 if (study.channels[k].unit != Unit::mm) continue;
                 const int c = find_channel(comparison.channels, study.channels[k].name);

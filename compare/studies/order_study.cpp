@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "compare/outputs/not_a_number.hpp"
 
@@ -15,16 +16,16 @@ namespace {
 Accuracy apart(const std::vector<Channel>& channels, const References& truth, const Curve& curve,
                Outcome outcome) {
     if (!truth.failures.empty() || outcome != Outcome::converged) return {nan, nan};
-    return distance(channels, truth.truth, curve);
+    return distance(channels, truth.truth.curve, curve);
 }
 
-OrderLevel level_of(const Solves& solves, const BranchSide& way, const References& truth,
+OrderLevel level_of(const Solves& solves, const BranchSide& side, const References& truth,
                     double tolerance, int order, int expansions) {
     const auto path = recursive::series::follow(
-        way.model, way.branch, {.order = order, .tolerance = tolerance, .expansions = expansions},
-        *way.analysis);
-    const auto points = recursive::series::sample(way.model, path, way.branch, way.branch.steps);
-    const Curve found = curve(solves.model, solves.channels, way.branch, points.points);
+        side.model, side.branch, {.order = order, .tolerance = tolerance, .expansions = expansions},
+        *side.analysis);
+    const auto points = recursive::series::sample(side.model, path, side.branch, side.branch.steps);
+    const Curve found = curve(solves.model, solves.channels, side.branch, points.points);
     OrderLevel level{.order = order,
                      .tolerance = tolerance,
                      .outcome = path.outcome,
@@ -51,34 +52,28 @@ OrderLevel level_of(const Solves& solves, const BranchSide& way, const Reference
 
 std::vector<BranchOrders> order_study(Solves& solves, const OrderOptions& options) {
     const int multiple = options.points / solves.base;
-    std::vector<BranchSide> ways;
-    for (const auto& sides : solves.sides)
-        for (const auto& side : sides) ways.push_back(at_points(side, multiple));
-    std::vector<References> truth(ways.size());
-    std::vector<BranchOrders> result(ways.size());
+    std::vector<BranchSide> all;
+    for (const auto& sides : solves.sides) std::ranges::copy(sides, std::back_inserter(all));
+    std::vector<References> truth(all.size());
+    std::vector<BranchOrders> result(all.size());
     std::vector<Job> references, levels;
-    std::size_t k = 0;
-    for (const auto& sides : solves.sides)
-        for (const auto& side : sides) {
-            references.push_back(
-                {fmt::format("{}: references", side.name), [&solves, &side, &truth, multiple, k] {
-                     truth[k] = references_on_side(solves, side, multiple);
-                 }});
-            ++k;
-        }
+    for (std::size_t k = 0; k < all.size(); ++k)
+        references.push_back({fmt::format("{}: references", all[k].name),
+                              [&, k] { truth[k] = references_on_side(solves, all[k], multiple); }});
     run_jobs(references, options.threads, part(options.progress, 0, 0.3));
-    for (k = 0; k < ways.size(); ++k) {
-        result[k] = {ways[k].name, truth[k].failures.empty() ? "" : truth[k].failures.front(),
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        result[k] = {all[k].name, truth[k].failures.empty() ? "" : truth[k].failures.front(),
                      truth[k].uncertainty,
                      std::vector<OrderLevel>(options.tolerances.size() * options.orders.size())};
         std::size_t l = 0;
         for (const double tolerance : options.tolerances)
             for (const int order : options.orders)
                 levels.push_back(
-                    {fmt::format("{}: order {}, {:.0e} m", ways[k].name, order, tolerance),
+                    {fmt::format("{}: order {}, {:.0e} m", all[k].name, order, tolerance),
                      [&, k, tolerance, order, at = l++] {
-                         result[k].levels[at] = level_of(solves, ways[k], truth[k], tolerance,
-                                                         order, options.expansions);
+                         result[k].levels[at] =
+                             level_of(solves, at_points(all[k], multiple), truth[k], tolerance,
+                                      order, options.expansions);
                      }});
     }
     run_jobs(levels, options.threads, part(options.progress, 0.3, 1));

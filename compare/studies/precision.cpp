@@ -67,22 +67,22 @@ PrecisionStudy precision_study(Solves& solves, const PrecisionOptions& options) 
         study.inconclusive.push_back("the scene has no branch");
         return study;
     }
-    const BranchSide& way = solves.sides.front().back();
-    const Branch& branch = way.branch;
-    BranchSide whole = way;  // only its first and last points are recorded
+    const BranchSide& side = solves.sides.front().back();
+    const Branch& branch = side.branch;
+    BranchSide whole = side;  // only its first and last points are recorded
     whole.branch.steps = 1;
-    study.branch = way.name;
+    study.branch = side.name;
     const auto& all_channels = solves.channels;
     for (const auto& channel : all_channels)
         study.angles = study.angles || (channel.main && channel.unit == Unit::deg);
 
-    const References known = references_on_side(solves, way, 1);
+    const References known = references_on_side(solves, side, 1);
     study.inconclusive = known.failures;
     study.uncertainty = {nan, nan};
-    const Curve end = study.inconclusive.empty() ? end_of(known.truth) : Curve{};
+    const Curve end = study.inconclusive.empty() ? end_of(known.truth.curve) : Curve{};
     if (!end.a.empty())
-        study.uncertainty =
-            worse(distance(all_channels, end, end_of(known.other)), rounding_of(all_channels, end));
+        study.uncertainty = worse(distance(all_channels, end, end_of(known.other.curve)),
+                                  rounding_of(all_channels, end));
 
     const auto solve = [&](PrecisionLevel& level, const recursive::Method& method,
                            recursive::Precision precision) {

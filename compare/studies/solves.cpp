@@ -40,7 +40,7 @@ std::string key(const BranchSide& side) {
 
 template <class Make>
 Solves::Run& run_once(Solves& solves, const std::string& name, const Make& make) {
-    ++solves.asked;
+    ++solves.requests;
     Solves::Run* run = nullptr;
     {
         const std::lock_guard guard(solves.lock);
@@ -50,7 +50,7 @@ Solves::Run& run_once(Solves& solves, const std::string& name, const Make& make)
     return *run;
 }
 
-const ReferenceRuns& reference_runs(Solves& solves, const BranchSide& side) {
+const References& reference_runs(Solves& solves, const BranchSide& side) {
     const BranchSide at = at_points(side, solves.finest);
     return run_once(solves, key(at) + " by the references",
                     [&](Solves::Run& run) {
@@ -60,27 +60,25 @@ const ReferenceRuns& reference_runs(Solves& solves, const BranchSide& side) {
         .references;
 }
 
-void thin(PathCurve& path, int stride) {
-    if (stride > 1) path.curve = thinned(path.curve, static_cast<std::size_t>(stride));
-}
-
 References read_references(Solves& solves, const Branch& branch, std::vector<BranchSide> sides,
                            int multiple) {
     std::vector<PathCurve> truth, other;
-    ReferenceRuns all;
+    References all;
     for (const auto& side : sides) {
-        const ReferenceRuns& runs = reference_runs(solves, side);
+        const References& runs = reference_runs(solves, side);
         truth.push_back(runs.truth);
         other.push_back(runs.other);
         all.scale = larger(all.scale, runs.scale);
         all.second_leg = runs.second_leg;
-        all.not_asked = runs.not_asked;
     }
     all.truth = joined(sides, truth);
     all.other = joined(sides, other);
-    for (PathCurve* path : {&all.truth, &all.other}) thin(*path, solves.finest / multiple);
+    const auto stride = static_cast<std::size_t>(solves.finest / multiple);
+    for (PathCurve* path : {&all.truth, &all.other})
+        if (stride > 1) path->curve = thinned(path->curve, stride);
     for (auto& side : sides) side = at_points(std::move(side), multiple);
-    return references(solves.model, solves.channels, branch, sides, std::move(all));
+    judge_references(solves.model, solves.channels, branch, sides, all);
+    return all;
 }
 
 }  // namespace

@@ -27,11 +27,11 @@ struct Solves {
     struct Run {
         std::once_flag once = {};
         PathCurve curve = {};
-        ReferenceRuns references = {};
+        References references = {};  // run, not judged
     };
     std::mutex lock = {};  // of the map, not of its runs
     std::map<std::string, Run> runs = {};
-    std::atomic<int> asked = 0;
+    std::atomic<int> requests = 0;
 };
 
 // The side at `multiple` points for each of the base.

@@ -149,11 +149,11 @@ ChannelStudy study_channel(const std::vector<int>& steps, const std::vector<Curv
                            const References& references, std::size_t channel, double formal, int by,
                            const Span& span) {
     ChannelStudy result;
-    const auto truth = at_stations(references.truth, channel, by, span);
+    const auto truth = at_stations(references.truth.curve, channel, by, span);
     result.uncertainty =
-        largest(difference(at_stations(references.other, channel, by, span), truth));
+        largest(difference(at_stations(references.other.curve, channel, by, span), truth));
     const auto [low, high] = std::ranges::minmax(truth);
-    const double start = references.truth.values.front()[channel];
+    const double start = references.truth.curve.values.front()[channel];
     result.range = std::max(high, start) - std::min(low, start);
 
     std::vector<std::vector<double>> values;
@@ -190,49 +190,36 @@ std::vector<std::size_t> main_channels(const std::vector<Channel>& all) {
     return list;
 }
 
-// One side of a branch with its share of every number of steps.
-struct StudiedSide {
-    BranchSide way;
-    std::vector<int> steps;
-    References known;
-};
-
 std::vector<StudiedSide> studied_sides(Solves& solves, const std::vector<int>& steps, int threads,
                                        const Progress& progress) {
     std::vector<StudiedSide> sides;
     for (std::size_t b = 0; b < solves.model.branches.size(); ++b) {
         if (solves.finest == 1) {
-            for (auto& [way, shares] :
-                 ways_with_steps(solves.model, solves.model.branches[b], steps))
-                sides.push_back({std::move(way), std::move(shares), {}});
+            std::ranges::move(sides_with_steps(solves.model, solves.model.branches[b], steps),
+                              std::back_inserter(sides));
             continue;
         }
-        for (const auto& way : solves.sides[b]) {
-            StudiedSide& side = sides.emplace_back(way);
-            for (const int N : steps) side.steps.push_back(N / solves.base * way.branch.steps);
+        for (const auto& base : solves.sides[b]) {
+            StudiedSide& side = sides.emplace_back(StudiedSide{base});
+            for (const int N : steps) side.steps.push_back(N / solves.base * base.branch.steps);
         }
     }
     std::vector<Job> jobs;
     for (auto& side : sides)
-        jobs.push_back({fmt::format("{}: references", side.way.name),
-                        [&] { side.known = references_on_side(solves, side.way, solves.finest); }});
+        jobs.push_back({fmt::format("{}: references", side.name),
+                        [&] { side.known = references_on_side(solves, side, solves.finest); }});
     run_jobs(jobs, threads, progress);
     return sides;
-}
-
-std::string abscissa_name(const std::vector<Channel>& all, const Curve& truth) {
-    const int by = default_abscissa(all, truth);
-    return by < 0 ? "" : all[static_cast<std::size_t>(by)].name;
 }
 
 // One level: with so many steps of the side. Where the studies share their points, it is recorded
 // at these, else at every step.
 PathCurve level_of(Solves& solves, const StudiedSide& side, const recursive::Method& method,
                    int steps) {
-    if (solves.finest > 1) return solved(solves, side.way, method, steps / side.way.branch.steps);
-    BranchSide way = side.way;
-    way.branch.steps = steps;
-    return walk(solves.model, solves.channels, way.branch, {way},
+    if (solves.finest > 1) return solved(solves, side, method, steps / side.branch.steps);
+    BranchSide level = side;
+    level.branch.steps = steps;
+    return walk(solves.model, solves.channels, level.branch, {level},
                 {.recursion = {.method = method}});
 }
 
@@ -271,25 +258,32 @@ std::vector<Channel> motion(const Model& model) {
     return list;
 }
 
-std::vector<std::pair<BranchSide, std::vector<int>>> ways_with_steps(
-    const Model& model, const Branch& branch, const std::vector<int>& steps) {
-    std::vector<std::pair<BranchSide, std::vector<int>>> result;
-    for (const auto& way : sides_of(model, branch, reference_points))
-        result.emplace_back(way, std::vector<int>{});
+std::vector<StudiedSide> sides_with_steps(const Model& model, const Branch& branch,
+                                          const std::vector<int>& steps) {
+    std::vector<StudiedSide> result;
+    for (auto& side : sides_of(model, branch, reference_points))
+        result.push_back({std::move(side)});
     for (const int N : steps) {
         Branch whole = branch;
         whole.steps = N;
         const auto shares = ways(whole);
-        for (std::size_t w = 0; w < shares.size(); ++w) result[w].second.push_back(shares[w].steps);
+        for (std::size_t w = 0; w < shares.size(); ++w) result[w].steps.push_back(shares[w].steps);
     }
     return result;
+}
+
+StudiedBranch studied_branch(const BranchSide& side, const std::vector<Channel>& all,
+                             const Curve& truth) {
+    const int by = truth.values.empty() ? -1 : default_abscissa(all, truth);
+    return {side.name, side.branch.name, unit_of(side.branch.unit),
+            by < 0 ? "" : all[static_cast<std::size_t>(by)].name};
 }
 
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
                   const std::vector<std::size_t>& studied, const std::vector<int>& steps,
                   const std::vector<Curve>& levels, const References& references,
                   double formal_order) {
-    std::vector<const Curve*> curves{&references.truth, &references.other};
+    std::vector<const Curve*> curves{&references.truth.curve, &references.other.curve};
     for (const auto& level : levels) curves.push_back(&level);
     const auto read = [&](int by, std::vector<ChannelStudy>& reading) {
         const Span span = common_span(by, curves);
@@ -302,9 +296,9 @@ void study_levels(MethodStudy& study, const std::vector<Channel>& all,
     if (by.why_not.empty()) read(by.channel, study.equal_abscissa);
 }
 
-std::vector<std::string> unfit(const References& known, const std::string& way) {
+std::vector<std::string> unfit(const References& known, const std::string& side) {
     std::vector<std::string> reasons;
-    for (const auto& why : known.failures) reasons.push_back(fmt::format("{}: {}", way, why));
+    for (const auto& why : known.failures) reasons.push_back(fmt::format("{}: {}", side, why));
     if (!reasons.empty()) return reasons;
     const Bounds bounds = bounds_of({}, known.scale);
     if (!(known.uncertainty.mm <= bounds.length && known.uncertainty.deg <= bounds.angle))
@@ -312,7 +306,7 @@ std::vector<std::string> unfit(const References& known, const std::string& way) 
             "{}: the references are {:.2g} mm and {:.2g} deg apart, at most {:.2g} mm and {:.2g} "
             "deg are "
             "allowed",
-            way, known.uncertainty.mm, known.uncertainty.deg, bounds.length, bounds.angle));
+            side, known.uncertainty.mm, known.uncertainty.deg, bounds.length, bounds.angle));
     return reasons;
 }
 
@@ -339,25 +333,22 @@ Study study(Solves& solves, const StudyOptions& options) {
     std::vector<recursive::Method> methods = options.methods;
     std::erase_if(methods, [](const auto& method) { return !recursive::has_steps(method); });
     std::erase_if(sides, [&](const StudiedSide& side) {
-        std::ranges::move(unfit(side.known, side.way.name),
-                          std::back_inserter(result.inconclusive));
+        std::ranges::move(unfit(side.known, side.name), std::back_inserter(result.inconclusive));
         if (!side.known.failures.empty()) return true;
         const bool few =
             std::ranges::adjacent_find(side.steps, std::greater_equal<>{}) != side.steps.end();
         if (few)
             result.inconclusive.push_back(
-                fmt::format("{}: its share of the steps is too small for levels", side.way.name));
+                fmt::format("{}: its share of the steps is too small for levels", side.name));
         return few;
     });
     std::vector<Job> jobs;
     for (const auto& side : sides)
-        result.branches.push_back({side.way.name, side.way.branch.name,
-                                   unit_of(side.way.branch.unit),
-                                   abscissa_name(all, side.known.truth), side.steps,
+        result.branches.push_back({studied_branch(side, all, side.known.truth.curve), side.steps,
                                    std::vector<MethodStudy>(methods.size())});
     for (std::size_t b = 0; b < sides.size(); ++b)
         for (std::size_t m = 0; m < methods.size(); ++m)
-            jobs.push_back({fmt::format("{}: {}", sides[b].way.name, methods[m].name), [&, b, m] {
+            jobs.push_back({fmt::format("{}: {}", sides[b].name, methods[m].name), [&, b, m] {
                                 result.branches[b].methods[m] =
                                     study_method(solves, sides[b], methods[m]);
                             }});
@@ -375,21 +366,18 @@ namespace {
 // Gaps of a branch side with every combination of following forces; bit 0 lever, 1 axis, 2 load.
 constexpr unsigned combinations = 8;
 
-BranchAttribution attribute_way(Solves& solves, const StudiedSide& side) {
+BranchAttribution attribute_side(Solves& solves, const StudiedSide& side) {
     const auto& channels = solves.channels;
     const auto& steps = side.steps;
     const References& known = side.known;
-    BranchAttribution attribution;
-    attribution.branch = side.way.name;
-    attribution.belongs_to = side.way.branch.name;
-    attribution.unit = unit_of(side.way.branch.unit);
+    BranchAttribution attribution{
+        studied_branch(side, channels, known.failures.empty() ? known.truth.curve : Curve{})};
     if (!known.failures.empty()) {
         attribution.not_attributed = known.failures.front();
         return attribution;
     }
-    attribution.abscissa = abscissa_name(channels, known.truth);
     std::vector<std::vector<Curve>> levels(combinations);
-    std::vector<const Curve*> curves{&known.truth, &known.other};
+    std::vector<const Curve*> curves{&known.truth.curve, &known.other.curve};
     for (unsigned bits = 0; bits < combinations; ++bits) {
         const recursive::Method method{
             .kind =
@@ -452,8 +440,8 @@ std::vector<BranchAttribution> attribute_gap(Solves& solves, const std::vector<i
     std::vector<BranchAttribution> result(sides.size());
     std::vector<Job> jobs;
     for (std::size_t b = 0; b < sides.size(); ++b)
-        jobs.push_back({fmt::format("{}: gap attribution", sides[b].way.name),
-                        [&, b] { result[b] = attribute_way(solves, sides[b]); }});
+        jobs.push_back({fmt::format("{}: gap attribution", sides[b].name),
+                        [&, b] { result[b] = attribute_side(solves, sides[b]); }});
     run_jobs(jobs, threads, part(progress, 0.3, 1));
     return result;
 }

@@ -62,11 +62,14 @@ struct MethodStudy {
     std::string no_abscissa;                   // reason why there is no equal abscissa
 };
 
-struct BranchStudy {
+struct StudiedBranch {
     std::string branch;      // name of the branch, or of one side: "bounce to -80 mm"
     std::string belongs_to;  // the name of the branch
     Unit unit{};             // display unit of the parameter
     std::string abscissa;    // name of the channel, empty where there is none
+};
+
+struct BranchStudy : StudiedBranch {
     std::vector<int> steps;  // of this branch side
     std::vector<MethodStudy> methods;
 };
@@ -89,7 +92,6 @@ Study study(Solves& solves, const StudyOptions& options);
 // Studies one method on one branch side from given levels: curves of `all` channels in the order of
 // `steps`, made by any solver. `studied`: positions in `all` of the main channels to study. Formal
 // order: NaN if unknown.
-struct References;
 void study_levels(MethodStudy& study, const std::vector<Channel>& all,
                   const std::vector<std::size_t>& studied, const std::vector<int>& steps,
                   const std::vector<Curve>& levels, const References& references,
@@ -97,13 +99,18 @@ void study_levels(MethodStudy& study, const std::vector<Channel>& all,
 
 // Reasons why the references cannot be used in a study: a failure, or too large a distance between
 // them.
-std::vector<std::string> unfit(const References& references, const std::string& way);
+std::vector<std::string> unfit(const References& references, const std::string& side);
 
-// The branch sides as the references of a study run them, each with its share of every step count.
-struct BranchSide;
-std::vector<std::pair<BranchSide, std::vector<int>>> ways_with_steps(const Model& model,
-                                                                     const Branch& branch,
-                                                                     const std::vector<int>& steps);
+// A branch side as the references of a study run it, with its share of every step count.
+struct StudiedSide : BranchSide {
+    std::vector<int> steps = {};
+    References known = {};
+};
+// The references are not yet run.
+std::vector<StudiedSide> sides_with_steps(const Model& model, const Branch& branch,
+                                          const std::vector<int>& steps);
+StudiedBranch studied_branch(const BranchSide& side, const std::vector<Channel>& all,
+                             const Curve& truth);
 
 // The studied channels: positions and angles, no reactions.
 std::vector<Channel> motion(const Model& model);
@@ -125,14 +132,11 @@ struct GapShare {
     std::vector<double> combinations;
 };
 
-struct BranchAttribution {
-    std::string branch, belongs_to;  // as in BranchStudy
-    Unit unit{};                     // likewise
-    std::string abscissa;            // likewise
+struct BranchAttribution : StudiedBranch {
     // per main channel; empty without an abscissa
-    std::vector<GapShare> equal_parameter, equal_abscissa;
-    std::string not_attributed;  // reason why there is none
-    std::string no_abscissa;     // reason why there is no equal abscissa
+    std::vector<GapShare> equal_parameter = {}, equal_abscissa = {};
+    std::string not_attributed = {};  // reason why there is none
+    std::string no_abscissa = {};     // reason why there is no equal abscissa
 };
 
 std::vector<BranchAttribution> attribute_gap(const Model& model, int threads = 1,

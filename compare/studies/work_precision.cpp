@@ -29,19 +29,6 @@ Accuracy plus(const Accuracy& a, const Accuracy& b) {
 
 // ---- One configuration
 
-// The same output points with `factor` intermediate points each.
-std::vector<BranchSide> refined(std::vector<BranchSide> ways, int factor) {
-    for (auto& way : ways) way.branch.steps *= factor;
-    return ways;
-}
-
-// Curve of a complete path; of an incomplete one an empty curve, whose errors are NaN.
-Curve curve_of(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
-               const EquilibriumPath& path) {
-    if (path.outcome != Outcome::converged) return {};
-    return curve(model, channels, branch, path.points);
-}
-
 std::vector<TradePoint> configurations(const Model& model, const TradeOptions& options) {
     std::vector<TradePoint> all;
     all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium)});
@@ -68,6 +55,40 @@ std::vector<TradePoint> configurations(const Model& model, const TradeOptions& o
     all.push_back({.leg = Leg::energy, .method = name(Leg::energy)});
     all.push_back({.leg = Leg::equilibrium, .method = name(Leg::equilibrium), .again = true});
     return all;
+}
+
+// Settings that record `points` equal increments of the parameter. Pre: `points` divides the steps.
+SolverSettings settings_of(const TradePoint& point, int points) {
+    SolverSettings solver{.leg = point.leg};
+    if (point.leg != Leg::recursive) return solver;
+    solver.recursion.method = *recursive::find_method(point.method);
+    std::visit(
+        overloaded{[&](const recursive::Linear&) { solver.refine = point.steps / points; },
+                   [&](const recursive::Consistent&) { solver.refine = point.steps / points; },
+                   [&](recursive::Adaptive& adaptive) {
+                       adaptive.length_tolerance = point.own_tolerance;
+                       adaptive.angle_tolerance = angle_per_length * point.own_tolerance;
+                   },
+                   [&](recursive::Series& series) { series.tolerance = point.own_tolerance; }},
+        solver.recursion.method.kind);
+    return solver;
+}
+
+// Along a branch by shared solves, at `multiple` points for each of their base.
+PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int multiple) {
+    std::vector<PathCurve> sides;
+    for (const auto& side : solves.sides[branch]) {
+        SolverSettings solver = settings_of(point, solves.base);
+        if (point.steps == 0) {
+            sides.push_back(solved(solves, at_points(side, multiple), solver));
+            continue;
+        }
+        const int steps = point.steps / solves.base;
+        sides.push_back(solved(solves, side, solver.recursion.method, steps));
+        const int stride = std::min(steps, solves.finest) / multiple;
+        sides.back().curve = thinned(sides.back().curve, static_cast<std::size_t>(stride));
+    }
+    return joined(solves.sides[branch], sides);
 }
 
 // ---- Ranking
@@ -116,7 +137,7 @@ bool same_ladder(const TradePoint& a, const TradePoint& b) {
 
 // Whether the method's own tolerance is at most the required one; otherwise it meets the required
 // one only by chance.
-bool told_enough(const Trade& trade, const TradePoint& point) {
+bool is_tight_enough(const Trade& trade, const TradePoint& point) {
     const double deg = in_unit(Unit::deg) * angle_per_length * point.own_tolerance;
     return 1e3 * point.own_tolerance <= trade.tolerance.mm && deg <= trade.tolerance.deg;
 }
@@ -124,7 +145,7 @@ bool told_enough(const Trade& trade, const TradePoint& point) {
 // Meets the tolerance, and so do all finer configurations of the same method: errors that cancel,
 // or too few steps to show an instability, would meet it only by chance.
 bool eligible(const Trade& trade, std::size_t k) {
-    if (trade.points[k].again || !told_enough(trade, trade.points[k])) return false;
+    if (trade.points[k].again || !is_tight_enough(trade, trade.points[k])) return false;
     for (std::size_t finer = k;
          finer < trade.points.size() && same_ladder(trade.points[k], trade.points[finer]);
          ++finer) {
@@ -189,9 +210,16 @@ void band(const Trade& trade, Recommendation& found) {
 }
 
 // Runs the configuration again at output points that were not used for its selection: finer ones,
-// and those of branches that end half a step earlier.
-Accuracy confirm(const Solves& solves, const std::vector<std::vector<double>>& extents,
-                 const TradePoint& point, int& compared, int threads, const Progress& progress) {
+// and those of branches that end half a step earlier. The reference is the equilibrium leg; that of
+// the equilibrium leg itself is the second reference.
+struct Confirmation {
+    Accuracy error;
+    int compared = 0;
+    // failed runs, with their branch; empty if none failed
+    std::string reference_failed = {}, configuration_failed = {};
+};
+Confirmation confirm(const Solves& solves, const std::vector<std::vector<double>>& extents,
+                     const TradePoint& point, int threads, const Progress& progress) {
     const Model& model = solves.model;
     const auto& channels = solves.channels;
     int finer = 3;  // refinement factor of the output points
@@ -199,38 +227,47 @@ Accuracy confirm(const Solves& solves, const std::vector<std::vector<double>>& e
         finer = 1;
         while (2 * finer * solves.base <= std::min(point.steps, 100)) finer *= 2;
     }
-    const TradePoint reference{.leg =
-                                   point.leg == Leg::equilibrium ? Leg::energy : Leg::equilibrium};
     const std::array ends{1.0, 1 - 0.5 / (point.steps > 0 ? point.steps : finer * solves.base)};
-    struct Confirmed {
-        Accuracy error;
-        int compared = 0;
+    const auto run_again = [&](std::size_t b, double end) {
+        Branch shorter = model.branches[b];
+        shorter.to *= end;
+        shorter.from *= end;
+        auto sides = sides_of(model, shorter, solves.base);
+        for (auto& side : sides) side.branch.steps *= finer;
+        Leg leg = Leg::equilibrium;
+        const PathCurve found = walk(model, channels, shorter, sides,
+                                     settings_of(point, finer * solves.base)),
+                        truth = point.leg == Leg::equilibrium
+                                    ? second_reference(model, channels, shorter, sides, leg)
+                                    : walk(model, channels, shorter, sides, {.leg = leg});
+        const auto failure = [&](const PathCurve& path, const std::string& which) {
+            return path.outcome == Outcome::converged
+                       ? ""
+                       : fmt::format("{}: {}: {}: {}", shorter.name, which, name(path.outcome),
+                                     path.detail);
+        };
+        Confirmation one{distance(channels, truth.curve, found.curve, extents[b]), 0,
+                         failure(truth, fmt::format("{} leg", name(leg))),
+                         failure(found, describe(point))};
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            if (channels[c].main || (!is_motion(channels[c]) && std::isfinite(extents[b][c])))
+                one.compared += static_cast<int>(found.curve.a.size());
+        return one;
     };
-    std::vector<Confirmed> all(ends.size() * model.branches.size());
+    std::vector<Confirmation> all(ends.size() * model.branches.size());
     std::vector<Job> jobs;
     for (std::size_t k = 0; k < all.size(); ++k)
-        jobs.push_back({"the recommendation, again", [&, k] {
-                            const std::size_t b = k / ends.size();
-                            Branch shorter = model.branches[b];
-                            shorter.to *= ends[k % ends.size()];
-                            shorter.from *= ends[k % ends.size()];
-                            const auto ways = refined(sides_of(model, shorter, solves.base), finer);
-                            const auto curve_by = [&](const std::vector<BranchSide>& points,
-                                                      const TradePoint& by) {
-                                return curve_of(model, channels, shorter,
-                                                walk(points, gait_of(by, finer * solves.base)));
-                            };
-                            const Curve truth = curve_by(ways, reference),
-                                        found = curve_by(ways, point);
-                            all[k].error = distance(channels, truth, found, extents[b]);
-                            for (std::size_t c = 0; c < channels.size(); ++c)
-                                if (channels[c].main ||
-                                    (!is_motion(channels[c]) && std::isfinite(extents[b][c])))
-                                    all[k].compared += static_cast<int>(found.a.size());
-                        }});
+        jobs.push_back({"the recommendation, again",
+                        [&, k] { all[k] = run_again(k / ends.size(), ends[k % ends.size()]); }});
     run_jobs(jobs, threads, progress);
-    Accuracy worst;
-    for (const auto& one : all) worst = worse(worst, one.error), compared += one.compared;
+    Confirmation worst;
+    for (const auto& one : all) {
+        worst.error = worse(worst.error, one.error);
+        worst.compared += one.compared;
+        if (worst.reference_failed.empty()) worst.reference_failed = one.reference_failed;
+        if (worst.configuration_failed.empty())
+            worst.configuration_failed = one.configuration_failed;
+    }
     return worst;
 }
 
@@ -240,21 +277,34 @@ void recommend(const Solves& solves, const std::vector<std::vector<double>>& ext
     for (std::size_t k = 0; k < trade.points.size(); ++k)
         if (eligible(trade, k)) candidates.push_back(k);
     while (const auto k = cheapest(trade, candidates)) {
+        const TradePoint& point = trade.points[*k];
+        const Confirmation again = confirm(solves, extents, point, threads, progress);
+        if (!again.reference_failed.empty()) {
+            trade.inconclusive.push_back(
+                fmt::format("{} cannot be confirmed: no reference at the points of the "
+                            "confirming run: {}",
+                            describe(point), again.reference_failed));
+            return;
+        }
         Recommendation found;
         found.point = *k;
-        found.confirmed =
-            confirm(solves, extents, trade.points[*k], found.confirmed_numbers, threads, progress);
+        found.confirmed = again.error;
+        found.confirmed_numbers = again.compared;
         band(trade, found);
-        const bool holds = found.confirmed_numbers > 0 && good_enough(trade, found.confirmed);
+        const bool holds = again.configuration_failed.empty() && found.confirmed_numbers > 0 &&
+                           good_enough(trade, found.confirmed);
         if (holds && good_enough(trade, found.high)) {
             trade.recommendation = found;
             return;
         }
         const Accuracy& worst = holds ? found.high : found.confirmed;
-        trade.rejected.push_back(fmt::format(
-            "{}: {}{:.3g} mm, {:.3g} deg and {:.3g} % of forces and moments{}",
-            describe(trade.points[*k]), holds ? "up to " : "", worst.mm, worst.deg,
-            100 * worst.share, holds ? ", as far as its rungs obey their law" : " when run again"));
+        trade.rejected.push_back(
+            !again.configuration_failed.empty()
+                ? again.configuration_failed + ", when run again"
+                : fmt::format("{}: {}{:.3g} mm, {:.3g} deg and {:.3g} % of forces and moments{}",
+                              describe(point), holds ? "up to " : "", worst.mm, worst.deg,
+                              100 * worst.share,
+                              holds ? ", as far as its rungs obey their law" : " when run again"));
         std::erase(candidates, *k);
     }
 }
@@ -268,44 +318,20 @@ double share_of(const Tolerance& tolerance, const Accuracy& error) {
     return worse(mm, deg);
 }
 
-PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int multiple) {
-    std::vector<PathCurve> sides;
-    for (const auto& side : solves.sides[branch]) {
-        SolverSettings solver = gait_of(point, solves.base);
-        if (point.steps == 0) {
-            sides.push_back(solved(solves, at_points(side, multiple), solver));
-            continue;
-        }
-        const int steps = point.steps / solves.base;
-        sides.push_back(solved(solves, side, solver.recursion.method, steps));
-        const int stride = std::min(steps, solves.finest) / multiple;
-        sides.back().curve = thinned(sides.back().curve, static_cast<std::size_t>(stride));
-    }
-    return joined(solves.sides[branch], sides);
-}
-
-SolverSettings gait_of(const TradePoint& point, int points) {
-    SolverSettings solver{.leg = point.leg};
-    if (point.leg != Leg::recursive) return solver;
-    solver.recursion.method = *recursive::find_method(point.method);
-    std::visit(
-        overloaded{[&](const recursive::Linear&) { solver.refine = point.steps / points; },
-                   [&](const recursive::Consistent&) { solver.refine = point.steps / points; },
-                   [&](recursive::Adaptive& adaptive) {
-                       adaptive.length_tolerance = point.own_tolerance;
-                       adaptive.angle_tolerance = angle_per_length * point.own_tolerance;
-                   },
-                   [&](recursive::Series& series) { series.tolerance = point.own_tolerance; }},
-        solver.recursion.method.kind);
-    return solver;
-}
-
 std::string describe(const TradePoint& point) {
     if (point.leg != Leg::recursive)
         return fmt::format("{} leg{}", name(point.leg), point.again ? " again" : "");
     if (point.steps == 0)
         return fmt::format("{} at {:.0e} mm", point.method, 1e3 * point.own_tolerance);
     return fmt::format("{}, {} steps", point.method, point.steps);
+}
+
+Profile profile(Solves& solves, std::size_t branch, const TradePoint& configuration) {
+    const int steps = configuration.steps / solves.base,
+              points = steps > 0 ? std::min(steps, solves.finest) : solves.finest;
+    return profile_at_equal_parameter(solves.channels,
+                                      references_on_branch(solves, branch, points).truth.curve,
+                                      run(solves, branch, configuration, points).curve);
 }
 
 std::vector<bool> pareto_front(std::span<const WorkError> points) {
@@ -345,9 +371,10 @@ Trade trade(Solves& solves, const TradeOptions& options) {
 
     if (model.branches.empty()) result.inconclusive.push_back("the scene has no branch");
     if (std::isinf(result.tolerance.mm) && std::isinf(result.tolerance.deg))
-        result.inconclusive.push_back(std::isfinite(options.tolerance.deg)
-                                          ? "only an angle is asked for, and the scene has none"
-                                          : "neither a position nor an angle is asked for");
+        result.inconclusive.push_back(
+            std::isfinite(options.tolerance.deg)
+                ? "only an angle has a tolerance, and the scene has no angle"
+                : "neither a position nor an angle has a tolerance");
     if (!result.inconclusive.empty()) return result;
 
     std::vector<References> known(model.branches.size());
@@ -363,7 +390,7 @@ Trade trade(Solves& solves, const TradeOptions& options) {
         for (const auto& why : known[b].failures)
             result.inconclusive.push_back(fmt::format("{}: {}", model.branches[b].name, why));
         result.uncertainty = worse(result.uncertainty, known[b].uncertainty);
-        if (known[b].truth_ended != Outcome::converged) known[b].truth = {};
+        if (known[b].truth.outcome != Outcome::converged) known[b].truth.curve = {};
         extents.push_back(std::move(known[b].extents));
     }
 
@@ -375,7 +402,7 @@ Trade trade(Solves& solves, const TradeOptions& options) {
             point.work.factorisations += path.counts.factorisations;
             point.work.evaluations += path.counts.evaluations;
             const bool complete = path.outcome == Outcome::converged;
-            point.error = worse(point.error, distance(all_channels, known[b].truth,
+            point.error = worse(point.error, distance(all_channels, known[b].truth.curve,
                                                       complete ? path.curve : Curve{}, extents[b]));
             if (!complete && point.outcome == Outcome::converged) {
                 point.outcome = path.outcome;
@@ -398,7 +425,7 @@ Trade trade(Solves& solves, const TradeOptions& options) {
         timed.push_back(k);
         timings.emplace_back([&, k] {
             for (const auto& sides : solves.sides)
-                (void)walk(sides, gait_of(result.points[k], solves.base));
+                (void)walk(sides, settings_of(result.points[k], solves.base));
         });
     }
     if (options.rounds > 0 && result.points.front().outcome == Outcome::converged) {

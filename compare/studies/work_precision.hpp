@@ -113,12 +113,9 @@ Trade trade(const Model& model, const TradeOptions& options = {});
 struct Solves;
 Trade trade(Solves& solves, const TradeOptions& options);
 
-// A configuration along a branch by shared solves, at `multiple` points for each of their base.
-PathCurve run(Solves& solves, std::size_t branch, const TradePoint& point, int multiple);
-
-// Solver settings of a configuration that records `points` equal increments of the parameter. Pre:
-// `points` divides its steps.
-SolverSettings gait_of(const TradePoint& point, int points);
+// Error of a configuration point by point along a branch, at equal parameter, from the equilibrium
+// leg: at the finest points of the solves, or at every step of the configuration if that is coarser.
+Profile profile(Solves& solves, std::size_t branch, const TradePoint& configuration);
 
 // "tangent, 40 steps", "adaptive at 1e-05 m", "equilibrium leg"
 std::string describe(const TradePoint& point);

@@ -53,15 +53,12 @@ std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison)
     std::vector<CharacteristicRow> rows;
     if (comparison.branches.empty()) return rows;
     const BranchComparison& branch = comparison.branches.front();
-    const auto run = [&](Leg leg) -> const LegRun& {
-        return branch.runs[static_cast<std::size_t>(leg)];
-    };
     for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
         const Channel& channel = comparison.channels[c];
         if (!std::holds_alternative<Characteristic>(channel.reads)) continue;
-        const double is = at_start(run(Leg::equilibrium), c),
-                     second = at_start(run(branch.second), c),
-                     recursion = at_start(run(Leg::recursive), c);
+        const double is = at_start(branch.run(Leg::equilibrium), c),
+                     second = at_start(branch.run(branch.second), c),
+                     recursion = at_start(branch.run(Leg::recursive), c);
         rows.push_back({channel.name, symbol(channel.unit), finite_or_nan(is),
                         finite_or_nan(second - is), finite_or_nan(recursion),
                         finite_or_nan(recursion - is),
@@ -103,18 +100,37 @@ std::vector<ComplianceRow> compliance_rows(const Model& model, const Comparison&
     return rows;
 }
 
-std::vector<ForceRow> force_rows(const std::vector<ElementValue>& values) {
+std::vector<ForceRow> force_rows(const Model& model, const Comparison& comparison) {
+    const auto channels = element_channels(model);
     std::vector<ForceRow> rows;
-    for (const auto& v : values)
-        rows.push_back({v.branch, v.a, symbol(v.a_unit), v.element, v.output, symbol(v.unit),
-                        v.value, v.off, 100 * v.share});
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+        const BranchComparison& branch = comparison.branches[b];
+        for (const auto end : {&Landmarks::front, &Landmarks::back}) {
+            const auto &truth = branch.run(Leg::equilibrium).landmarks.*end,
+                       &reached = branch.run(Leg::recursive).landmarks.*end;
+            // A one-sided branch starts at its front; a leg that ended early is at another load.
+            if (!truth || !reached || truth->load == 0 ||
+                !(std::abs(truth->load - reached->load) <= 1e-9 * std::abs(truth->load)))
+                continue;
+            const auto values = evaluate(model, model.branches[b], channels, *truth),
+                       others = evaluate(model, model.branches[b], channels, *reached);
+            for (std::size_t c = 0; c < channels.size(); ++c) {
+                const double error = others[c] - values[c], size = std::abs(values[c]);
+                if (std::isnan(values[c])) continue;  // inactive here
+                rows.push_back({branch.branch, parameter_in(branch.unit, truth->load),
+                                symbol(branch.unit), element_of(channels[c]), channels[c].name,
+                                symbol(channels[c].unit), values[c], error,
+                                size > zero_value ? 100 * (error / size) : nan});
+            }
+        }
+    }
     return rows;
 }
 
 std::vector<LargestForceRow> largest_force_rows(const Comparison& comparison) {
     std::vector<LargestForceRow> rows;
     for (const auto& branch : comparison.branches)
-        for (const auto& l : branch.runs[static_cast<std::size_t>(Leg::equilibrium)].largest)
+        for (const auto& l : branch.run(Leg::equilibrium).largest)
             rows.push_back({branch.branch, l.a, symbol(branch.unit), l.element, l.output, l.value,
                             symbol(l.unit), l.deformation, symbol(l.deformation_unit)});
     return rows;

@@ -359,7 +359,6 @@ struct BranchOrders;
 struct CertifyStudy;
 struct Channel;
 struct Comparison;
-struct ElementValue;
 struct FormulationStudy;
 struct PrecisionStudy;
 struct Study;
@@ -369,7 +368,8 @@ struct Trade;
 std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison);
 // Per branch, landmark, leg and point.
 std::vector<ComplianceRow> compliance_rows(const Model& model, const Comparison& comparison);
-std::vector<ForceRow> force_rows(const std::vector<ElementValue>& values);
+// At both ends of a two-sided branch; no rows where a leg did not reach the end.
+std::vector<ForceRow> force_rows(const Model& model, const Comparison& comparison);
 std::vector<LargestForceRow> largest_force_rows(const Comparison& comparison);
 std::vector<FormulationRow> formulation_rows(const FormulationStudy& study,
                                              const Comparison& comparison);

@@ -116,7 +116,7 @@ struct CandidateJudgement {
     std::string name;
     Grade verdict = Grade::not_judged;
     Tolerance tolerance = default_tolerance;
-    bool asked = false;                     // the tolerance was given, not the default
+    bool tolerance_given = false;           // the tolerance was given, not the default
     std::vector<std::string> reasons;       // why not judged
     std::vector<std::string> not_given;     // missing branches, parts of branches or of columns
     std::vector<PointColumn> columns;       // as absolute values, not changes
@@ -139,7 +139,7 @@ struct CandidateJudgement {
 CandidateJudgement judge_candidate(const Model& model, const Comparison& comparison,
                                    const Candidate& candidate,
                                    const Tolerance& tolerance = default_tolerance,
-                                   bool asked = true);
+                                   bool tolerance_given = true);
 
 // ---- States.
 

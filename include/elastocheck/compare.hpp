@@ -217,10 +217,12 @@ struct BranchComparison {
     int steps = 0, every = 1;
     int abscissa = -1;         // channel of the readings at equal abscissa; -1: none
     std::vector<LegRun> runs;  // in the order of `legs`, then the series if it is a reference
+    const LegRun& run(Leg leg) const { return runs[static_cast<std::size_t>(leg)]; }
+    LegRun& run(Leg leg) { return runs[static_cast<std::size_t>(leg)]; }
     // second reference: the energy leg, or the series where the energy leg is not used
     Leg second = Leg::energy;
     // reason why the energy leg is not used: a force without energy, or the size of the scene
-    std::string not_asked;
+    std::string why_not_energy;
     // per channel; undetermined channels are never compared: reactions that redundant joints share,
     // joints that are inactive on this branch, outputs undefined somewhere on it
     std::vector<bool> determined;
@@ -242,9 +244,11 @@ struct Comparison {
     // every leg converged, the references agree, every branch moves some output, and something was
     // compared
     bool conclusive() const;
+    // The branch of this name. Pre: there is one.
+    const BranchComparison& branch(std::string_view name) const;
 };
 
-// Told what runs now, and the share of the computation that is done, 0 to 1. Calls do not overlap.
+// Receives what runs now, and the share of the computation that is done, 0 to 1. Calls do not overlap.
 using Progress = std::function<void(std::string_view what, double done)>;
 
 struct Options {

@@ -37,7 +37,7 @@ struct TrimRecord {
     struct Met {
         std::string name;  // "left.travel"
         Unit unit = Unit::mm;
-        double asked = 0;
+        double target = 0;
         double missed = 0;     // residual by the equilibrium leg's state
         double confirmed = 0;  // residual by the state of the second reference
     };

@@ -11,7 +11,6 @@
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
 #include "compare/studies/precision.hpp"
-#include "compare/studies/profile.hpp"
 #include "compare/studies/solves.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
@@ -79,7 +78,7 @@ json recommended(compare::Solves& solves, const compare::Trade& trade) {
     const auto& point = trade.points[trade.recommendation->point];
     json branches = json::array();
     for (std::size_t b = 0; b < solves.sides.size(); ++b) {
-        const auto profile = compare::profile(solves, b, point).profile;
+        const auto profile = compare::profile(solves, b, point);
         json mm = json::array(), deg = json::array();
         for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
         branches.push_back({{"name", solves.model.branches[b].name},
@@ -199,7 +198,8 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
     if (!request.measured.empty())
         if (const std::string why = add_measured(document, request); !why.empty())
             reasons.push_back(why);
-    const auto tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
+    const auto tolerance =
+        compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     if (studies) {
         if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
             add_formulations(
@@ -330,7 +330,7 @@ int report(const ReportRequest& request, const std::string& reproduce) {
         throw std::invalid_argument("--open: not with --archive, which has no page");
     const std::string opener = request.open ? browser() : "";
     Staging::check(request.folder);
-    (void)compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
+    (void)compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});

@@ -169,7 +169,7 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     const int steps = options.recursion.steps;
     const bool given = !request.within.empty();
     const auto tolerance = given
-                               ? compare::parse_tolerance(request.within, compare::Asks::forces_too)
+                               ? compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces)
                                : compare::default_tolerance;
     check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
@@ -201,8 +201,7 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     if (delivery.wants_document()) {
         json part = document_of(loaded, request.scene);
         add_comparison(part, loaded.scene, model, comparison);
-        std::vector<NamedContent> files{
-            {"forces.csv", csv(force_rows(element_values(model, comparison)))}};
+        std::vector<NamedContent> files{{"forces.csv", csv(force_rows(model, comparison))}};
         auto reasons = reasons_of(comparison);
         if (study) {
             add_formulations(part, *study, comparison);
@@ -304,7 +303,7 @@ int trade(const TradeRequest& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Model& model = loaded.model;
     compare::TradeOptions options;
-    options.tolerance = compare::parse_tolerance(request.tolerance, compare::Asks::shares_too);
+    options.tolerance = compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     options.threads = threads;
     options.progress = compare::part(progress, 0, 0.7);
     const compare::Trade trade = compare::trade(model, options);

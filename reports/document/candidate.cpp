@@ -106,7 +106,7 @@ json candidate_json(const CandidateJudgement& j, const compare::Comparison& comp
                           {"by_second", residuals_json(left.by_second)},
                           {"why_not", left.why_not}});
     return {{"name", j.name},       {"verdict", compare::name(j.verdict)},
-            {"sentence", sentence}, {"tolerance", tolerance_json(j.tolerance, j.asked)},
+            {"sentence", sentence}, {"tolerance", tolerance_json(j.tolerance, j.tolerance_given)},
             {"worst", worst},       {"findings", j.hints},
             {"reasons", j.reasons}, {"not_given", j.not_given},
             {"notes", j.notes},     {"numbers", j.compared},

@@ -309,7 +309,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"reference_uncertainty", pair(branch.uncertainty)},
              {"profiles", profiles_json(comparison, branch)},
              {"second_reference", name(branch.second)},
-             {"energy_not_asked", branch.not_asked},
+             {"energy_not_asked", branch.why_not_energy},
              {"witness", witness_json(branch)},
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()},
@@ -340,7 +340,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
     if (!model.wheels.empty() && !comparison.branches.empty())
         scene_document["wheels"] = wheels_json(model, comparison);
     scene_document["elements"] = elements_json(model);
-    scene_document["forces"] = table_json(force_rows(element_values(model, comparison)));
+    scene_document["forces"] = table_json(force_rows(model, comparison));
     scene_document["largest_forces"] = table_json(largest_force_rows(comparison));
     scene_document["drawing"] = drawing_json(scene, model, comparison);
 }
@@ -408,7 +408,7 @@ void add_trim(json& scene_document, const compare::TrimRecord& trim) {
     for (const auto& c : trim.conditions)
         conditions.push_back({{"name", c.name},
                               {"unit", symbol(c.unit)},
-                              {"asked", c.asked},
+                              {"asked", c.target},
                               {"missed", c.missed},
                               {"missed_by_confirming_leg", c.confirmed}});
     scene_document["trim"] = {{"adjusted", adjusted},

@@ -63,7 +63,7 @@ std::string trim_words(const compare::TrimRecord& trim) {
     for (const auto& c : trim.conditions)
         text +=
             fmt::format("  until {:<24} {:.6g} {}, met to {:.1e}; confirmed to {:.1e}\n", c.name,
-                        c.asked, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed));
+                        c.target, symbol(c.unit), std::abs(c.missed), std::abs(c.confirmed));
     return text;
 }
 

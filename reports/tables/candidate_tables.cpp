@@ -23,7 +23,7 @@ using compare::Grade;
 using compare::Unit;
 
 std::string tolerance_of(const CandidateJudgement& j) {
-    return tolerance_text(j.tolerance, j.others > 0, j.asked);
+    return tolerance_text(j.tolerance, j.others > 0, j.tolerance_given);
 }
 
 std::string worst_of(const CandidateJudgement& j, const compare::Comparison& comparison) {

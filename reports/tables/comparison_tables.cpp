@@ -191,7 +191,7 @@ std::string method_of(const compare::Comparison& comparison) {
 std::string instead_of_energy(const compare::Comparison& comparison) {
     bool none = false, large = false;
     for (const auto& branch : comparison.branches)
-        if (!branch.not_asked.empty()) (energy_judges_states(branch) ? large : none) = true;
+        if (!branch.why_not_energy.empty()) (energy_judges_states(branch) ? large : none) = true;
     if (!none && !large) return "";
     return fmt::format(", or series where {}{}{},", none ? "no energy exists" : "",
                        none && large ? " or " : "", large ? "the scene is too large for it" : "");
@@ -202,14 +202,14 @@ std::string not_asked(const compare::BranchComparison& branch) {
     const std::string who =
         fmt::format("  the equilibrium leg and {} judge each other", name(branch.second));
     if (!energy_judges_states(branch))
-        return fmt::format("{}; no energy exists: {}\n", who, branch.not_asked);
+        return fmt::format("{}; no energy exists: {}\n", who, branch.why_not_energy);
     const Residuals& left = branch.runs[1].judged[static_cast<std::size_t>(compare::Leg::energy)];
     const compare::Bounds& b = branch.bounds;
     return fmt::format(
         "{}; {}\n  the energy leg judges the states: the equilibrium leg's states have residuals "
         "of {:.2g} N, {:.2g} N·m, {:.2g} mm in its equations, at most {:.2g} N, {:.2g} N·m, {:.2g} "
         "mm are allowed\n",
-        who, branch.not_asked, left.force, left.moment, 1e3 * left.length, b.residual_force,
+        who, branch.why_not_energy, left.force, left.moment, 1e3 * left.length, b.residual_force,
         b.residual_moment, b.residual_length);
 }
 
@@ -272,7 +272,7 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         legs_table(branch, text);
         proofs(branch, text);
         error_bounds(branch, text);
-        if (!branch.not_asked.empty()) text += not_asked(branch);
+        if (!branch.why_not_energy.empty()) text += not_asked(branch);
         fmt::format_to(out, "  the references have to agree: {}\n",
                        compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())

@@ -31,7 +31,7 @@ std::string size(const Worst& worst, double limit) {
 }
 
 std::string tolerance_of(const Assessment& j) {
-    return tolerance_text(j.tolerance, j.others > 0, j.asked);
+    return tolerance_text(j.tolerance, j.others > 0, j.tolerance_given);
 }
 
 // "6.9 N, 7 % of its extent (rod.drive force, branch len)"
@@ -178,7 +178,7 @@ json judgement_json(const Assessment& j) {
     return {{"verdict", judged ? compare::name(j.verdict) : "not asked"},
             {"sentence", sentence(j)},
             {"method", j.method},
-            {"tolerance", tolerance_json(j.tolerance, j.asked)},
+            {"tolerance", tolerance_json(j.tolerance, j.tolerance_given)},
             {"position", worst_json(j.position)},
             {"angle", worst_json(j.angle)},
             {"position_across", worst_json(j.position_across)},

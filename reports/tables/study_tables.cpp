@@ -163,7 +163,8 @@ void recommendation(const compare::Trade& trade, std::string& text) {
     for (const auto& reason : trade.inconclusive) fmt::format_to(out, "INCONCLUSIVE: {}\n", reason);
     for (const auto& line : trade.rejected) fmt::format_to(out, "Not confirmed: {}\n", line);
     if (!trade.recommendation) {
-        fmt::format_to(out, "For {}: no method reaches it.\n", tolerance_text(trade.tolerance));
+        if (trade.inconclusive.empty())
+            fmt::format_to(out, "For {}: no method reaches it.\n", tolerance_text(trade.tolerance));
         return;
     }
     const auto& r = *trade.recommendation;

@@ -34,7 +34,7 @@ Scene small(const std::string& name) {
 }
 
 // The unchanged scene, and all variants of the sweep.
-std::vector<Trial> asked(const std::string& name) {
+std::vector<Trial> requested(const std::string& name) {
     std::vector<Sweep> both;
     for (const auto& sweep : sweeps())
         if (sweep.name == as_it_is || sweep.name == other_arithmetic) both.push_back(sweep);
@@ -87,7 +87,7 @@ TEST(Arithmetic, IsInForceWhileItIsAskedForAndNoLonger) {
 // digits beyond the claim.
 TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
     for (const auto& scene : scene_list) {
-        const Survival survival = stress(asked(scene));
+        const Survival survival = stress(requested(scene));
         const LostDigits lost = lost_digits(survival);
         EXPECT_EQ(lost.variants.size(), exists(Arithmetic::flushed) ? 5u : 4u);
         ASSERT_EQ(lost.rows.size(), 1u);
@@ -111,7 +111,7 @@ TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
 
 // Some digit differs for every solver; otherwise the arithmetic was not active during the solve.
 TEST(Arithmetic, ReachesEverySolver) {
-    const Survival survival = stress(asked("mcpherson"));
+    const Survival survival = stress(requested("mcpherson"));
     for (const auto& solver : survival.solvers) {
         bool differs = false;
         for (const auto& cell : survival.cells)
@@ -123,23 +123,23 @@ TEST(Arithmetic, ReachesEverySolver) {
 
 // With five common digits, three of eight correct digits are lost, and none of three.
 TEST(Arithmetic, DigitsAreLostThatWereRightAndDiffer) {
-    const Survival survival = stress(asked("pendulum"));
+    const Survival survival = stress(requested("pendulum"));
     const auto as_drawn = [&](const StressCell& cell) {
         return *std::ranges::find_if(survival.cells, [&](const StressCell& other) {
             return other.sweep == as_it_is && other.side == cell.side &&
                    other.solver == cell.solver;
         });
     };
-    int asked = 0;
+    int requested_points = 0;
     for (const auto& cell : survival.cells) {
         if (cell.sweep != other_arithmetic || cell.outcome != Outcome::converged) continue;
         const StressCell drawn = as_drawn(cell);
         const double in_common = -std::log10(cell.apart / drawn.range);
         EXPECT_NEAR(cell.lost, std::max(0.0, drawn.digits - in_common), 1e-9) << told(cell);
         EXPECT_NEAR(digits_lost(cell), std::clamp(16 - in_common, 0.0, 16.0), 1e-6) << told(cell);
-        ++asked;
+        ++requested_points;
     }
-    EXPECT_GT(asked, 40);
+    EXPECT_GT(requested_points, 40);
 }
 
 TEST(Arithmetic, EveryNumberIsAnUlpOffAndNoFurther) {
@@ -182,8 +182,8 @@ TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
                 Answer& answer = all.emplace_back();
                 SolverSettings settings = solver.settings;
                 settings.every = 4, settings.error_bound = false;
-                for (const auto& way : sides_of(model, model.branches.front(), 4)) {
-                    const auto path = walk(way, settings, [&](const Equilibrium& state) {
+                for (const auto& side : sides_of(model, model.branches.front(), 4)) {
+                    const auto path = walk(side, settings, [&](const Equilibrium& state) {
                         answer.poses = state.poses;
                     });
                     if (answer.outcome == Outcome::converged) answer.outcome = path.outcome;

@@ -350,10 +350,10 @@ TEST(Judgement, WhatDisagreesByTenBoundsIsNeverConclusive) {
             BranchComparison wrong = comparison.branches[0];
             const Leg other = leg == Leg::energy ? Leg::equilibrium : Leg::energy;
             const Bounds& b = wrong.bounds;
-            wrong.runs[static_cast<std::size_t>(leg)].judged[static_cast<std::size_t>(other)].*
-                part += 10 * (part == &Residuals::force    ? b.residual_force
-                              : part == &Residuals::moment ? b.residual_moment
-                                                           : 1e-3 * b.residual_length);
+            wrong.run(leg).judged[static_cast<std::size_t>(other)].*part +=
+                10 * (part == &Residuals::force    ? b.residual_force
+                      : part == &Residuals::moment ? b.residual_moment
+                                                   : 1e-3 * b.residual_length);
             EXPECT_EQ(disagreements(model, comparison.channels, model.branches[0], wrong).count, 1);
         }
 }
@@ -366,8 +366,7 @@ TEST(Judgement, AnOutputThatHasAValueByOneReferenceOnlyIsAnObjection) {
     ASSERT_LT(c, std::ssize(comparison.channels));
     for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
         BranchComparison wrong = comparison.branches[0];
-        auto& value =
-            wrong.runs[static_cast<std::size_t>(leg)].curve.values[3][static_cast<std::size_t>(c)];
+        auto& value = wrong.run(leg).curve.values[3][static_cast<std::size_t>(c)];
         value = value == undefined ? 1 : undefined;
         const auto found = disagreements(model, comparison.channels, model.branches[0], wrong);
         ASSERT_EQ(found.count, 1) << name(leg);

@@ -223,7 +223,7 @@ TEST(FindAll, LegsOnTwoBranchesAreSaidToBeAndNotToDeviate) {
     EXPECT_NE(said()[0].find("the reference legs disagree on"), std::string::npos) << said()[0];
     const auto all = find_equilibria(model, model.branches[0], -120);
     ASSERT_EQ(all.list.size(), 3u);
-    auto& energy = branch.runs[static_cast<std::size_t>(Leg::energy)];
+    auto& energy = branch.run(Leg::energy);
     energy.landmarks.back = all.list.back().state;
     ASSERT_EQ(said().size(), 1u);
     EXPECT_EQ(

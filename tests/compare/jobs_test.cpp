@@ -106,7 +106,7 @@ TEST(Solves, TheStudiesOfAReportSolveEachRunOnce) {
         // Published and tangent with 20 ... 320 steps for the study, and with 10, 640, 1280, 2560
         // for the price; of the eight combinations of the gap one is published, with 40 ... 320.
         EXPECT_EQ(of_methods.size(), sides * (2 * 9 + 7 * 4));
-        EXPECT_GT(solves.asked, static_cast<int>(solves.runs.size()));
+        EXPECT_GT(solves.requests, static_cast<int>(solves.runs.size()));
     }
 }
 

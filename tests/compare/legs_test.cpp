@@ -53,19 +53,19 @@ void expect_visited_as_kept(const std::vector<std::string>& scenes) {
     for (const auto& scene : scenes) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
-            for (const auto& way : sides_of(model, branch, 6))
+            for (const auto& side : sides_of(model, branch, 6))
                 for (const auto& method : recursive::methods) {
                     const std::string where =
-                        scene + ", " + way.name + " by " + std::string(method.name);
+                        scene + ", " + side.name + " by " + std::string(method.name);
                     // More points than the series evaluates at once.
                     const recursive::Options options{
                         .method = method,
                         .steps = recursive::has_steps(method) ? 12 : 150,
                         .record = 0};
-                    const auto kept = recursive::solve(way.model, way.branch, options);
+                    const auto kept = recursive::solve(side.model, side.branch, options);
                     std::vector<Equilibrium> visited;
                     const auto path = recursive::solve(
-                        way.model, way.branch, options,
+                        side.model, side.branch, options,
                         [&](const Equilibrium& state) { visited.push_back(state); });
                     EXPECT_TRUE(path.points.empty()) << where;
                     EXPECT_EQ(path.outcome, kept.outcome) << where;
@@ -88,22 +88,22 @@ TEST(Visit, TheReferencesHandOverThePointsThatTheyWouldKeep) {
     for (const auto& scene : support::small_scene_names()) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches)
-            for (const auto& way : sides_of(model, branch, 3)) {
-                const auto a = requested_parameters({way}, 1);
+            for (const auto& side : sides_of(model, branch, 3)) {
+                const auto a = requested_parameters({side}, 1);
                 std::vector<Equilibrium> by_equilibrium, by_energy;
                 const auto equilibrium = reference::equilibrium::solve(
-                    way.model, way.branch, a, {},
+                    side.model, side.branch, a, {},
                     [&](const auto& state) { by_equilibrium.push_back(state); });
                 const auto energy = reference::energy::solve(
-                    way.model, way.branch, a, {},
+                    side.model, side.branch, a, {},
                     [&](const auto& state) { by_energy.push_back(state); });
                 EXPECT_TRUE(equilibrium.points.empty() && energy.points.empty());
-                const auto kept = reference::equilibrium::solve(way.model, way.branch, a);
+                const auto kept = reference::equilibrium::solve(side.model, side.branch, a);
                 EXPECT_EQ(equilibrium.outcome, kept.outcome);
-                expect_same(by_equilibrium, kept.points, scene + ", " + way.name);
-                const auto kept_too = reference::energy::solve(way.model, way.branch, a);
+                expect_same(by_equilibrium, kept.points, scene + ", " + side.name);
+                const auto kept_too = reference::energy::solve(side.model, side.branch, a);
                 EXPECT_EQ(energy.outcome, kept_too.outcome);
-                expect_same(by_energy, kept_too.points, scene + ", " + way.name);
+                expect_same(by_energy, kept_too.points, scene + ", " + side.name);
             }
     }
 }
@@ -112,13 +112,13 @@ struct Streamed {
     EquilibriumPath path;
     std::vector<Row> rows;
 };
-Streamed streamed(const Model& model, const std::vector<BranchSide>& ways,
+Streamed streamed(const Model& model, const std::vector<BranchSide>& sides,
                   const SolverSettings& solver) {
     const auto all = channels(model);
     Streamed result;
     result.path = walk(
-        ways, solver,
-        [&](const Equilibrium& state) { return row_of(model, all, ways.front(), solver, state); },
+        sides, solver,
+        [&](const Equilibrium& state) { return row_of(model, all, sides.front(), solver, state); },
         [&](Row row) { result.rows.push_back(std::move(row)); });
     return result;
 }
@@ -132,48 +132,48 @@ bool same(const Row& row, const Model& model, const Equilibrium& state) {
 }
 
 // The sides one by one: the first from its far end back to a = 0, then the second.
-std::vector<Equilibrium> joined_by_hand(const std::vector<BranchSide>& ways,
+std::vector<Equilibrium> joined_by_hand(const std::vector<BranchSide>& sides,
                                         const SolverSettings& solver) {
     std::vector<Equilibrium> points;
-    if (ways.size() == 2) {
-        const auto first = walk(ways[0], solver).points;
+    if (sides.size() == 2) {
+        const auto first = walk(sides[0], solver).points;
         for (std::size_t k = first.size(); k-- > 1;) points.push_back(first[k]);
     }
-    for (const auto& point : walk(ways.back(), solver).points) points.push_back(point);
+    for (const auto& point : walk(sides.back(), solver).points) points.push_back(point);
     return points;
 }
 
 // How many branches have two sides.
 int expect_rows_in_the_order_of_the_branch(const std::vector<std::string>& scenes) {
-    int both_ways = 0;
+    int two_sided = 0;
     for (const auto& scene : scenes) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
-            const auto ways = sides_of(model, branch, 5);
-            both_ways += ways.size() == 2 ? 1 : 0;
+            const auto sides = sides_of(model, branch, 5);
+            two_sided += sides.size() == 2 ? 1 : 0;
             for (const auto& solver : every_gait()) {
                 // The references are slow, and one side needs no joining.
                 if ((solver.leg == Leg::energy || solver.leg == Leg::equilibrium) &&
-                    ways.size() == 1)
+                    sides.size() == 1)
                     continue;
                 const std::string where = scene + ", " + branch.name + " by " + name_of(solver);
-                const auto points = joined_by_hand(ways, solver);
-                const auto found = streamed(model, ways, solver);
+                const auto points = joined_by_hand(sides, solver);
+                const auto found = streamed(model, sides, solver);
                 EXPECT_TRUE(found.path.points.empty()) << where;
                 EXPECT_EQ(found.rows.size(), points.size()) << where;
                 if (found.rows.size() != points.size()) continue;
                 for (std::size_t k = 0; k < points.size(); ++k)
                     EXPECT_TRUE(same(found.rows[k], model, points[k])) << where << ", row " << k;
-                expect_same(walk(ways, solver).points, points, where);
+                expect_same(walk(sides, solver).points, points, where);
                 if (found.path.outcome != Outcome::converged) continue;
-                const auto a = requested_parameters(ways, 1);
+                const auto a = requested_parameters(sides, 1);
                 EXPECT_EQ(a.size(), points.size()) << where;
                 for (std::size_t k = 0; k < std::min(a.size(), points.size()); ++k)
                     EXPECT_EQ(points[k].load, a[k]) << where;
             }
         }
     }
-    return both_ways;
+    return two_sided;
 }
 
 TEST(Rows, AreThePointsInTheOrderOfTheBranch) {
@@ -185,11 +185,11 @@ TEST(NightlyRows, AreThePointsInTheOrderOfTheBranchOnEveryScene) {
 }
 
 // Indices of the requested points among all: by sides, from a = 0 outwards.
-std::vector<std::size_t> picked(const std::vector<BranchSide>& ways, int every) {
+std::vector<std::size_t> picked(const std::vector<BranchSide>& sides, int every) {
     std::vector<std::size_t> at;
-    const int before = ways.size() == 2 ? ways[0].branch.steps : 0;
-    for (std::size_t w = 0; w < ways.size(); ++w) {
-        const int steps = ways[w].branch.steps, sign = w + 1 < ways.size() ? -1 : 1;
+    const int before = sides.size() == 2 ? sides[0].branch.steps : 0;
+    for (std::size_t w = 0; w < sides.size(); ++w) {
+        const int steps = sides[w].branch.steps, sign = w + 1 < sides.size() ? -1 : 1;
         for (int k = 0; k < steps; k += every)
             at.push_back(static_cast<std::size_t>(before + sign * k));
         at.push_back(static_cast<std::size_t>(before + sign * steps));
@@ -203,16 +203,16 @@ TEST(Every, PicksTheFirstTheLastAndEveryNthOfTheSameRows) {
     for (const auto* scene : {"bushing_pair", "double_wishbone", "pinned_bar"}) {
         const Model model = compile(support::scene(scene));
         for (const auto& branch : model.branches) {
-            const auto ways = sides_of(model, branch, 20);
+            const auto sides = sides_of(model, branch, 20);
             for (const char* method : {"published", "tangent", "adaptive", "series"}) {
                 SolverSettings solver{
                     .recursion = {.method = recursive::find_method(method).value()}};
-                const auto all = streamed(model, ways, solver);
+                const auto all = streamed(model, sides, solver);
                 if (all.path.outcome != Outcome::converged) continue;
                 for (const int every : {1, 2, 3, 7, 9, 10, 11, 19, 20}) {
                     solver.every = every;
-                    const auto some = streamed(model, ways, solver);
-                    const auto at = picked(ways, every);
+                    const auto some = streamed(model, sides, solver);
+                    const auto at = picked(sides, every);
                     ASSERT_EQ(some.rows.size(), at.size())
                         << scene << " " << branch.name << " " << every;
                     for (std::size_t k = 0; k < at.size(); ++k) {
@@ -251,12 +251,12 @@ TEST(Every, IsWhatTheReferencesVisit) {
         const Model model = compile(support::scene(scene));
         const auto all_channels = channels(model);
         for (const auto& branch : model.branches) {
-            const auto ways = sides_of(model, branch, 20);
+            const auto sides = sides_of(model, branch, 20);
             for (const Leg leg : {Leg::equilibrium, Leg::energy}) {
-                const auto all = streamed(model, ways, {.leg = leg}),
-                           some = streamed(model, ways, {.leg = leg, .every = 6});
+                const auto all = streamed(model, sides, {.leg = leg}),
+                           some = streamed(model, sides, {.leg = leg, .every = 6});
                 ASSERT_EQ(all.path.outcome, Outcome::converged) << all.path.detail;
-                const auto at = picked(ways, 6);
+                const auto at = picked(sides, 6);
                 ASSERT_EQ(some.rows.size(), at.size());
                 for (std::size_t k = 0; k < at.size(); ++k) {
                     EXPECT_EQ(some.rows[k].load, all.rows[at[k]].load);
@@ -281,8 +281,8 @@ TEST(Rows, ThatCameBeforeAFailureOnEitherSideAreThere) {
     for (const bool fails_first : {true, false}) {
         const Model model = compile(scene);
         for (const Leg leg : {Leg::series, Leg::equilibrium}) {
-            const auto ways = sides_of(model, model.branches[0]);
-            const auto found = streamed(model, ways, {.leg = leg});
+            const auto sides = sides_of(model, model.branches[0]);
+            const auto found = streamed(model, sides, {.leg = leg});
             EXPECT_NE(found.path.outcome, Outcome::converged);
             ASSERT_EQ(found.rows.size(), 52u) << name(leg);  // -210 to 300 N
             const double sign = fails_first ? 1 : -1;
@@ -303,15 +303,15 @@ TEST(Rows, OfTheStartAreThereOnceWhicheverWaySettles) {
     branch.from = -branch.to;
     branch.steps = 8;
     const auto good = sides_of(model, branch);
-    const auto starts = [&](const std::vector<BranchSide>& ways) {
-        const auto rows = streamed(model, ways, {.leg = Leg::equilibrium}).rows;
+    const auto starts = [&](const std::vector<BranchSide>& sides) {
+        const auto rows = streamed(model, sides, {.leg = Leg::equilibrium}).rows;
         return std::pair(rows.size(), std::ranges::count(rows, 0.0, &Row::load));
     };
     EXPECT_EQ(starts(good), std::pair(std::size_t{9}, std::ptrdiff_t{1}));
     for (const std::size_t bad : {0u, 1u}) {  // no point on it is found
-        auto ways = good;
-        for (auto& body : ways[bad].model.bodies) body.design.r.setConstant(std::nan(""));
-        EXPECT_EQ(starts(ways), std::pair(std::size_t{5}, std::ptrdiff_t{1})) << bad;
+        auto sides = good;
+        for (auto& body : sides[bad].model.bodies) body.design.r.setConstant(std::nan(""));
+        EXPECT_EQ(starts(sides), std::pair(std::size_t{5}, std::ptrdiff_t{1})) << bad;
     }
 }
 

@@ -30,24 +30,24 @@ struct Answering {
 };
 Answering recursion(const char* method) {
     return {method,
-            [method](const OneWay& way, const Equilibrium& state, const Disturbances& what) {
-                return recursive::linear_response(way.model, way.branch, bare(state), what,
+            [method](const OneWay& side, const Equilibrium& state, const Disturbances& what) {
+                return recursive::linear_response(side.model, side.branch, bare(state), what,
                                                   recursive::find_method(method).value());
             }};
 }
 const Answering by_equilibrium{
     "equilibrium",
-    [](const OneWay&way, const Equilibrium&state, const Disturbances&what) {
-        return reference::equilibrium::linear_response(way.model, way.branch, bare(state), what);
+    [](const OneWay&side, const Equilibrium&state, const Disturbances&what) {
+        return reference::equilibrium::linear_response(side.model, side.branch, bare(state), what);
     }},
-    by_energy{"energy", [](const OneWay&way, const Equilibrium&state, const Disturbances&what) {
-                  return reference::energy::linear_response(way.model, way.branch, bare(state),
+    by_energy{"energy", [](const OneWay&side, const Equilibrium&state, const Disturbances&what) {
+                  return reference::energy::linear_response(side.model, side.branch, bare(state),
                                                             what);
               }};
 std::vector<Answering> three_legs() { return {by_equilibrium, by_energy, recursion("series")}; }
 
-Equilibrium state_at(const OneWay& way, double a) {
-    const auto path = reference::equilibrium::solve(way.model, way.branch, std::vector{a});
+Equilibrium state_at(const OneWay& side, double a) {
+    const auto path = reference::equilibrium::solve(side.model, side.branch, std::vector{a});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
     return path.points.back();
 }
@@ -94,20 +94,22 @@ TEST(Response, TheLegsAgreeOnEverySceneWhereItBeginsAndEnds) {
     for (const auto& name : support::scene_names()) {
         const Model model = compile(trim(support::scene(name)).scene);
         for (const auto& branch : model.branches)
-            for (const auto& [way_name, on_way, way, analysis] : sides_of(model, branch, 1))
-                for (const double a : {0.0, way.to}) {
-                    const OneWay here{on_way, way};
+            for (const auto& [side_name, on_side, side, analysis] : sides_of(model, branch, 1))
+                for (const double a : {0.0, side.to}) {
+                    const OneWay here{on_side, side};
                     const Equilibrium state = state_at(here, a);
-                    const auto& [forces, moments, offsets] = everything(on_way);
-                    for (const auto* asked : {&forces, &moments, &offsets}) {
-                        const Response truth = by_equilibrium.linear_response(here, state, *asked);
+                    const auto& [forces, moments, offsets] = everything(on_side);
+                    for (const auto* requested : {&forces, &moments, &offsets}) {
+                        const Response truth =
+                            by_equilibrium.linear_response(here, state, *requested);
                         for (const auto& other :
                              {by_energy, recursion("series"), recursion("tangent")}) {
-                            const Response response = other.linear_response(here, state, *asked);
+                            const Response response =
+                                other.linear_response(here, state, *requested);
                             if (is_not_applicable(response.outcome)) continue;
                             const double far = apart(response, truth);
                             EXPECT_LE(far, 1e-10)
-                                << name << ", " << way_name << ", at " << a << ": " << other.name
+                                << name << ", " << side_name << ", at " << a << ": " << other.name
                                 << " " << response.detail << truth.detail;
                             worst = std::max(worst, far);
                             ++answered;
@@ -123,12 +125,12 @@ TEST(Response,
      ThePublishedMatrixAnswersRightWhereNothingIsLoadedAndElsewhereWithoutGeometricStiffness) {
     for (const char* name : {"bushing_pair", "pinned_bar", "chrono_mcpherson", "two_spring_arch"}) {
         const Scene scene = support::scene(name);
-        const OneWay way = way_of(scene, scene.branches[0].name, scene.branches[0].to);
-        const auto forces = everything(way.model).forces;
-        for (const double a : {0.0, way.branch.to}) {
-            const Equilibrium state = state_at(way, a);
-            const double far = apart(recursion("published").linear_response(way, state, forces),
-                                     by_equilibrium.linear_response(way, state, forces));
+        const OneWay side = way_of(scene, scene.branches[0].name, scene.branches[0].to);
+        const auto forces = everything(side.model).forces;
+        for (const double a : {0.0, side.branch.to}) {
+            const Equilibrium state = state_at(side, a);
+            const double far = apart(recursion("published").linear_response(side, state, forces),
+                                     by_equilibrium.linear_response(side, state, forces));
             if (a == 0)
                 EXPECT_LE(far, 1e-12) << name;
             else
@@ -139,14 +141,14 @@ TEST(Response,
 
 // ---- Reciprocity: 6 × 6 compliance of the contact patch under wrenches there.
 
-MatrixXd compliance(const OneWay& way, const Equilibrium& state, const Answering& leg) {
+MatrixXd compliance(const OneWay& side, const Equilibrium& state, const Answering& leg) {
     Disturbances wrenches;
-    for (int k = 0; k < 3; ++k) wrenches.push_back(at_wheel(way.model, Vector3d::Unit(k)));
+    for (int k = 0; k < 3; ++k) wrenches.push_back(at_wheel(side.model, Vector3d::Unit(k)));
     for (int k = 0; k < 3; ++k)
-        wrenches.push_back(at_wheel(way.model, Vector3d::Zero(), Vector3d::Unit(k)));
-    const Response response = leg.linear_response(way, state, wrenches);
+        wrenches.push_back(at_wheel(side.model, Vector3d::Zero(), Vector3d::Unit(k)));
+    const Response response = leg.linear_response(side, state, wrenches);
     EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
-    const Wheel& wheel = way.model.wheels[0];
+    const Wheel& wheel = side.model.wheels[0];
     const auto body = static_cast<std::size_t>(wheel.body);
     const Vector3d lever = state.poses[body].p * wheel.contact_local;
     MatrixXd C(6, 6);
@@ -169,10 +171,10 @@ TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
          {"mcpherson_strut", "double_wishbone", "front_axle", "semi_trailing_arm"}) {
         const Scene scene = support::scene(name);
         for (const char* branch : {"lateral", "braking"}) {
-            const OneWay way = way_of(scene, branch, 1);
-            const Equilibrium state = state_at(way, way.branch.to);
+            const OneWay side = way_of(scene, branch, 1);
+            const Equilibrium state = state_at(side, side.branch.to);
             for (const auto& leg : three_legs()) {
-                const MatrixXd C = in_one_unit(compliance(way, state, leg));
+                const MatrixXd C = in_one_unit(compliance(side, state, leg));
                 EXPECT_LE(largest(C - C.transpose()), 1e-10 * largest(C))
                     << name << ", " << branch << ", " << leg.name;
             }
@@ -185,13 +187,13 @@ TEST(Response, ForcesAndMomentsAnswerEachOtherAlikeInEquilibriumUnderForces) {
 //
 //   C - Cᵀ = C (Kᵀ - K) Cᵀ = C_π m̃ C_πᵀ,   C_π the responses to moments on that body
 TEST(Response, ADeadMomentThatActsIsWhatReciprocityLacks) {
-    const OneWay way = way_of(support::scene("double_wishbone"), "aligning", 1);
-    const Equilibrium state = state_at(way, way.branch.to);
-    const Vector3d m(0, 0, way.branch.to);
+    const OneWay side = way_of(support::scene("double_wishbone"), "aligning", 1);
+    const Equilibrium state = state_at(side, side.branch.to);
+    const Vector3d m(0, 0, side.branch.to);
     Matrix3d skew;
     skew << 0, -m.z(), m.y(), m.z(), 0, -m.x(), -m.y(), m.x(), 0;
     for (const auto& leg : three_legs()) {
-        const MatrixXd C = compliance(way, state, leg), C_pi = C.rightCols<3>();
+        const MatrixXd C = compliance(side, state, leg), C_pi = C.rightCols<3>();
         const MatrixXd lacks = in_one_unit(C - C.transpose());
         EXPECT_GT(largest(lacks), 1e-5 * largest(in_one_unit(C))) << leg.name;
         EXPECT_LE(largest(lacks - in_one_unit(C_pi * skew * C_pi.transpose())),
@@ -203,14 +205,14 @@ TEST(Response, ADeadMomentThatActsIsWhatReciprocityLacks) {
 // ---- Invariance.
 
 // Wrenches at the wheel, and the responses of all bodies.
-Response at_the_wheel(const OneWay& way, const Equilibrium& state, const Answering& leg,
+Response at_the_wheel(const OneWay& side, const Equilibrium& state, const Answering& leg,
                       const Quaterniond& R) {
     Disturbances wrenches;
     for (int k = 0; k < 3; ++k) {
-        wrenches.push_back(at_wheel(way.model, R * Vector3d::Unit(k)));
-        wrenches.push_back(at_wheel(way.model, Vector3d::Zero(), R * Vector3d::Unit(k)));
+        wrenches.push_back(at_wheel(side.model, R * Vector3d::Unit(k)));
+        wrenches.push_back(at_wheel(side.model, Vector3d::Zero(), R * Vector3d::Unit(k)));
     }
-    return leg.linear_response(way, state, wrenches);
+    return leg.linear_response(side, state, wrenches);
 }
 
 TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
@@ -218,10 +220,10 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
     const Vector3d t(3, -1, 2);
     for (const char* name : {"chrono_mcpherson_preload", "chrono_mcpherson"}) {
         const Scene scene = support::scene(name);
-        const OneWay way = way_of(scene, "jounce", 1);
-        const Equilibrium state = state_at(way, way.branch.to);
+        const OneWay side = way_of(scene, "jounce", 1);
+        const Equilibrium state = state_at(side, side.branch.to);
         for (const auto& leg : three_legs()) {
-            const Response as_told = at_the_wheel(way, state, leg, Quaterniond::Identity());
+            const Response as_told = at_the_wheel(side, state, leg, Quaterniond::Identity());
 
             Equilibrium turned = state;
             for (Pose& pose : turned.poses) pose = {R * pose.r + t, R * pose.p};
@@ -243,12 +245,12 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
     }
     const Scene scene = support::scene("semi_trailing_arm"),
                 in_mm = support::in_millimetres_and_kilonewtons("semi_trailing_arm");
-    const OneWay way = way_of(scene, "travel", 1), other = way_of(in_mm, "travel", 1);
-    const Equilibrium state = state_at(way, way.branch.to);
-    const auto forces = everything(way.model).forces;
+    const OneWay side = way_of(scene, "travel", 1), other = way_of(in_mm, "travel", 1);
+    const Equilibrium state = state_at(side, side.branch.to);
+    const auto forces = everything(side.model).forces;
     for (const auto& leg : three_legs())
         EXPECT_LE(apart(leg.linear_response(other, state, forces),
-                        leg.linear_response(way, state, forces)),
+                        leg.linear_response(side, state, forces)),
                   1e-10)
             << leg.name;
 }
@@ -256,12 +258,13 @@ TEST(Response, TheGroundFrameTheOrderOfBodiesAndTheUnitsDoNotMatter) {
 TEST(Response, WhatTheEnergyLegIsNotAskedTheOthersAnswerAlike) {
     for (const auto& [name, branch] :
          {std::pair("follower", "up"), std::pair("bushing_by_small_angles", "pull")}) {
-        const OneWay way = way_of(support::scene(name), branch, 1);
-        const Equilibrium state = state_at(way, way.branch.to);
-        const auto forces = everything(way.model).forces;
-        EXPECT_EQ(by_energy.linear_response(way, state, forces).outcome, Outcome::not_conservative);
-        EXPECT_LE(apart(recursion("series").linear_response(way, state, forces),
-                        by_equilibrium.linear_response(way, state, forces)),
+        const OneWay side = way_of(support::scene(name), branch, 1);
+        const Equilibrium state = state_at(side, side.branch.to);
+        const auto forces = everything(side.model).forces;
+        EXPECT_EQ(by_energy.linear_response(side, state, forces).outcome,
+                  Outcome::not_conservative);
+        EXPECT_LE(apart(recursion("series").linear_response(side, state, forces),
+                        by_equilibrium.linear_response(side, state, forces)),
                   1e-12)
             << name;
     }

@@ -29,31 +29,6 @@ std::string told(const StressCell& cell) {
                        name(cell.verdict), cell.why, cell.detail);
 }
 
-TEST(Transforms, AScaledSceneMovesAsItsUnitsSay) {
-    // The transform itself: lengths by s, forces by φ; each leg must find the same numbers except
-    // for units. Includes gravity and curves.
-    for (const auto& name :
-         {"mcpherson", "pendulum", "follower", "tyre_on_road", "parallel_springs"}) {
-        const Scene scene = support::scene(name);
-        const double s = 8, phi = 0.25;  // exact in binary: no rounding
-        const Model a = compile(scene), b = compile(scaled(scene, s, phi));
-        for (std::size_t k = 0; k < a.branches.size(); ++k) {
-            const auto ways_a = sides_of(a, a.branches[k], 4),
-                       ways_b = sides_of(b, b.branches[k], 4);
-            const auto here = walk(ways_a, {.leg = Leg::equilibrium}),
-                       there = walk(ways_b, {.leg = Leg::equilibrium});
-            ASSERT_EQ(here.outcome, Outcome::converged) << here.detail;
-            ASSERT_EQ(there.outcome, Outcome::converged) << name << there.detail;
-            for (std::size_t p = 0; p < here.points.size(); ++p)
-                for (std::size_t body = 0; body < a.bodies.size(); ++body)
-                    EXPECT_LE(
-                        (s * here.points[p].poses[body].r - there.points[p].poses[body].r).norm(),
-                        1e-9)
-                        << name << " " << a.branches[k].name << " " << p;
-        }
-    }
-}
-
 TEST(Transforms, AStiffenedElementBearsTheFactorAtTheSameDeformation) {
     Scene scene = small("single_bushing");
     Branch& branch = scene.branches.front();

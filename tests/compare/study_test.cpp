@@ -65,7 +65,7 @@ TEST(Study, TheOrderIsThatOfTheLargestErrorThoughTheEndHasAnother) {
         return curve;
     };
     References known;
-    known.truth = known.other = made(0);
+    known.truth.curve = known.other.curve = made(0);
     std::vector<Curve> levels;
     for (const int N : steps) levels.push_back(made(1. / N));
     MethodStudy study;
@@ -257,10 +257,10 @@ TEST(Study, ABranchWithTwoWaysIsStudiedAsTwo) {
     const Study s = study(compile(scene), options());
     ASSERT_EQ(s.branches.size(), 2u);
     EXPECT_TRUE(s.branches[0].branch.starts_with("both to -")) << s.branches[0].branch;
-    for (const auto& way : s.branches) {
-        EXPECT_EQ(way.belongs_to, "both");
-        EXPECT_EQ(way.steps, (std::vector<int>{25, 50, 100, 200, 400}));
-        EXPECT_EQ(way.methods[0].equal_parameter[2].end.behaviour, Behaviour::converging);
+    for (const auto& side : s.branches) {
+        EXPECT_EQ(side.belongs_to, "both");
+        EXPECT_EQ(side.steps, (std::vector<int>{25, 50, 100, 200, 400}));
+        EXPECT_EQ(side.methods[0].equal_parameter[2].end.behaviour, Behaviour::converging);
     }
     EXPECT_TRUE(s.conclusive());
 }

@@ -96,7 +96,7 @@ TEST(Trim, ConditionMayAskForAnotherHeight) {
     const Trimmed found = trim(scene);
     ASSERT_TRUE(found.record->reached()) << found.record->detail;
     EXPECT_NEAR(found.record->adjusted[0].by, 500 - 0.03 * 20e3, 1e-6);
-    EXPECT_NEAR(found.record->conditions[0].asked, -30, 1e-12);
+    EXPECT_NEAR(found.record->conditions[0].target, -30, 1e-12);
 }
 
 TEST(Trim, LeavesTheWheelAtRestWhereItWasDrawnOnEveryBranchAndByBothReferences) {

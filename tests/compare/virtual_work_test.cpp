@@ -206,11 +206,11 @@ struct Sampled {
     bool meets_knots = false;
 };
 
-Sampled sampled(const BranchSide& way, int points_a_piece = 12) {
+Sampled sampled(const BranchSide& side, int points_a_piece = 12) {
     Sampled result;
-    result.path = series::follow(way.model, way.branch);
+    result.path = series::follow(side.model, side.branch);
     if (result.path.outcome != Outcome::converged) return result;
-    const double to = way.branch.to;
+    const double to = side.branch.to;
     const auto add = [&](double a, double weight) {
         result.a.push_back(a);
         result.weight.push_back(weight);
@@ -234,22 +234,22 @@ struct Books {
     double gap() const { return std::abs(work - gained) / turned_over; }
 };
 
-Books books(const BranchSide& way, const std::vector<Channel>& channels, const Sampled& s,
+Books books(const BranchSide& side, const std::vector<Channel>& channels, const Sampled& s,
             const std::vector<Equilibrium>& states) {
     Books b;
     for (std::size_t k = 0; k < states.size(); ++k) {
-        const Power p = power(way.model, channels, way.branch, states[k], s.rates[k]);
-        for (std::size_t e = 0; e < way.model.elastics.size(); ++e)
-            if (const auto* bushing = std::get_if<Bushing>(&way.model.elastics[e].kind);
+        const Power p = power(side.model, channels, side.branch, states[k], s.rates[k]);
+        for (std::size_t e = 0; e < side.model.elastics.size(); ++e)
+            if (const auto* bushing = std::get_if<Bushing>(&side.model.elastics[e].kind);
                 bushing && !has_energy(bushing->formulation))
                 b.gained +=
-                    s.weight[k] * taken_up(*bushing, driven_preload(way.branch, e, states[k].load),
+                    s.weight[k] * taken_up(*bushing, driven_preload(side.branch, e, states[k].load),
                                            states[k], s.rates[k]);
         b.work += s.weight[k] * p.sum;
         b.turned_over += std::abs(s.weight[k]) * p.turned_over;
     }
-    b.gained += stored(way.model, way.branch, states.back()) -
-                stored(way.model, way.branch, states.front());
+    b.gained += stored(side.model, side.branch, states.back()) -
+                stored(side.model, side.branch, states.front());
     return b;
 }
 
@@ -258,12 +258,12 @@ struct Apart {
     std::string where_mm, where_deg;
 };
 // Distance of two legs over all positions and angles.
-Apart apart(const BranchSide& way, const std::vector<Channel>& channels,
+Apart apart(const BranchSide& side, const std::vector<Channel>& channels,
             const std::vector<Equilibrium>& x, const std::vector<Equilibrium>& y) {
     Apart worst;
     for (std::size_t k = 0; k < x.size(); ++k) {
-        const auto of_x = evaluate(way.model, channels, x[k]),
-                   of_y = evaluate(way.model, channels, y[k]);
+        const auto of_x = evaluate(side.model, channels, x[k]),
+                   of_y = evaluate(side.model, channels, y[k]);
         for (std::size_t c = 0; c < channels.size(); ++c) {
             // magnifies errors
             if (!channels[c].kinematic() || channels[c].unit == Unit::percent) continue;
@@ -288,36 +288,36 @@ TEST_P(EveryScene, StoresTheWorkDoneOnItInEveryLegAndTheLegsAreWhereTheOthersAre
     const auto all = channels(model);
     ASSERT_FALSE(model.branches.empty());
     for (const auto& branch : model.branches)
-        for (const auto& way : sides_of(model, branch)) {
-            const Sampled s = sampled(way);
-            ASSERT_EQ(s.path.outcome, Outcome::converged) << way.name << ": " << s.path.detail;
-            const auto equilibrium = reference::equilibrium::solve(way.model, way.branch, s.a);
-            const auto energy = reference::energy::solve(way.model, way.branch, s.a);
+        for (const auto& side : sides_of(model, branch)) {
+            const Sampled s = sampled(side);
+            ASSERT_EQ(s.path.outcome, Outcome::converged) << side.name << ": " << s.path.detail;
+            const auto equilibrium = reference::equilibrium::solve(side.model, side.branch, s.a);
+            const auto energy = reference::energy::solve(side.model, side.branch, s.a);
             ASSERT_EQ(equilibrium.outcome, Outcome::converged)
-                << way.name << ": " << equilibrium.detail;
+                << side.name << ": " << equilibrium.detail;
             const bool conservative = energy.outcome != Outcome::not_conservative;
             if (conservative) {
-                ASSERT_EQ(energy.outcome, Outcome::converged) << way.name << ": " << energy.detail;
+                ASSERT_EQ(energy.outcome, Outcome::converged) << side.name << ": " << energy.detail;
             }
             std::vector<Equilibrium> polynomial;
             for (const double a : s.a)
-                polynomial.push_back(series::evaluate(way.model, way.branch, s.path,
+                polynomial.push_back(series::evaluate(side.model, side.branch, s.path,
                                                       series::find(s.path, a).value()));
 
             std::vector<std::pair<Leg, const std::vector<Equilibrium>*>> legs{
                 {Leg::equilibrium, &equilibrium.points}, {Leg::series, &polynomial}};
             if (conservative) legs.emplace_back(Leg::energy, &energy.points);
             for (const auto& [leg, states] : legs) {
-                const Books b = books(way, all, s, *states);
+                const Books b = books(side, all, s, *states);
                 EXPECT_TRUE(b.turned_over > 0 && b.gap() <= 1e-9) << fmt::format(
                     "{}, {} leg: work {:.12g} J, stored {:.12g} J, apart by {:.2g} of {:.4g} J",
-                    way.name, name(leg), b.work, b.gained, b.gap(), b.turned_over);
+                    side.name, name(leg), b.work, b.gained, b.gap(), b.turned_over);
             }
             const auto expect = [&](Leg leg, const std::vector<Equilibrium>& states, double bound) {
-                const Apart off = apart(way, all, equilibrium.points, states);
+                const Apart off = apart(side, all, equilibrium.points, states);
                 EXPECT_TRUE(off.mm <= bound)
-                    << way.name << ", " << name(leg) << ": " << off.mm << " mm, " << off.where_mm;
-                EXPECT_TRUE(off.deg <= bound) << way.name << ", " << name(leg) << ": " << off.deg
+                    << side.name << ", " << name(leg) << ": " << off.mm << " mm, " << off.where_mm;
+                EXPECT_TRUE(off.deg <= bound) << side.name << ", " << name(leg) << ": " << off.deg
                                               << " deg, " << off.where_deg;
             };
             if (conservative) expect(Leg::energy, energy.points, s.meets_knots ? 1e-6 : 1e-8);

@@ -401,7 +401,7 @@ TEST(Gate, ASwingArmIsKeptAsItsReciprocalAndAnEndlessOneAsZero) {
     for (auto& run : branch.runs)  // as for a wheel guided by parallel links
         for (auto& point : run.curve.values) point[channel("front_view_swing_arm")] = undefined;
     branch.determined[channel("front_view_swing_arm")] = false;
-    const auto& curve = branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve;
+    const auto& curve = branch.run(Leg::equilibrium).curve;
     const Measurement m = measure(model, comparison);
     int arms = 0;
     for (const auto& s : m.series) {

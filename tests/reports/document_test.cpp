@@ -112,7 +112,7 @@ TEST(Document, EveryChannelSaysWhatItIs) {
 TEST(Document, TellsWhatElementsBearAtTheEndsOfTheBranches) {
     const Made made;
     const json whole = json::parse(made.document().dump());
-    const auto told = compare::force_rows(compare::element_values(made.model, made.comparison));
+    const auto told = compare::force_rows(made.model, made.comparison);
     EXPECT_EQ(whole["scenes"][0]["forces"], json::parse(table_json(told).dump()));
     const std::string rows = forces_csv(whole, "result.json");
     EXPECT_TRUE(

@@ -101,7 +101,8 @@ TEST(Assessment, AnyOutputThatIsOffFailsThoughEveryPositionIsRight) {
 TEST(Assessment, ForcesAreHeldToWhatIsAskedOfThem) {
     using compare::Asks, compare::parse_tolerance;
     const auto verdict = [&](const char* text) {
-        return compare::assess(mcpherson(), compared(), parse_tolerance(text, Asks::forces_too))
+        return compare::assess(mcpherson(), compared(),
+                               parse_tolerance(text, ToleranceParts::with_forces))
             .verdict;
     };
     EXPECT_EQ(verdict("100mm,10deg"), Grade::fail);  // by 1 %
