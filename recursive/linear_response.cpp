@@ -63,7 +63,7 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
     for (int e = held.begin(c); e < held.end(c); ++e) {
         const auto at = static_cast<std::size_t>(e);
         const double taken =
-            mu * held.border[at] / (system.scale[held.row[at]] * system.weight[held.row[at]]);
+            mu * system.border()[e] / (system.scale[held.row[at]] * system.weight[held.row[at]]);
         sum += taken * taken;
     }
     return std::sqrt(sum);

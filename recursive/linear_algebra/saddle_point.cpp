@@ -111,19 +111,18 @@ Held<double> places(int idle, const Eigen::SparseMatrix<double>& null_space,
                 held.value[at(held.begin(k) + (place - rows.begin()))] = e.value();
         }
     }
-    held.border.assign(held.row.size(), 0);
     return held;
 }
 
 // The scaling of each entry of the bordered matrix.
 void set_scaling(SaddlePoint<double>& system, const Pattern& pattern) {
     const int N = system.n + system.m;
-    system.scaling.clear();
+    system.lu.factor.clear();
     for (int j = 0; j < pattern.size; ++j)
         for (int e = pattern.first[static_cast<std::size_t>(j)];
              e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
             const int i = pattern.row[static_cast<std::size_t>(e)];
-            system.scaling.push_back(i < N && j < N ? system.scale[i] * system.scale[j] : 0);
+            system.lu.factor.push_back(i < N && j < N ? system.scale[i] * system.scale[j] : 1);
         }
 }
 
@@ -156,32 +155,33 @@ void analyse(SaddlePoint<double>& system, int idle, const Eigen::SparseMatrix<do
     orthonormalise(system);
 
     const Pattern pattern = bordered(inner, system.held);
-    system.source.clear();
+    std::vector<int>& source = system.lu.source;
+    source.clear();
     for (int j = 0; j < pattern.size; ++j)
         for (int e = pattern.first[static_cast<std::size_t>(j)];
              e < pattern.first[static_cast<std::size_t>(j) + 1]; ++e) {
             const int i = pattern.row[static_cast<std::size_t>(e)];
-            system.source.push_back(i < N && j < N ? system.M.at(i, j) : 0);
+            source.push_back(i < N && j < N ? system.M.at(i, j) : 0);
         }
     set_scaling(system, pattern);
-    system.border_at.clear();
+    const int border = system.M.part_at(system.m, 0);
+    system.M.values.resize(static_cast<std::size_t>(border) + system.held.row.size());
     for (int c = 0; c < system.borders(); ++c)
         for (int e = system.held.begin(c); e < system.held.end(c); ++e) {
             const int row = system.held.row[static_cast<std::size_t>(e)];
-            system.border_at.push_back(
-                {entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)});
+            for (const int at : {entry_at(pattern, row, N + c), entry_at(pattern, N + c, row)})
+                source[static_cast<std::size_t>(at)] = border + e;
         }
-    system.values.assign(pattern.entries(), 0);
     system.rhs.setZero(N + system.borders());
     system.solution.setZero(N + system.borders());
-    scale_entries(system);
-    analyse(system.lu, pattern, system.values.data());
+    set_border(system);
+    analyse_scaled(system.lu, pattern, system.M.values.data());
 }
 
 void rescale(SaddlePoint<double>& system) {
     const double before = log_of_scaling(system);
     SaddleMatrix<double> all = system.M;
-    for (std::size_t e = 0; e < all.values.size(); ++e)
+    for (std::size_t e = 0; e < system.largest.size(); ++e)
         all.values[e] = system.largest[e] = std::max(system.largest[e], std::abs(all.values[e]));
     system.scale = equilibration(all);
     set_scaling(system, system.lu.order.pattern);

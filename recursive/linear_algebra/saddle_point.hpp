@@ -34,8 +34,7 @@ struct Held {
     std::vector<int> with;   // first direction with the same places [d]
     // of each entry, ascending within a direction; all six rows of a body for an idle mode
     std::vector<int> row;
-    std::vector<Real> value;   // z or y, physical units, of unit norm in `weight`
-    std::vector<Real> border;  // b in scaled coordinates, of unit length
+    std::vector<Real> value;  // z or y, physical units, of unit norm in `weight`
 
     int size() const { return static_cast<int>(with.size()); }
     int begin(int c) const { return first[static_cast<std::size_t>(c)]; }
@@ -55,29 +54,27 @@ struct Held {
 
     template <class Other>
     Held<Other> cast() const {
-        return {
-            idle, first, with, row, {value.begin(), value.end()}, {border.begin(), border.end()}};
+        return {idle, first, with, row, {value.begin(), value.end()}};
     }
 };
 
 template <class Real>
 struct SaddlePoint {
-    int n = 0, m = 0;             // 6nb, rows of Φ
-    SaddleMatrix<Real> M;         // raw [(n+m) × (n+m)]; assembled by the caller
+    int n = 0, m = 0;  // 6nb, rows of Φ
+    // raw [(n+m) × (n+m)]; assembled by the caller. Its values are followed by the border: b of every
+    // held direction in scaled coordinates, of unit length
+    SaddleMatrix<Real> M;
     Vector<Real> scale;           // D, powers of two
     std::vector<double> largest;  // of each entry of M, among the matrices that D is fixed from
     Vector<Real> weight;          // W: 1 for Δr [m], L for Δπ, 1 for λ
     Held<Real> held;
-    // M̂ with its border, in the order of the pattern: values, the scaling of each entry (0 in the
-    // border), its position in M, and the two positions of each border entry.
-    std::vector<Real> values, scaling;
-    std::vector<int> source;
-    std::vector<std::array<int, 2>> border_at;
     Vector<Real> rhs, solution;
-    SparseLU<Real> lu;
+    SparseLU<Real> lu;     // of M̂ with its border
     double log_scale = 0;  // log₂ of det M̂ / det M at the present scaling over that at the first
 
     int borders() const { return held.size(); }
+    Real* border() { return M.values.data() + M.part_at(m, 0); }
+    const Real* border() const { return M.values.data() + M.part_at(m, 0); }
 };
 
 // D of the matrix M by Ruiz equilibration (2001): every row of D M D has its largest entry in (½,
@@ -114,26 +111,19 @@ void orthonormalise(SaddlePoint<Real>& system) {
     }
 }
 
-// Computes M̂ and its border from M and the held directions.
+// Computes the border from the held directions.
 template <class Real>
-void scale_entries(SaddlePoint<Real>& system) {
-    Held<Real>& held = system.held;
+void set_border(SaddlePoint<Real>& system) {
+    const Held<Real>& held = system.held;
     for (int c = 0; c < held.size(); ++c) {
         const auto W2 = weights(system, c);
-        Eigen::Map<Vector<Real>> b(held.border.data() + held.begin(c), held.end(c) - held.begin(c));
+        Eigen::Map<Vector<Real>> b(system.border() + held.begin(c), held.end(c) - held.begin(c));
         for (Eigen::Index e = 0; e < b.size(); ++e) {
             const auto at = static_cast<std::size_t>(held.begin(c) + e);
             b[e] = system.scale[held.row[at]] * W2(e) * held.value[at];
         }
         b.normalize();
     }
-    const Real *const M = system.M.values.data(), *const scaling = system.scaling.data();
-    const int* const source = system.source.data();
-    Real* const values = system.values.data();
-    const std::size_t entries = system.values.size();
-    for (std::size_t e = 0; e < entries; ++e) values[e] = M[source[e]] * scaling[e];
-    for (std::size_t b = 0; b < held.border.size(); ++b)
-        for (const int e : system.border_at[b]) values[e] = held.border[b];
 }
 
 // Fixes the scaling from the matrix now in M, the held directions in the columns of `null_space`
@@ -162,13 +152,9 @@ SaddlePoint<Real> in_arithmetic(const SaddlePoint<double>& from) {
     system.scale = from.scale.cast<Real>();
     system.held = from.held.template cast<Real>();
     system.weight = from.weight.cast<Real>();
-    system.values.assign(from.values.begin(), from.values.end());
-    system.scaling.assign(from.scaling.begin(), from.scaling.end());
-    system.source = from.source;
-    system.border_at = from.border_at;
     system.rhs = from.rhs.cast<Real>();
     system.solution = from.solution.cast<Real>();
-    analyse(system.lu, from.lu.order);
+    analyse(system.lu, from.lu);
     return system;
 }
 template <>
@@ -194,8 +180,8 @@ void back_substitute(SaddlePoint<Real>& system, const Vector<Real>& f, const Vec
 // checks.
 template <class Real>
 Real factorise(SaddlePoint<Real>& system) {
-    scale_entries(system);
-    const Real pivot_ratio = factorise(system.lu, system.values.data());
+    set_border(system);
+    const Real pivot_ratio = factorise(system.lu, system.M.values.data());
 
     // The solution for e_c of the border, at the places of the direction only.
     Held<Real>& held = system.held;
@@ -214,6 +200,6 @@ Real factorise(SaddlePoint<Real>& system) {
 extern template double factorise<double>(SaddlePoint<double>&);
 extern template void back_substitute<double>(SaddlePoint<double>&, const Vector<double>&,
                                              const Vector<double>&, Vector<double>&);
-extern template void scale_entries<double>(SaddlePoint<double>&);
+extern template void set_border<double>(SaddlePoint<double>&);
 
 }  // namespace elastocheck::recursive

@@ -5,42 +5,59 @@
 //   solve       right-hand side → solution
 //
 // The pattern of eq. (24) depends on the connections of the model (pattern.hpp). The pivot order is
-// chosen once (pivot_search.hpp), and afterwards only structural non-zeros are stored and updated.
-// Row i of L and U in pivot order follows from row i of A and the rows of U above it,
+// chosen once (pivot_search.hpp), and afterwards only structural non-zeros are stored and updated,
+// in place: for the k-th pivot, row U_k right of it, and every row i with an entry below it,
 //
-//   w ← A_i,   l_ik = w_k / u_kk,   w ← w - l_ik U_k   for every k < i in the pattern,   U_i ← w
+//   l_ik = a_ik / u_kk,   A_i ← A_i - l_ik U_k
 //
-// in one full-length row w. The order is kept while no multiplier of L exceeds a hundred (or the
-// caller's `largest_multiplier`); beyond it a new order is chosen from the current values.
+// A row is stored in runs of adjacent columns, so that the second line is a sum of short vectors at
+// positions known from the pattern. Gaps of a few columns are stored as zeros, and so is one more
+// column after every run, which makes the number of columns of a run even where that is needed. The
+// order is kept while no multiplier of L exceeds a hundred (or the caller's `largest_multiplier`);
+// beyond it a new order is chosen from the current values.
 //
-// Values are those of the pattern's entries, in the order of the pattern.
+// Entry e of the pattern is values[source[e]] · factor[e], so that the caller's matrix needs no copy.
 #pragma once
 
 #include <cstring>
+#include <numeric>
+#include <span>
 
 #include "recursive/linear_algebra/pivot_search.hpp"
 
 namespace elastocheck::recursive {
 
-// Elimination order and fill, by rows of L and U.
+// Elimination order, and the places of L and U in one array: their rows one after the other.
 struct Elimination {
+    struct Run {  // adjacent columns of a row, and the place of the first
+        int column, length, at;
+    };
+    struct Below {  // an entry of L and its place
+        int row, at;
+    };
     Pattern pattern;
     std::vector<int> row, col;        // the k-th pivot is A(row[k], col[k])
     std::vector<int> row_of, col_of;  // ... and the inverse permutations
-    // Per row i, as column numbers: the entries of A with their positions in the pattern; the
-    // entries that are fill only; the entries of L, and of U beside the pivot, both ascending.
-    std::vector<int> to, entry, first_entry, fill, first_fill, left, first_left, right, first_right;
-    // Per column k of L: the rows, and the positions of these entries in L.
-    std::vector<int> below, place, first_below;
-    int parity = 1;  // sign of the product of the permutations `row` and `col`: +1 or -1
+    std::vector<int> to;              // place of every entry of the pattern
+    std::vector<int> column;          // of every place
+    std::vector<int> first, pivot;    // place where each row begins, and of its pivot
+    // Per row: the runs of U, ascending. Per column k of L: its entries, ascending, and for each of
+    // them and each run of U_k the place in its row from which that run is subtracted.
+    std::vector<Run> right;
+    std::vector<Below> below;
+    std::vector<int> target, first_right, first_below;
+    std::size_t nonzeros = 0;  // of L and U with the pivots, without the zeros stored for the runs
+    int parity = 1;            // sign of the product of the permutations `row` and `col`: +1 or -1
 };
 
 template <class Real>
 struct SparseLU {
     Elimination order;
-    std::vector<Real> L, U;            // without the diagonals, in the order of `left` and `right`
+    std::vector<int> source;           // of every entry of the pattern: its position in the values
+    std::vector<Real> factor;          // ... and what these are multiplied by
+    std::size_t values = 0;            // number of values
+    std::vector<Real> LU;              // factors, the diagonal of U included
     std::vector<Real> inverse;         // 1 / pivots
-    std::vector<Real> w;               // the row being eliminated
     std::vector<Real> y;               // the solution in pivot order
     std::vector<Real> known, unknown;  // workspace of solve_unit, zero between calls:
     std::vector<int> reached;          // the non-zeros found so far
@@ -57,15 +74,10 @@ struct SparseLU {
 template <class Real>
 void reserve(SparseLU<Real>& lu) {
     const std::size_t n = lu.size();
-    for (auto* list : {&lu.inverse, &lu.w, &lu.y, &lu.known, &lu.unknown}) list->assign(n, 0);
+    for (auto* list : {&lu.inverse, &lu.y, &lu.known, &lu.unknown}) list->assign(n, 0);
     lu.queued.assign(n, 0);
     lu.reached.reserve(2 * n);
-}
-// ... and the factors.
-template <class Real>
-void reserve_factors(SparseLU<Real>& lu) {
-    lu.L.resize(lu.order.left.size());
-    lu.U.resize(lu.order.right.size());
+    lu.LU.assign(lu.order.column.size(), 0);
 }
 
 // Sign of a permutation: +1 if even, -1 if odd.
@@ -101,152 +113,232 @@ void sort_into_rows(std::size_t n, std::vector<int>& first, std::vector<int>& co
     first[0] = 0;
 }
 
+// Sets the places of row i and appends to `targets` of the pivots above it. `columns`: those of the
+// row's entries, fill included, in any order; `L`: those of L, ascending. `place` [n]: returns the
+// place of each column of the row.
+inline void lay_out_row(Elimination& order, int i, std::vector<int>& columns,
+                        std::span<const int> L, std::vector<int>& place,
+                        std::vector<std::vector<int>>& targets) {
+    constexpr int gap = 2;  // columns stored as zeros to join two runs
+    const auto at = [](int k) { return static_cast<std::size_t>(k); };
+    const auto runs_of = [&](int k) {
+        return std::span(order.right.begin() + order.first_right[at(k)],
+                         order.right.begin() + order.first_right[at(k) + 1]);
+    };
+    for (const int k : L)  // what a run of U_k covers is subtracted here
+        for (const auto& run : runs_of(k))
+            for (int c = run.column; c < run.column + run.length; ++c) columns.push_back(c);
+    std::ranges::sort(columns);
+    int last = -1;  // column
+    for (const int column : columns) {
+        if (column == last) continue;
+        const bool joined = last >= 0 && column - last - 1 <= gap;
+        if (last >= 0 && !joined) order.column.push_back(i);  // the zero after a run
+        for (int c = joined ? last + 1 : column; c <= column; ++c) {
+            const auto here = static_cast<int>(order.column.size());
+            order.column.push_back(c);
+            place[at(c)] = here;
+            if (c == i) order.pivot.push_back(here);
+            if (c <= i) continue;
+            if (!joined || order.right.size() == at(order.first_right.back()))
+                order.right.push_back({c, 0, here});
+            ++order.right.back().length;
+        }
+        last = column;
+    }
+    order.column.push_back(i);
+    order.first.push_back(static_cast<int>(order.column.size()));
+    order.first_right.push_back(static_cast<int>(order.right.size()));
+    for (const int k : L) {
+        targets[at(k)].insert(targets[at(k)].end(), {i, place[at(k)]});
+        for (const auto& run : runs_of(k)) targets[at(k)].push_back(place[at(run.column)]);
+    }
+}
+
 // Stores the rows of L and U for the pivots found by `search`.
 template <class Real>
 void lay_out(SparseLU<Real>& lu) {
     const std::size_t n = lu.size();
+    const auto at = [](int k) { return static_cast<std::size_t>(k); };
     Elimination& order = lu.order;
+    const Pattern& pattern = order.pattern;
     const PivotSearch<Real>& found = lu.search;
     order.row = found.row;
     order.col = found.col;
     order.row_of.resize(n);
     order.col_of.resize(n);
     for (std::size_t k = 0; k < n; ++k) {
-        order.row_of[static_cast<std::size_t>(order.row[k])] = static_cast<int>(k);
-        order.col_of[static_cast<std::size_t>(order.col[k])] = static_cast<int>(k);
+        order.row_of[at(order.row[k])] = static_cast<int>(k);
+        order.col_of[at(order.col[k])] = static_cast<int>(k);
     }
-    const auto in = [](const std::vector<int>& first, std::size_t k, auto&& visit) {
-        for (int e = first[k]; e < first[k + 1]; ++e) visit(static_cast<std::size_t>(e));
-    };
-    // Two counting sorts of `below` and `right`, from numbers of A, put the columns of each row in
-    // order.
-    const auto of_row = [&](std::size_t e) {
-        return order.row_of[static_cast<std::size_t>(found.below[e])];
-    };
-    const auto of_col = [&](std::size_t e) {
-        return order.col_of[static_cast<std::size_t>(found.right[e])];
-    };
-    sort_into_rows(n, order.first_left, order.left, nullptr, [&](auto&& put) {
+    // L by rows and the entries of A by rows, in the numbers of the pivots
+    std::vector<int> L, first_L, column, entry, first_entry;
+    sort_into_rows(n, first_L, L, nullptr, [&](auto&& put) {
         for (std::size_t k = 0; k < n; ++k)
-            in(found.first_below, k,
-               [&](std::size_t e) { put(of_row(e), static_cast<int>(k), 0); });
+            for (int e = found.first_below[k]; e < found.first_below[k + 1]; ++e)
+                put(order.row_of[at(found.below[at(e)])], static_cast<int>(k), 0);
     });
-    sort_into_rows(n, order.first_below, order.below, &order.place, [&](auto&& put) {
-        for (std::size_t i = 0; i < n; ++i)
-            in(order.first_left, i, [&](std::size_t e) {
-                put(order.left[e], static_cast<int>(i), static_cast<int>(e));
-            });
-    });
-    // columns of U, temporarily
-    sort_into_rows(n, order.first_fill, order.fill, nullptr, [&](auto&& put) {
-        for (std::size_t k = 0; k < n; ++k)
-            in(found.first_right, k,
-               [&](std::size_t e) { put(of_col(e), static_cast<int>(k), 0); });
-    });
-    sort_into_rows(n, order.first_right, order.right, nullptr, [&](auto&& put) {
+    sort_into_rows(n, first_entry, column, &entry, [&](auto&& put) {
         for (std::size_t j = 0; j < n; ++j)
-            in(order.first_fill, j,
-               [&](std::size_t e) { put(order.fill[e], static_cast<int>(j), 0); });
+            for (int e = pattern.first[j]; e < pattern.first[j + 1]; ++e)
+                put(order.row_of[at(pattern.row[at(e)])], order.col_of[j], e);
     });
-    const Pattern& pattern = order.pattern;
-    sort_into_rows(n, order.first_entry, order.to, &order.entry, [&](auto&& put) {
-        for (std::size_t j = 0; j < n; ++j)
-            in(pattern.first, j, [&](std::size_t e) {
-                put(order.row_of[static_cast<std::size_t>(pattern.row[e])], order.col_of[j],
-                    static_cast<int>(e));
-            });
-    });
-    order.fill.clear();
-    order.first_fill.assign(1, 0);
-    std::vector<char>& there = lu.queued;
+    order.to.resize(pattern.entries());
+    for (auto* list : {&order.column, &order.pivot, &order.target}) list->clear();
+    for (auto* list : {&order.first, &order.first_right, &order.first_below}) list->assign(1, 0);
+    order.right.clear();
+    order.below.clear();
+    std::vector<int> place(n), columns;
+    std::vector<std::vector<int>> targets(n);
     for (std::size_t i = 0; i < n; ++i) {
-        const auto mark = [&](char value) {
-            in(order.first_entry, i,
-               [&](std::size_t e) { there[static_cast<std::size_t>(order.to[e])] = value; });
-        };
-        const auto fills = [&](int column) {
-            if (!there[static_cast<std::size_t>(column)]) order.fill.push_back(column);
-        };
-        mark(1);
-        in(order.first_left, i, [&](std::size_t e) { fills(order.left[e]); });
-        fills(static_cast<int>(i));
-        in(order.first_right, i, [&](std::size_t e) { fills(order.right[e]); });
-        mark(0);
-        order.first_fill.push_back(static_cast<int>(order.fill.size()));
+        columns.assign(L.begin() + first_L[i], L.begin() + first_L[i + 1]);
+        const std::vector<int> left = columns;
+        columns.push_back(static_cast<int>(i));
+        for (int e = found.first_right[i]; e < found.first_right[i + 1]; ++e)
+            columns.push_back(order.col_of[at(found.right[at(e)])]);
+        lay_out_row(order, static_cast<int>(i), columns, left, place, targets);
+        for (int e = first_entry[i]; e < first_entry[i + 1]; ++e)
+            order.to[at(entry[at(e)])] = place[at(column[at(e)])];
     }
-    order.parity = parity(order.row, there) * parity(order.col, there);
-    std::fill(there.begin(), there.end(), 0);
-    reserve_factors(lu);
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto runs = at(order.first_right[k + 1] - order.first_right[k]);
+        for (auto e = targets[k].begin(); e != targets[k].end();
+             e += 2 + static_cast<std::ptrdiff_t>(runs)) {
+            order.below.push_back({e[0], e[1]});
+            order.target.insert(order.target.end(), e + 2,
+                                e + 2 + static_cast<std::ptrdiff_t>(runs));
+        }
+        order.first_below.push_back(static_cast<int>(order.below.size()));
+    }
+    order.nonzeros = found.below.size() + found.right.size() + n;
+    order.parity = parity(order.row, lu.queued) * parity(order.col, lu.queued);
+    std::fill(lu.queued.begin(), lu.queued.end(), 0);
+    lu.LU.assign(order.column.size(), 0);
 }
 
 // Chooses the elimination order from `values`.
 template <class Real>
 void choose_order(SparseLU<Real>& lu, const Real* values) {
     ++lu.orders;
-    search_pivots(lu.search, lu.order.pattern, values);
+    std::vector<Real> entries;
+    for (std::size_t e = 0; e < lu.source.size(); ++e)
+        entries.push_back(values[lu.source[e]] * lu.factor[e]);
+    search_pivots(lu.search, lu.order.pattern, entries.data());
     lay_out(lu);
 }
 
-// Prepares for matrices of this pattern, with the elimination order chosen from `values`.
+// Prepares for matrices of this pattern, with the elimination order chosen from `values`. The caller
+// has set `source` and `factor`.
 template <class Real>
-void analyse(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
+void analyse_scaled(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
     lu.order = {};
     lu.order.pattern = pattern;
+    lu.values = 0;
+    for (const int at : lu.source)
+        lu.values = std::max(lu.values, static_cast<std::size_t>(at) + 1);
     lu.orders = 0;
     reserve(lu);
     choose_order(lu, values);
 }
-// The same with a given order, for matrices of the same pattern in any arithmetic.
+// ... for values in the order of the pattern.
 template <class Real>
-void analyse(SparseLU<Real>& lu, const Elimination& order) {
-    lu.order = order;
+void analyse(SparseLU<Real>& lu, const Pattern& pattern, const Real* values) {
+    lu.source.resize(pattern.entries());
+    std::iota(lu.source.begin(), lu.source.end(), 0);
+    lu.factor.assign(pattern.entries(), Real(1));
+    analyse_scaled(lu, pattern, values);
+}
+// The same factorisation in another arithmetic, with this order; not factorised.
+template <class Real, class Other>
+void analyse(SparseLU<Real>& lu, const SparseLU<Other>& other) {
+    lu.order = other.order;
+    lu.source = other.source;
+    lu.factor.assign(other.factor.begin(), other.factor.end());
+    lu.values = other.values;
     lu.orders = 0;
     reserve(lu);
-    reserve_factors(lu);
+}
+
+// Subtracts the rows of U from the `rows` rows of L from `below` on.
+//
+//   A_i ← A_i - l_ik U_k
+template <int rows, class Real>
+inline void subtract(Real* LU, const Elimination::Below* below, const int* target,
+                     const Elimination::Run* first, const Elimination::Run* last, Real inverse,
+                     Real& largest) {
+    Real l[rows];
+    for (int i = 0; i < rows; ++i) {
+        l[i] = LU[below[i].at] *= inverse;
+        largest = std::max(largest, std::abs(l[i]));
+    }
+    const std::ptrdiff_t runs = last - first;
+    for (const auto* run = first; run != last; ++run, ++target) {
+        const std::ptrdiff_t even = (run->length + 1) & ~1;
+        const Real* const u = LU + run->at + even;
+        Real* a[rows];
+        for (int i = 0; i < rows; ++i) a[i] = LU + target[i * runs] + even;
+        for (std::ptrdiff_t c = -even; c != 0; c += 2) {  // two at a time: the compiler's vectors
+            const Real one = u[c], two = u[c + 1];
+            Real left[rows][2];
+            for (int i = 0; i < rows; ++i) {
+                left[i][0] = a[i][c] - l[i] * one;
+                left[i][1] = a[i][c + 1] - l[i] * two;
+            }
+            for (int i = 0; i < rows; ++i) {
+                a[i][c] = left[i][0];
+                a[i][c + 1] = left[i][1];
+            }
+        }
+    }
 }
 
 // Eliminates in the chosen order. Returns the ratio of the smallest to the largest pivot, 0 for a
 // zero pivot, NaN for a matrix that is not finite; `largest` returns the largest multiplier.
 template <class Real>
 Real eliminate(SparseLU<Real>& lu, const Real* values, Real& largest) {
-    const std::size_t n = lu.size();
+    const std::size_t n = lu.size(), entries = lu.source.size();
     const Elimination& order = lu.order;
-    Real *const w = lu.w.data(), *const L = lu.L.data(), *const U = lu.U.data(),
-                *const inverse = lu.inverse.data();
-    const int *const to = order.to.data(), *const entry = order.entry.data(),
-                     *const fill = order.fill.data(), *const left = order.left.data(),
-                     *const right = order.right.data(),
-                     *const first_right = order.first_right.data();
-    Real sum = 0, least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0;
-    int orientation = order.parity;
+    Real* const LU = lu.LU.data();
     largest = 0;
     lu.orientation = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        for (int e = order.first_fill[i]; e < order.first_fill[i + 1]; ++e) w[fill[e]] = 0;
-        for (int e = order.first_entry[i]; e < order.first_entry[i + 1]; ++e) {
-            const Real value = values[entry[e]];
-            w[to[e]] = value;
-            sum += std::abs(value);
-        }
-        for (int e = order.first_left[i]; e < order.first_left[i + 1]; ++e) {
-            const int k = left[e];
-            const Real l = L[e] = w[k] * inverse[k];
-            largest = std::max(largest, std::abs(l));
-            for (int r = first_right[k]; r < first_right[k + 1]; ++r) w[right[r]] -= l * U[r];
-        }
-        for (int r = first_right[i]; r < first_right[i + 1]; ++r) U[r] = w[right[r]];
-        const Real size = std::abs(w[i]);
-        if (!(size > 0)) {  // the remaining rows may still hold a NaN
-            for (std::size_t e = 0; e < order.pattern.entries(); ++e) sum += std::abs(values[e]);
-            return std::isnan(size) || !std::isfinite(sum) ? std::numeric_limits<Real>::quiet_NaN()
-                                                           : Real(0);
+    using Values = Eigen::Map<const Eigen::Array<Real, Eigen::Dynamic, 1>>;
+    if (!std::isfinite(Values(values, static_cast<Eigen::Index>(lu.values)).abs().sum()))
+        return std::numeric_limits<Real>::quiet_NaN();
+    std::memset(LU, 0, order.column.size() * sizeof(Real));
+    {
+        const int *const to = order.to.data(), *const source = lu.source.data();
+        const Real* const factor = lu.factor.data();
+        for (std::size_t e = 0; e < entries; ++e) LU[to[e]] = values[source[e]] * factor[e];
+    }
+    Real least_pivot = std::numeric_limits<Real>::infinity(), largest_pivot = 0, most = 0;
+    int orientation = order.parity;
+    const int* target = order.target.data();
+    const auto *below = order.below.data(), *const first_below = below;
+    const auto *run = order.right.data(), *const first_run = run;
+    for (std::size_t k = 0; k < n; ++k) {
+        const Real pivot = LU[order.pivot[k]], size = std::abs(pivot);
+        if (!(size > 0)) {
+            largest = most;
+            return size;  // zero or NaN
         }
         least_pivot = std::min(least_pivot, size);
         largest_pivot = std::max(largest_pivot, size);
-        inverse[i] = 1 / w[i];
-        if (w[i] < 0) orientation = -orientation;
+        const Real inverse = lu.inverse[k] = 1 / pivot;
+        if (pivot < 0) orientation = -orientation;
+        const auto* const end = first_below + order.first_below[k + 1];
+        const auto* const last = first_run + order.first_right[k + 1];
+        const std::ptrdiff_t runs = last - run;
+        for (; end - below >= 4; below += 4, target += 4 * runs)
+            subtract<4>(LU, below, target, run, last, inverse, most);
+        for (; end - below >= 2; below += 2, target += 2 * runs)
+            subtract<2>(LU, below, target, run, last, inverse, most);
+        if (below != end) {
+            subtract<1>(LU, below++, target, run, last, inverse, most);
+            target += runs;
+        }
+        run = last;
     }
-    if (!std::isfinite(sum)) return std::numeric_limits<Real>::quiet_NaN();
+    largest = most;
     lu.orientation = orientation;
     return least_pivot / largest_pivot;
 }
@@ -271,26 +363,30 @@ Real factorise(SparseLU<Real>& lu, const Real* values) {
     return eliminate(lu, values, largest);
 }
 
+// x_k from y_k and the x right of it, from the last, which is known first, to the first.
+template <class Real>
+Real back_substituted(const SparseLU<Real>& lu, std::size_t k, Real y, const Real* x) {
+    const Real* const LU = lu.LU.data();
+    const int* const column = lu.order.column.data();
+    for (int at = lu.order.first[k + 1] - 1; at > lu.order.pivot[k]; --at)
+        y -= LU[at] * x[column[at]];
+    return y * lu.inverse[k];
+}
+
 // Solves A x = b with the last factors. Allocates nothing.
 template <class Real>
 void solve(SparseLU<Real>& lu, const Real* b, Real* x) {
     const std::size_t n = lu.size();
     const Elimination& order = lu.order;
     Real* const y = lu.y.data();
-    const Real *const L = lu.L.data(), *const U = lu.U.data();
-    const int *const left = order.left.data(), *const right = order.right.data();
+    const Real* const LU = lu.LU.data();
+    const int* const column = order.column.data();
     for (std::size_t i = 0; i < n; ++i) {
         Real sum = b[order.row[i]];
-        for (int e = order.first_left[i]; e < order.first_left[i + 1]; ++e)
-            sum -= L[e] * y[left[e]];
+        for (int at = order.first[i]; at < order.pivot[i]; ++at) sum -= LU[at] * y[column[at]];
         y[i] = sum;
     }
-    for (std::size_t k = n; k-- > 0;) {
-        Real sum = y[k];
-        for (int e = order.first_right[k]; e < order.first_right[k + 1]; ++e)
-            sum -= U[e] * y[right[e]];
-        x[order.col[k]] = y[k] = sum * lu.inverse[k];
-    }
+    for (std::size_t k = n; k-- > 0;) x[order.col[k]] = y[k] = back_substituted(lu, k, y[k], y);
 }
 
 // Solves A x = e_j for the unknowns `wanted` only. Forward substitution visits only the rows
@@ -305,10 +401,10 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
     // local pointers: a store to `queued`, of characters, might change any other
     Real *const known = lu.known.data(), *const unknown = lu.unknown.data();
     char* const queued = lu.queued.data();
-    const Real *const L = lu.L.data(), *const U = lu.U.data();
-    const int *const below = order.below.data(), *const place = order.place.data(),
-                     *const right = order.right.data(),
-                     *const first_below = order.first_below.data(),
+    const Real* const LU = lu.LU.data();
+    const auto* const below = order.below.data();
+    const auto* const right = order.right.data();
+    const int *const first_below = order.first_below.data(),
                      *const first_right = order.first_right.data(),
                      *const col_of = order.col_of.data();
     const auto next = [&](int k) {  // next queued index from k on, which mostly is near
@@ -335,8 +431,8 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
         }
         last = k;
         for (int e = first_below[k]; e < first_below[k + 1]; ++e) {
-            known[below[e]] -= L[place[e]] * y;
-            queued[below[e]] = 1;
+            known[below[e].row] -= LU[below[e].at] * y;
+            queued[below[e].row] = 1;
         }
     }
     const std::size_t forward = lu.reached.size();
@@ -348,15 +444,14 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
         }
     for (; k < n; k = next(k + 1)) {
         reach(k);
-        for (int e = first_right[k]; e < first_right[k + 1]; ++e)
-            if (right[e] <= last) queued[right[e]] = 1;
+        for (int r = first_right[k]; r < first_right[k + 1] && right[r].column <= last; ++r)
+            for (int c = right[r].column; c < std::min(right[r].column + right[r].length, last + 1);
+                 ++c)
+                queued[c] = 1;
     }
     for (std::size_t r = lu.reached.size(); r-- > forward;) {
         const int own = lu.reached[r];
-        Real sum = known[own];
-        for (int e = first_right[own]; e < first_right[own + 1]; ++e)
-            sum -= U[e] * unknown[right[e]];
-        unknown[own] = sum * lu.inverse[static_cast<std::size_t>(own)];
+        unknown[own] = back_substituted(lu, static_cast<std::size_t>(own), known[own], unknown);
     }
     for (int c = 0; c < count; ++c) x[c] = unknown[col_of[wanted[c]]];
     for (const int own : lu.reached) known[own] = unknown[own] = 0;

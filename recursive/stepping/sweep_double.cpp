@@ -35,7 +35,7 @@ template void solve_unit<double>(SparseLU<double>&, int, const int*, int, double
 template double factorise<double>(SaddlePoint<double>&);
 template void back_substitute<double>(SaddlePoint<double>&, const Vector<double>&,
                                       const Vector<double>&, Vector<double>&);
-template void scale_entries<double>(SaddlePoint<double>&);
+template void set_border<double>(SaddlePoint<double>&);
 template void assemble<double>(const Model&, const Inputs<double>&, const State<double>&,
                                SaddleMatrix<double>&, Vector<double>&);
 template void assemble_consistent<double>(const Model&, const Branch&, const Inputs<double>&,

@@ -71,8 +71,7 @@ std::string trim_words(const compare::TrimRecord& trim) {
 std::string cost_words(const Model& model) {
     const recursive::SaddlePoint<double> system = recursive::analyse(model).system;
     const recursive::Elimination& order = system.lu.order;
-    const std::size_t entries = order.pattern.entries(),
-                      factors = order.left.size() + order.right.size() + system.lu.size();
+    const std::size_t entries = order.pattern.entries(), factors = order.nonzeros;
     return fmt::format(
         "  matrix            {:>6}   unknowns in eq. (24), {} with what is held; {} entries other "
         "than zero\n"
