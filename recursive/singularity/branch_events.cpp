@@ -216,6 +216,8 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
     if (branch.to == 0 || model.bodies.empty()) return std::nullopt;
     SteppingState<double> s(model, branch, analysis);
     s.consistent = true;
+    // Newton corrections at every node restore accuracy, and a pivot order costs ten factorisations.
+    s.system.lu.largest_multiplier = 1e4;
     if (const Outcome o = settles(s, branch, analysis); ends(o) || o == Outcome::loaded_idle_mode)
         return Event{o, std::numeric_limits<double>::quiet_NaN(), s.unstable_start};
     else if (o != Outcome::converged)
