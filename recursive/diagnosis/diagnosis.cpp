@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <stdexcept>
 
 #include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
@@ -399,6 +400,7 @@ Diagnosis diagnose(const Model& model) {
     const int n = result.coordinates = coordinates(model);
     const int m = result.rows = constraint_rows(model);
     const int nb = static_cast<int>(model.bodies.size());
+    if (nb == 0) throw std::invalid_argument("the model has no bodies");
     const double L = result.length = characteristic_length(model);
 
     if (!not_finite(model).empty()) {

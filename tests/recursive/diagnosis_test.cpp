@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -512,6 +513,23 @@ TEST(Diagnosis, AThousandLinksThatSpinAreAModeOfOneBodyEach) {
         EXPECT_NE(mode.description.find("rotation about the line through"), std::string::npos);
     }
     EXPECT_TRUE(d.redundant.empty());
+}
+
+TEST(Diagnosis, AModelWithoutBodiesIsAnErrorThatSaysSo) {
+    const auto message = [](auto&& call) -> std::string {
+        try {
+            call();
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(message([] { diagnose({}); }), "the model has no bodies");
+    EXPECT_EQ(message([] { analyse(Model{}); }), "the model has no bodies");
+    for (const Method& method : methods)
+        EXPECT_EQ(message([&] { solve(Model{}, Branch{}, {.method = method}); }),
+                  "the model has no bodies")
+            << method.name;
 }
 
 }  // namespace
