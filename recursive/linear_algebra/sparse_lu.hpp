@@ -363,12 +363,12 @@ Real factorise(SparseLU<Real>& lu, const Real* values) {
     return eliminate(lu, values, largest);
 }
 
-// x_k from y_k and the x right of it, from the last, which is known first, to the first.
+// x_k from y_k and the x right of it.
 template <class Real>
 Real back_substituted(const SparseLU<Real>& lu, std::size_t k, Real y, const Real* x) {
     const Real* const LU = lu.LU.data();
     const int* const column = lu.order.column.data();
-    for (int at = lu.order.first[k + 1] - 1; at > lu.order.pivot[k]; --at)
+    for (int at = lu.order.pivot[k] + 1; at < lu.order.first[k + 1]; ++at)
         y -= LU[at] * x[column[at]];
     return y * lu.inverse[k];
 }
