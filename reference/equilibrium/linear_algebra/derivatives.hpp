@@ -1,4 +1,5 @@
-// Derivatives of the system by automatic differentiation. The only file that uses Ceres.
+// Derivatives of the system by automatic differentiation. Only the sources of this header and of
+// number_rates.hpp use Ceres.
 #pragma once
 
 #include "reference/equilibrium/linear_algebra/factors.hpp"

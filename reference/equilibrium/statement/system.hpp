@@ -184,19 +184,22 @@ Holding<T> holding(const System& system, std::size_t c, const T& a, const T& hel
 
 // ---- Assembly, for double and for Jets
 
+enum class Term { element, load, ground_spring, constraint };
+
 // One term of the system: the bodies it couples, and its constraint rows, whose reactions enter.
 struct Part {
     BodyId i = ground, j = ground;
     int row = 0, rows = 0;
     // its rows constrain directions: independent of the positions, with moments only
     bool directions = false;
+    Term term = Term::element;
+    std::size_t number = 0;  // its position among the terms of this kind
 };
 
 // `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)`
 // its scaled reactions; `sink.balance(part, body, force, moment)` and
 // `sink.constraint(part, k, Phi)` take the scaled terms, to be summed. A source may leave out terms:
 // `source.wants(term, k)`, k the position among its kind.
-enum class Term { element, load, ground_spring, constraint };
 template <class Source>
 concept LeavesOut = requires(const Source& source) {
     source.wants(Term::element, std::size_t{});
@@ -227,7 +230,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         if (!wants(source, Term::element, e)) continue;
         const auto [i, j] = bodies_of(model.elastics[e].kind);
-        const Part part{i, j};
+        const Part part{.i = i, .j = j, .term = Term::element, .number = e};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
         const auto on = interaction(system, e, a, held, pieces, frame_i, frame_j);
         apply(part, i, frame_i, on.i, T(+1.0));
@@ -235,7 +238,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     }
     for (std::size_t k = 0; k < system.loads.size(); ++k) {
         const auto& load = system.loads[k];
-        const Part part{body_of(load.kind), ground};
+        const Part part{.i = body_of(load.kind), .term = Term::load, .number = k};
         if (part.i == ground || !wants(source, Term::load, k)) continue;
         const Frame<T> body = source.frame(part, 0);
         apply(part, part.i, body,
@@ -246,7 +249,8 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     if (system.hold != 0)
         for (int body = 0; body < system.bodies; ++body) {
             if (!wants(source, Term::ground_spring, static_cast<std::size_t>(body))) continue;
-            const Part part{body, ground};
+            const Part part{
+                .i = body, .term = Term::ground_spring, .number = static_cast<std::size_t>(body)};
             const Frame<T> frame = source.frame(part, 0);
             const Pose& drawn = model.bodies[static_cast<std::size_t>(body)].design;
             apply(
@@ -262,7 +266,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         if (!wants(source, Term::constraint, c)) continue;
         const auto [i, j] = bodies_of(kind);
         const bool directions = is_direction(kind);
-        const Part part{i, j, first, rows(kind), directions};
+        const Part part{i, j, first, rows(kind), directions, Term::constraint, c};
         const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
         T R[3];
         for (int k = 0; k < part.rows; ++k)

@@ -1,0 +1,84 @@
+#include "recursive/response_system.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace elastocheck::recursive {
+namespace {
+
+// Load carried by the border of a held direction in the last back-substitution, b μ of
+// saddle_point.hpp without the scaling: a force on an idle mode, as |W⁻¹ f|, or the gap of
+// redundant constraints.
+double taken_by_border(const SaddlePoint<double>& system, int c) {
+    const Held<double>& held = system.held;
+    const double mu = system.solution[system.n + system.m + c];
+    double sum = 0;
+    for (int e = held.begin(c); e < held.end(c); ++e) {
+        const auto at = static_cast<std::size_t>(e);
+        const double taken =
+            mu * system.border()[e] / (system.scale[held.row[at]] * system.weight[held.row[at]]);
+        sum += taken * taken;
+    }
+    return std::sqrt(sum);
+}
+
+// A held direction does not respond, so its border must carry no load. μ detects a force on an idle
+// mode, and a mode that is idle in K but not in the tangent.
+Outcome check_border(SteppingState<double>& s, Judged which) {
+    const Held<double>& held = s.system.held;
+    if (held.size() == 0) return Outcome::converged;
+    constraint_force(s.system.M, s.x.tail(s.m()), s.force);
+    const double force = size_of_force(s, s.upper) + size_of_force(s, s.force);
+    const double opening =
+        s.lower.norm() + std::sqrt(size_of_solution(s)) / std::min(1.0, s.length);
+    const double limit = guard::rounding * std::numeric_limits<double>::epsilon() +
+                         guard::share_per_error * s.Phi.norm() / std::min(1.0, s.length);
+    const int judged = which == Judged::all ? held.size() : held.idle;
+    for (int c = 0; c < judged; ++c) {
+        const bool idle = c < held.idle;
+        if (!(taken_by_border(s.system, c) <= limit * (idle ? force : opening)))
+            return idle ? Outcome::loaded_idle_mode : Outcome::inconsistent_constraints;
+    }
+    return Outcome::converged;
+}
+
+// Removes the idle part of dq (minimum norm): the border held the idle modes as they were before
+// the last factorisation, which has updated them (saddle_point.hpp).
+void leave_out_idle_motion(SteppingState<double>& s) {
+    const Held<double>& held = s.system.held;
+    for (int c = 0; c < held.idle; ++c) {
+        const auto z = held.values(c);
+        const auto W2 = weights(s.system, c);
+        const auto at = [&](Eigen::Index e) {
+            return held.row[static_cast<std::size_t>(held.begin(c) + static_cast<int>(e))];
+        };
+        double along = 0;
+        for (Eigen::Index e = 0; e < z.size(); ++e) along += z[e] * W2(e) * s.x[at(e)];
+        for (Eigen::Index e = 0; e < z.size(); ++e) s.x[at(e)] -= along * z[e];
+    }
+}
+
+}  // namespace
+
+Outcome factorise_response(SteppingState<double>& s, bool consistent) {
+    if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
+        return outcome;
+    if (!consistent) return Outcome::converged;
+    residual_at(s, s.q, s.lambda);  // λ = 0: f_ext - f_elast
+    s.lower.setZero();
+    back_substitute(s);
+    if (!s.x.allFinite()) return Outcome::not_finite;
+    s.lambda = s.x.tail(s.m());
+    s.consistent = true;
+    return factorise_at(s, s.q, s.lambda);
+}
+
+Outcome answer_response(SteppingState<double>& s, Judged judged) {
+    back_substitute(s);
+    if (!s.x.allFinite()) return Outcome::not_finite;
+    const Outcome outcome = check_border(s, judged);
+    if (outcome == Outcome::converged) leave_out_idle_motion(s);
+    return outcome;
+}
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,24 @@
+// The linear system (24) of a state and its answers: common part of the response to disturbances
+// and of the sensitivity to numbers of the model.
+#pragma once
+
+#include "recursive/stepping/stepping_state.hpp"
+
+namespace elastocheck::recursive {
+
+// Assembles and factorises the matrix of (24) at s.q and the present inputs: with K of (19), or with
+// the consistent tangent in its place, for which λ is computed first with K:
+//
+// ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f_ext - f_elast ⎫
+// ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
+Outcome factorise_response(SteppingState<double>& s, bool consistent);
+
+// Which held directions of the border must carry no load.
+enum class Judged { idle_motions, all };
+
+// Solves for the right-hand side in s.upper, s.lower: s.x = (dq, dλ), without idle motion (minimum
+// norm). loaded_idle_mode, inconsistent_constraints where a held direction would carry load,
+// not_finite.
+Outcome answer_response(SteppingState<double>& s, Judged judged);
+
+}  // namespace elastocheck::recursive

@@ -1,0 +1,107 @@
+#include "reference/energy/state_tangent.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "models/branch.hpp"
+#include "reference/energy/minimise/cost.hpp"
+#include "reference/energy/potential/conservative.hpp"
+
+namespace elastocheck::reference::energy {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double rest_on_idle = 1e-8;  // of the disturbance: smallest load on an idle mode
+constexpr double unanswered = 1e-3;    // of the disturbance: remainder before the last correction
+constexpr double open = 1e-9;  // of an offset's rate: largest part that redundant joints may leave
+
+}  // namespace
+
+StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state) {
+    if (!stands_on(model, branch))
+        throw std::invalid_argument("the model has parts that are inactive on branch '" +
+                                    branch.name + "', or the branch has two sides");
+    if (state.poses.size() != model.bodies.size())
+        throw std::invalid_argument("the state belongs to another model");
+    StateTangent t;
+    if (const auto what = without_potential(model, branch)) {
+        t.failure = {Outcome::not_conservative, *what};
+        return t;
+    }
+    if (const double operations = cost_of(model, 1).operations(); operations > most_operations) {
+        t.failure = {
+            Outcome::too_large,
+            fmt::format(
+                "about {:.1g} operations for {} coordinates, the limit of the energy leg is {:.1g}",
+                operations, coordinates(model), most_operations)};
+        return t;
+    }
+    const Options options;
+    t.course = course_of(model, branch);
+    const std::array ends{state.load, branch.to};
+    t.scales = scales_of(model, t.course, ends);
+    Counts unused;
+    const Path path{
+        model, options, t.scales, t.course, turning_bushings(model, t.course), std::abs(state.load),
+        unused};
+    t.state = state_at(path, state.load, state.poses);
+    if (!t.state.at.left.allFinite() || !t.state.at.Phi.allFinite() || !t.state.H.allFinite()) {
+        t.failure = {Outcome::not_finite, "the state has no finite potential"};
+        return t;
+    }
+    if (!within_laws(model, path.turning, state.poses)) {
+        t.failure = {Outcome::branch_lost, law_ended};
+        return t;
+    }
+    const int n = coordinates(model);
+    t.prescribed = at(t.course, state.load);
+    t.S = t.scales.coordinates(n);
+    t.D = t.scales.rows(model);
+    t.lambda = t.scales.energy() * t.D.cwiseProduct(t.state.at.lambda);
+    t.K = t.state.H + moment_stiffness(t.prescribed, t.scales, n);
+    t.Z = t.state.modes.Z(Eigen::all, t.state.modes.resisting());
+    t.idle = t.state.modes.idle_motions();
+    if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * t.K * t.Z);
+    return t;
+}
+
+Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_rate) {
+    VectorXd t = VectorXd::Zero(b_SI.size());
+    if (Phi_rate.size() > 0) {
+        const VectorXd driven_rate = -at.D.cwiseProduct(Phi_rate);
+        t = shortest(at.state.at, driven_rate);
+        if (!((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
+            return {
+                Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}, {}};
+    }
+    const double energy = at.scales.energy();
+    const VectorXd b = at.S.cwiseProduct(b_SI) / energy;
+
+    VectorXd left = b + at.K * t;
+    const double size = largest(b) + largest(left - b);
+    const auto correct = [&] {
+        if (at.Z.cols() == 0) return;
+        t -= at.Z * at.W.solve(at.Z.transpose() * left);
+        left = b + at.K * t;
+    };
+    correct();
+    const double remains = at.Z.cols() > 0 ? largest(at.Z.transpose() * left) : 0;
+    correct();
+    if (!t.allFinite()) return {Outcome::not_finite, "the response is not finite", {}, {}};
+    // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
+    if (!(remains <= unanswered * size))
+        return {Outcome::singular, "the stiffness of a motion vanishes", {}, {}};
+    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size))
+        return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
+    const VectorXd dlambda = at.lambda.size() > 0 && t.size() > 0
+                                 ? VectorXd(at.state.at.qr.solve(-left))
+                                 : VectorXd::Zero(at.lambda.size());
+    return {Outcome::converged, "", at.S.cwiseProduct(t), energy * at.D.cwiseProduct(dlambda)};
+}
+
+}  // namespace elastocheck::reference::energy

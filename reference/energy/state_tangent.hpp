@@ -1,0 +1,39 @@
+// Linearised conditions at a given state and their answers: common part of the response to
+// disturbances and of the sensitivity to numbers of the model.
+#pragma once
+
+#include <Eigen/LU>
+#include <optional>
+#include <string>
+
+#include "reference/energy/minimise/branch.hpp"
+
+namespace elastocheck::reference::energy {
+
+// In ξ and units of F·L.
+struct StateTangent {
+    State state;
+    Course course;
+    Prescribed prescribed;  // at the state's a
+    Scales scales;
+    Eigen::VectorXd S, D, lambda;            // lambda of Φ, SI
+    Eigen::MatrixXd K;                       // H + A, A that of dead moments
+    Eigen::MatrixXd Z, idle;                 // resisting motions, and idle ones
+    Eigen::PartialPivLU<Eigen::MatrixXd> W;  // ZᵀKZ
+    std::optional<Failure> failure;          // then nothing else is set
+};
+// Throws std::invalid_argument where the branch has parts that are inactive on it or two sides.
+// Failures: not_conservative, too_large, not_finite, branch_lost.
+StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state);
+
+// The change (dx, dλ), SI, of the stationary point where its conditions change by
+//   b   of ∂V/∂x + Φ_qᵀ λ [6nb],   Phi_rate   of Φ [m]; empty: none
+// Idle motions are held.
+struct Answer {
+    Outcome outcome = Outcome::converged;
+    std::string what;  // half a sentence on the failure
+    Eigen::VectorXd x, lambda;
+};
+Answer answer(const StateTangent& at, const Eigen::VectorXd& b, const Eigen::VectorXd& Phi_rate);
+
+}  // namespace elastocheck::reference::energy

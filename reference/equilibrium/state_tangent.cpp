@@ -1,0 +1,99 @@
+#include "reference/equilibrium/state_tangent.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <stdexcept>
+
+#include "reference/equilibrium/continuation/continuation.hpp"
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+using Eigen::VectorXd;
+
+// Relative part of a right-hand side outside the range of ∂E/∂x that counts as round-off.
+constexpr double residual_round_off = 1e-9;
+
+// Largest displacement under F, over L: beyond it the stiffness is round-off.
+constexpr double farthest = 1e10;
+
+// Freezes the branch's drivers at a.
+void stop(Affine& path, double a) { path = {path.at(a), 0}; }
+System stopped(System system, double a) {
+    for (Affine& value : system.values) stop(value, a);
+    for (LoadPath& load : system.loads) stop(load.factor, a);
+    for (ElementPath& element : system.elements) {
+        stop(element.free_length, a);
+        for (Affine& preload : element.preload) stop(preload, a);
+    }
+    return system;
+}
+
+// Reactions of least imbalance: E is linear in them.
+void balance(const System& system, const Loading& loading, VectorXd& x, Derivatives& by,
+             Counts& counts) {
+    const Eigen::Index n = 6 * system.bodies, m = system.constraint_rows;
+    if (n == 0 || m == 0 || !is_finite(by.J) || !by.E.allFinite()) return;
+    const VectorXd R = -least_squares(by.J.topRightCorner(n, m), by.E.head(n));
+    x.tail(m) += R;
+    add_reactions(system, loading, x, R, by, counts);
+}
+
+// dx with minimum-norm motion in the idle modes. The border would minimise motion and reactions of
+// the null vectors together, which is not wanted. The small number regularises modes that consist
+// of reactions alone.
+VectorXd with_shortest_motion(const System& system, const Linearisation& at, const VectorXd& dx) {
+    constexpr double nothing = 1e-14;
+    if (at.modes.count() == 0) return dx;
+    const Eigen::Index n = 6 * system.bodies;
+    const Sparse V = at.modes.right.topRows(n), V_T = V.transpose();
+    Sparse one(V.cols(), V.cols());
+    one.setIdentity();
+    const Eigen::SimplicialLDLT<Sparse> gram(Sparse(V_T * V + nothing * one));
+    return dx - at.modes.right * gram.solve(VectorXd(V_T * dx.head(n)));
+}
+
+// Whether the right-hand side has a part outside the range of ∂E/∂x.
+bool is_pushed(const Rate& rate, const VectorXd& E_rate) {
+    return rate.mu.norm() > residual_round_off * E_rate.norm();
+}
+
+}  // namespace
+
+StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state) {
+    const double a = state.load;
+    const System moving = make_system(model, branch, {&a, 1});
+    if (state.poses.size() != model.bodies.size())
+        throw std::invalid_argument("the state belongs to another model");
+    StateTangent t{.system = stopped(moving, a), .loading = {.a = a, .a_rate = 1}};
+    Counts unused;
+    t.x = unknowns_at(t.system, state.poses);
+    Derivatives by = derivatives(t.system, t.loading, t.x, unused);
+    balance(t.system, t.loading, t.x, by, unused);
+    if (!t.x.allFinite() || !is_finite(by.J)) {
+        t.outcome = Outcome::not_finite;
+        t.what = "the equations give a number that is not finite";
+        return t;
+    }
+    t.at = linearise(std::move(by.J), nullptr, unused);
+    const VectorXd ahead = rate_of(moving, t.loading, t.x);
+    if (t.system.equations() > 0 &&
+        (t.at.bordered.sign() == 0 || is_pushed(refined_answer(t.at, ahead), ahead))) {
+        t.outcome = Outcome::singular;
+        t.what = "the system is singular, the branch turns back here";
+    }
+    return t;
+}
+
+Answered answer_to(const StateTangent& t, const VectorXd& E_rate) {
+    const Rate rate = refined_answer(t.at, E_rate);
+    if (!rate.dx.allFinite()) return {Outcome::not_finite, "a response that is not finite", {}};
+    if (rate.dx.norm() > farthest * E_rate.norm())
+        return {Outcome::singular, "a motion with almost no stiffness", {}};
+    if (is_pushed(rate, E_rate)) {
+        const Failure why = unsolvable_load(t.system, t.at.modes.left * rate.mu);
+        return {why.outcome, why.what, {}};
+    }
+    return {Outcome::converged, "", with_shortest_motion(t.system, t.at, rate.dx)};
+}
+
+}  // namespace elastocheck::reference::equilibrium

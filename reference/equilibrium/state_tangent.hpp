@@ -1,0 +1,31 @@
+// Linearised system at a given state and its answers: common part of the response to disturbances
+// and of the sensitivity to numbers of the model.
+#pragma once
+
+#include <string>
+
+#include "reference/equilibrium/linear_algebra/linearisation.hpp"
+
+namespace elastocheck::reference::equilibrium {
+
+struct StateTangent {
+    System system;  // of the branch, its drivers frozen at the state's a
+    Loading loading;
+    Eigen::VectorXd x = {};  // the poses of the state, with the reactions of least imbalance
+    Linearisation at = {};
+    // singular where the branch turns back, not_finite; then `at` must not be used
+    Outcome outcome = Outcome::converged;
+    std::string what = {};
+};
+// Throws std::invalid_argument where state, model and branch do not fit.
+StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state);
+
+// J dx = -E_rate, with minimum-norm motion in the idle modes.
+struct Answered {
+    Outcome outcome = Outcome::converged;
+    std::string what;  // half a sentence on the failure
+    Eigen::VectorXd dx;
+};
+Answered answer_to(const StateTangent& tangent, const Eigen::VectorXd& E_rate);
+
+}  // namespace elastocheck::reference::equilibrium

@@ -1,0 +1,229 @@
+// Sensitivity of states to the numbers of a model: three legs, each by its own derivation, along
+// random changes of every number at once.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "compare/comparison/legs.hpp"
+#include "elastocheck/compile.hpp"
+#include "elastocheck/trim.hpp"
+#include "models/branch.hpp"
+#include "models/kinds.hpp"
+#include "models/numbers.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/sensitivity.hpp"
+#include "reference/energy/sensitivity.hpp"
+#include "reference/equilibrium/sensitivity.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/slopes.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using support::OneWay;
+
+struct Answering {
+    std::string name;
+    Leg leg;
+    std::function<StateRate(const OneWay&, const Equilibrium&, const Model& rate)> sensitivity;
+};
+std::vector<Answering> three_legs() {
+    return {{"equilibrium", Leg::equilibrium,
+             [](const OneWay& way, const Equilibrium& state, const Model& rate) {
+                 return reference::equilibrium::sensitivity(way.model, way.branch, state,
+                                                            {&rate, 1})
+                     .front();
+             }},
+            {"energy", Leg::energy,
+             [](const OneWay& way, const Equilibrium& state, const Model& rate) {
+                 return reference::energy::sensitivity(way.model, way.branch, state, {&rate, 1})
+                     .front();
+             }},
+            {"recursion", Leg::series,
+             [](const OneWay& way, const Equilibrium& state, const Model& rate) {
+                 return recursive::sensitivity(way.model, way.branch, state, {&rate, 1}).front();
+             }}};
+}
+
+// ---- Changes of a model.
+
+// A rate of every number: about 0.1 m of every point, a turn of every direction and marker by some
+// tenths of a radian, every rate, preload, load and driver by its own size.
+struct Randomly {
+    std::mt19937 engine;
+    double number() { return std::uniform_real_distribution<>(-1, 1)(engine); }
+    Vector3d vector() { return {number(), number(), number()}; }
+
+    void turn(Vector3d& u, const Vector3d& omega) { u = omega.cross(u); }
+    void change(ScalarLaw& law) {
+        std::visit(overloaded{[&](LinearRate& u) { u.k *= number(); },
+                              [&](elastocheck::Curve& u) {
+                                  for (double& x : u.knots) x = 1e-3 * number();
+                                  for (auto& piece : u.pieces)
+                                      for (double& c : piece) c *= number();
+                              }},
+                   law);
+    }
+    template <class Kind>
+    void change_members(Kind& kind) {
+        each_member(
+            kind, overloaded{[&](Point& p) { p.s_local = 0.1 * vector(); },
+                             [&](Direction& u) { turn(u.u_local, 0.3 * vector()); },
+                             [&](Marker& m) {
+                                 m.s_local = 0.1 * vector();
+                                 const Vector3d w = 0.15 * vector();
+                                 m.A_local = Quaterniond(0, w.x(), w.y(), w.z()) * m.A_local;
+                             },
+                             [&](Length<double> l) { l.value = 0.01 * number(); },
+                             [&](PlaneAngle<double> a) { a.value = 0.1 * number(); },
+                             [&](ForceAndMoment<Vector6> w) {
+                                 for (double& x : w.value) x = 10 * number();
+                             },
+                             [&](Deformation<Vector6> e) {
+                                 for (double& x : e.value) x = 1e-3 * number();
+                             },
+                             [&](LoadVector<Vector3d> f) { f.value = f.value.norm() * vector(); },
+                             [&](ScalarLaw& law) { change(law); },
+                             [&](SpatialLaw& law) {
+                                 std::visit(overloaded{[&](LinearStiffness& u) { u.K *= number(); },
+                                                       [&](PerAxis& u) {
+                                                           for (auto& axis : u.axis) change(axis);
+                                                       }},
+                                            law);
+                             }});
+    }
+    void change_constraint(ConstraintKind& kind) {
+        if (auto* angle = std::get_if<DirectionAtAngle>(&kind)) {
+            turn(angle->i.u_local, 0.3 * vector());
+            const Vector3d omega = 0.3 * vector();  // the two axes stay perpendicular
+            turn(angle->j.u_local, omega), turn(angle->y_j.u_local, omega);
+            angle->angle = 0.1 * number();
+        } else {
+            change_members(kind);
+        }
+    }
+    Model rate_of(Model model) {
+        for (auto& joint : model.joints) joint.at.s_local = 0.1 * vector();
+        for (auto& constraint : model.constraints) change_constraint(constraint.kind);
+        for (auto& elastic : model.elastics) change_members(elastic.kind);
+        for (auto& load : model.static_loads) change_members(load.kind);
+        for (auto& branch : model.branches)
+            for (auto& driver : branch.drivers) {
+                driver.start *= number(), driver.rate *= number();
+                each_member(driver.what, overloaded{[&](Load& load) { change_members(load.kind); },
+                                                    [&](ForceAndMoment<Vector6> w) {
+                                                        for (double& x : w.value) x *= number();
+                                                    }});
+            }
+        return model;
+    }
+};
+
+// model + h rate, with directions and quaternions of unit length.
+Model changed(const Model& model, const Model& rate, double h) {
+    auto numbers = numbers_of(model);
+    const auto by = numbers_of(rate);
+    for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] += h * by[k];
+    Model result = with_numbers(model, numbers);
+    const auto normalise = overloaded{[](Direction& u) { u.u_local.normalize(); },
+                                      [](Marker& m) { m.A_local.normalize(); }};
+    for (auto& constraint : result.constraints) {
+        each_member(constraint.kind, normalise);
+        if (auto* angle = std::get_if<DirectionAtAngle>(&constraint.kind)) {
+            const Vector3d x = angle->j.u_local, y = angle->y_j.u_local;
+            const double skew = x.dot(y) / 2;
+            angle->j.u_local = (x - skew * y).normalized();
+            angle->y_j.u_local = (y - skew * x).normalized();
+        }
+    }
+    for (auto& elastic : result.elastics) each_member(elastic.kind, normalise);
+    return result;
+}
+
+// ---- States and their rates as vectors.
+
+Equilibrium state_at(const OneWay& way, double a, Leg leg) {
+    Branch branch = way.branch;
+    branch.steps = 1;
+    branch.to = a == 0 ? way.branch.to : a;
+    const auto path = walk({"", way.model, branch}, {.leg = leg});
+    EXPECT_EQ(path.outcome, Outcome::converged) << name(leg) << ": " << path.detail;
+    return a == 0 ? path.points.front() : path.points.back();
+}
+VectorXd of_poses(const StateRate& rate) { return support::stacked(rate.increments); }
+VectorXd stacked(const std::vector<Wrench>& wrenches) {
+    VectorXd all(6 * std::ssize(wrenches));
+    for (std::size_t k = 0; k < wrenches.size(); ++k)
+        all.segment<6>(6 * static_cast<Eigen::Index>(k)) << wrenches[k].force, wrenches[k].moment;
+    return all;
+}
+VectorXd motion(const Equilibrium& from, const Equilibrium& to) {
+    std::vector<Increment> all;
+    for (std::size_t b = 0; b < from.poses.size(); ++b) {
+        Quaterniond turn = to.poses[b].p * from.poses[b].p.conjugate();
+        if (turn.w() < 0) turn.coeffs() *= -1;
+        const Eigen::AngleAxisd by(turn);
+        all.push_back({to.poses[b].r - from.poses[b].r, by.angle() * by.axis()});
+    }
+    return support::stacked(all);
+}
+
+// Of the largest entry of b, at least `floor`; infinite where they are not alike.
+double apart(const VectorXd& a, const VectorXd& b, double floor) {
+    if (a.size() != b.size() || !a.allFinite()) return INFINITY;
+    if (b.size() == 0) return 0;
+    return (a - b).cwiseAbs().maxCoeff() / std::max(floor, b.cwiseAbs().maxCoeff());
+}
+constexpr double least_motion = 1e-9, least_force = 1e-4;
+
+// f(scene, side, a) for both ends of every side of every scene.
+template <class F>
+void everywhere(F f) {
+    for (const auto& name : support::scene_names()) {
+        const Model model = compile(trim(support::scene(name)).scene);
+        for (const auto& branch : model.branches)
+            for (const auto& side : sides_of(model, branch, 1))
+                for (const double a : {0.0, side.branch.to})
+                    f(name + ", " + side.name, OneWay{side.model, side.branch}, a);
+    }
+}
+
+TEST(Sensitivity, TheLegsAgreeOnEverySceneAlongRandomChangesOfAllNumbers) {
+    double worst = 0, worst_force = 0;
+    int answered = 0;
+    everywhere([&](const std::string& where, const OneWay& way, double a) {
+        const Equilibrium state = support::bare(state_at(way, a, Leg::equilibrium));
+        const Model rate = Randomly{std::mt19937(7)}.rate_of(way.model);
+        const auto determined = recursive::diagnose(way.model).determined;
+        const auto legs = three_legs();
+        const StateRate truth = legs.front().sensitivity(way, state, rate);
+        const auto wrenches = [&](StateRate by) {
+            for (std::size_t k = 0; k < by.reactions.size(); ++k)
+                if (!determined[k]) by.reactions[k] = {};
+            return stacked(by.reactions);
+        };
+        for (std::size_t l = 1; l < legs.size(); ++l) {
+            const StateRate other = legs[l].sensitivity(way, state, rate);
+            if (is_not_applicable(other.outcome)) continue;
+            EXPECT_EQ(other.outcome, truth.outcome)
+                << where << ": " << legs[l].name << ": " << other.detail << truth.detail;
+            if (truth.outcome != Outcome::converged || other.outcome != truth.outcome) continue;
+            const double poses = apart(of_poses(other), of_poses(truth), least_motion),
+                         forces = apart(wrenches(other), wrenches(truth), least_force);
+            EXPECT_LE(poses, 1e-10) << where << ", at " << a << ": " << legs[l].name;
+            EXPECT_LE(forces, 1e-9) << where << ", at " << a << ": " << legs[l].name;
+            worst = std::max(worst, poses), worst_force = std::max(worst_force, forces);
+            ++answered;
+        }
+    });
+    EXPECT_GT(answered, 250);
+    RecordProperty("worst", fmt::format("{:.1e} poses, {:.1e} forces", worst, worst_force));
+}
+
+}  // namespace
+}  // namespace elastocheck::compare
