@@ -13,7 +13,7 @@ namespace elastocheck {
 // Calls f(double&) for every real number that a leg or an output reads, always in the same order.
 // S is a Scene or a Model.
 template <class S, class F>
-void each_number(S& model, F&& f) {
+void each_real_number(S& model, F&& f) {
     const auto vector = [&](auto& v) {
         for (auto& x : v.reshaped()) f(x);
     };
@@ -87,7 +87,7 @@ void each_number(S& model, F&& f) {
 template <class S>
 std::vector<double> numbers_of(S model) {
     std::vector<double> all;
-    each_number(model, [&](double& x) { all.push_back(x); });
+    each_real_number(model, [&](double& x) { all.push_back(x); });
     return all;
 }
 // `model` with these numbers. Throws std::invalid_argument unless there are as many.
@@ -98,13 +98,13 @@ S with_numbers(S model, const std::vector<double>& numbers) {
         if (k == numbers.size()) throw std::invalid_argument("models of different shapes");
         return numbers[k++];
     };
-    each_number(model, [&](double& x) { x = next(); });
+    each_real_number(model, [&](double& x) { x = next(); });
     if (k != numbers.size()) throw std::invalid_argument("models of different shapes");
     return model;
 }
 template <class S>
 S without_numbers(S model) {  // all zero
-    each_number(model, [](double& x) { x = 0; });
+    each_real_number(model, [](double& x) { x = 0; });
     return model;
 }
 

@@ -1,4 +1,5 @@
 #include "elastocheck/trim.hpp"
+#include "compare/comparison/trim.hpp"
 
 #include <fmt/format.h>
 
@@ -79,6 +80,16 @@ VectorXd values(const Problem& problem, const Equilibrium& state) {
     return c;
 }
 
+}  // namespace
+
+std::vector<Channel> condition_channels(const Model& model, const Trim& trim) {
+    std::vector<Channel> list;
+    for (const auto& condition : trim.until) list.push_back(channel_of(model, condition.what));
+    return list;
+}
+
+namespace {
+
 // The scene on a branch whose drivers are the adjustments. compile() treats them as moving, so that
 // no adjustment is left out because it starts at zero.
 Problem pose(const Scene& scene) {
@@ -101,8 +112,7 @@ Problem pose(const Scene& scene) {
     }
     for (auto& driver : model.branches.front().drivers) driver.rate = 0;
     problem.side = {"trim", on_branch(model, model.branches.front()), model.branches.front()};
-    for (const auto& condition : problem.trim->until)
-        problem.channels.push_back(channel_of(problem.side.model, condition.what));
+    problem.channels = condition_channels(problem.side.model, *problem.trim);
     const VectorXd drawn = values(problem, design_state(problem.side.model));
     problem.target = drawn;
     for (std::size_t k = 0; k < problem.trim->until.size(); ++k)
@@ -274,6 +284,12 @@ std::string what_it_makes(const Scene& scene, const Driven& adjusted, const Prob
 }
 
 }  // namespace
+
+Scene with_adjusted(Scene scene, const VectorXd& p) {
+    const Trim asked = *scene.trim;
+    apply(asked, p, scene);
+    return scene;
+}
 
 Trimmed trim(const Scene& scene) {
     Trimmed result{scene, std::nullopt};

@@ -23,10 +23,6 @@ using Eigen::Vector3d;
 
 constexpr std::array towards{"forward", "to the left", "up"};
 
-Vector3d position(const Equilibrium& state, const Point& point) {
-    return compare::position(state.poses, point);
-}
-
 const ModelJoint& joint_of(const Model& model, int joint) {
     return model.joints[static_cast<std::size_t>(joint)];
 }
@@ -34,63 +30,97 @@ const ModelJoint& joint_of(const Model& model, int joint) {
 template <class S>
 using Vector = Eigen::Matrix<S, 3, 1>;
 
-// A state, for S = Dual with a motion of its bodies: d(r + A s) = dr + dπ × A s.
+// A force and a moment, for S = Dual with their derivatives.
+template <class S>
+struct ForceMoment {
+    Vector<S> force, moment;
+};
+
+// A state, for S = Dual with a motion of its bodies, d(r + A s) = dr + dπ × A s + A ds, and with
+// the change of the model by one of its numbers: `rate`, a Model of the same shape. The features
+// that a channel reads come in pairs: in the model, and their rates in their bodies.
 template <class S>
 struct Configuration {
     const Model& model;
     const Equilibrium& state;
     std::span<const Increment> motion = {};  // one per body, for S = Dual
+    const Model* rate = nullptr;             // none: the model is constant
+    std::span<const Wrench> wrench_rates = {};
 
     const Wheel& wheel(std::size_t w) const { return model.wheels[w]; }
+    const Wheel& wheel_rate(std::size_t w) const { return changing().wheels[w]; }
+    // Where the model is constant, its own parts stand in the place of rates and are not read.
+    const Model& changing() const { return rate != nullptr ? *rate : model; }
 
-    Vector<S> direction(const Direction& u) const {
-        const Vector3d fixed = pose(state.poses, u.body).p * u.u_local;
+    S number(double value, double derivative) const {
         if constexpr (std::is_same_v<S, Dual>)
-            if (u.body != ground)
-                return with(fixed, motion[static_cast<std::size_t>(u.body)].dpi.cross(fixed));
-        return fixed.cast<S>();
+            if (rate != nullptr) return S(value, derivative);
+        return S(value);
     }
-    Vector<S> position(const Point& point) const {
-        const Vector3d at = compare::position(state.poses, point);
-        if constexpr (std::is_same_v<S, Dual>)
-            if (point.body != ground) {
-                const auto& [dr, dpi] = motion[static_cast<std::size_t>(point.body)];
-                return with(at, dr + dpi.cross(pose(state.poses, point.body).p * point.s_local));
-            }
-        return at.cast<S>();
+    Vector<S> direction(const Direction& u, const Direction& d) const {
+        const Vector3d fixed = pose(state.poses, u.body).p * u.u_local;
+        return carried(u.body, Vector3d::Zero(), fixed, d.u_local, false);
+    }
+    Vector<S> position(const Point& point, const Point& d) const {
+        const Vector3d lever = pose(state.poses, point.body).p * point.s_local;
+        return carried(point.body, pose(state.poses, point.body).r, lever, d.s_local, true);
     }
     Vector<S> spin_axis(std::size_t w) const {
-        return direction({wheel(w).body, wheel(w).spin_axis_local});
+        return direction({wheel(w).body, wheel(w).spin_axis_local},
+                         {wheel(w).body, wheel_rate(w).spin_axis_local});
     }
     Vector<S> patch(std::size_t w) const {
-        return position({wheel(w).body, wheel(w).contact_local});
+        return position({wheel(w).body, wheel(w).contact_local},
+                        {wheel(w).body, wheel_rate(w).contact_local});
     }
-    const Wrench& wrench(int joint) const {
-        return state.reactions[static_cast<std::size_t>(joint)];
+    ForceMoment<S> wrench(int joint) const {
+        const auto k = static_cast<std::size_t>(joint);
+        const Wrench &value = state.reactions[k],
+                     derivative = wrench_rates.empty() ? Wrench{} : wrench_rates[k];
+        return {with(value.force, derivative.force), with(value.moment, derivative.moment)};
     }
 
   private:
+    // The sum of a body's origin r, or zero for a direction, and of its vector u, which changes by
+    // its rotation and by du' in its axes.
+    Vector<S> carried(BodyId body, const Vector3d& r, const Vector3d& u, const Vector3d& du_local,
+                      bool with_origin) const {
+        Vector3d derivative = Vector3d::Zero();
+        if constexpr (std::is_same_v<S, Dual>) {
+            if (body != ground && !motion.empty()) {
+                const auto& [dr, dpi] = motion[static_cast<std::size_t>(body)];
+                derivative = dpi.cross(u);
+                if (with_origin) derivative += dr;
+            }
+            if (rate != nullptr) derivative += pose(state.poses, body).p * du_local;
+        }
+        return with(r + u, derivative);
+    }
     static Vector<S> with(const Vector3d& value, const Vector3d& derivative) {
-        return {S(value.x(), derivative.x()), S(value.y(), derivative.y()),
-                S(value.z(), derivative.z())};
+        if constexpr (std::is_same_v<S, Dual>)
+            return {S(value.x(), derivative.x()), S(value.y(), derivative.y()),
+                    S(value.z(), derivative.z())};
+        else
+            return value;
     }
 };
 
-// ---- Formulas: values in SI, one function per type that a channel reads. Those that read a
-// wrench have no derivative.
+// ---- Formulas: values in SI, one function per type that a channel reads; `d` holds the rates of
+// its own points and numbers.
 
 template <class S>
-S read(const Configuration<S>& at, const Coordinate& c) {
-    return S(c.sign) * (at.position(c.at)[c.axis] - S(c.counted_from));
+S read(const Configuration<S>& at, const Coordinate& c, const Coordinate& d) {
+    return S(c.sign) *
+           (at.position(c.at, d.at)[c.axis] - at.number(c.counted_from, d.counted_from));
 }
 template <class S>
-S read(const Configuration<S>& at, const Toe& c) {
+S read(const Configuration<S>& at, const Toe& c, const Toe&) {
     using std::atan2;
     const Vector<S> e = at.spin_axis(c.wheel);
     return atan2(e.x(), S(at.wheel(c.wheel).side) * e.y());
 }
 template <class S>
-S read(const Configuration<S>& at, const Camber& c) {
+S read(const Configuration<S>& at, const Camber& c, const Camber&) {
     using std::asin;
     return -asin(at.spin_axis(c.wheel).z());
 }
@@ -105,17 +135,20 @@ const double least_steering = 2 * std::numbers::pi / 180;
 template <class S>
 Vector<S> pivot(const Configuration<S>& at, std::size_t wheel) {
     const auto& [lower, upper] = *at.wheel(wheel).steering_axis;
-    const Vector<S> l = at.position(lower), u = at.position(upper) - l, c = at.patch(wheel);
+    const auto& [dlower, dupper] = *at.wheel_rate(wheel).steering_axis;
+    const Vector<S> l = at.position(lower, dlower), u = at.position(upper, dupper) - l,
+                    c = at.patch(wheel);
     if (!(abs(u.z()) > S(std::sin(flattest)) * u.norm())) return Vector<S>::Constant(S(undefined));
     return l + u * ((c.z() - l.z()) / u.z()) - c;
 }
 
 template <class S>
-S read(const Configuration<S>& at, const Steering& c) {
+S read(const Configuration<S>& at, const Steering& c, const Steering&) {
     using std::atan;
     const auto& [lower, upper] = *at.wheel(c.wheel).steering_axis;
-    const Vector<S> u = at.position(upper) - at.position(lower), off = pivot(at, c.wheel),
-                    e = at.spin_axis(c.wheel);
+    const auto& [dlower, dupper] = *at.wheel_rate(c.wheel).steering_axis;
+    const Vector<S> u = at.position(upper, dupper) - at.position(lower, dlower),
+                    off = pivot(at, c.wheel), e = at.spin_axis(c.wheel);
     if (std::isinf(value_of(off.x()))) return undefined;
     const S side = at.wheel(c.wheel).side;
     const Vector<S> n = Vector<S>(e.x(), e.y(), S(0)).normalized(),
@@ -129,63 +162,86 @@ S read(const Configuration<S>& at, const Steering& c) {
     return undefined;
 }
 template <class S>
-S read(const Configuration<S>& at, const Track& c) {
+S read(const Configuration<S>& at, const Track& c, const Track&) {
     return at.patch(c.left).y() - at.patch(c.right).y();
 }
 template <class S>
-S read(const Configuration<S>& at, const Ackermann& c) {
+S read(const Configuration<S>& at, const Ackermann& c, const Ackermann& d) {
     using std::abs, std::tan;
-    const S left = -read(at, Toe{c.left}), right = read(at, Toe{c.right});
+    const S left = -read(at, Toe{c.left}, {}), right = read(at, Toe{c.right}, {});
     if (!(left * right > S(0) && std::min(abs(left), abs(right)) >= S(least_steering)))
         return undefined;
-    return (S(1) / tan(right) - S(1) / tan(left)) * S(c.wheelbase_by_pivots);
+    return (S(1) / tan(right) - S(1) / tan(left)) *
+           at.number(c.wheelbase_by_pivots, d.wheelbase_by_pivots);
 }
 template <class S>
-S read(const Configuration<S>& at, const Compression& c) {
-    return S(c.drawn) - (at.position(c.j) - at.position(c.i)).norm();
+S read(const Configuration<S>& at, const Compression& c, const Compression& d) {
+    return at.number(c.drawn, d.drawn) - (at.position(c.j, d.j) - at.position(c.i, d.i)).norm();
 }
-using State = Configuration<double>;
-double read(const State& at, const Effort& c) {
+template <class S>
+S read(const Configuration<S>& at, const Effort& c, const Effort&) {
     const int driven = joint_of(at.model, c.joint).driven;
-    if (driven < 0) return 0;  // inactive on this branch
-    const Wrench& on_i = at.wrench(c.joint);
+    if (driven < 0) return S(0);  // inactive on this branch
+    const auto k = static_cast<std::size_t>(driven);
+    const ForceMoment<S> on_i = at.wrench(c.joint);
+    const ConstraintKind& changing = at.changing().constraints[k].kind;
     return std::visit(
-        overloaded{[&](const DistanceBetween& d) {
-                       return on_i.force.dot((at.position(d.i) - at.position(d.j)).normalized());
-                   },
-                   [&](const PointInPlane& p) { return on_i.force.dot(at.direction(p.normal_j)); },
-                   [&](const DirectionAtAngle& a) {
-                       return on_i.moment.dot(at.direction(a.j).cross(at.direction(a.y_j)));
-                   },
-                   // No offset to drive: lowering never drives these.
-                   [](const CoincidentPoints&) { return std::nan(""); },
-                   [](const PerpendicularDirections&) { return std::nan(""); }},
-        at.model.constraints[static_cast<std::size_t>(driven)].kind);
+        overloaded{
+            [&](const DistanceBetween& b) -> S {
+                const auto& d = std::get<DistanceBetween>(changing);
+                return on_i.force.dot((at.position(b.i, d.i) - at.position(b.j, d.j)).normalized());
+            },
+            [&](const PointInPlane& p) -> S {
+                const auto& d = std::get<PointInPlane>(changing);
+                return on_i.force.dot(at.direction(p.normal_j, d.normal_j));
+            },
+            [&](const DirectionAtAngle& a) -> S {
+                const auto& d = std::get<DirectionAtAngle>(changing);
+                return on_i.moment.dot(at.direction(a.j, d.j).cross(at.direction(a.y_j, d.y_j)));
+            },
+            // No offset to drive: lowering never drives these.
+            [](const CoincidentPoints&) -> S { return std::nan(""); },
+            [](const PerpendicularDirections&) -> S { return std::nan(""); }},
+        at.model.constraints[k].kind);
 }
-double read(const State& at, const AxialForce& c) {
-    const auto& rod = std::get<DistanceBetween>(
-        at.model.constraints[static_cast<std::size_t>(c.constraint)].kind);
-    return at.wrench(c.joint).force.dot((at.position(rod.j) - at.position(rod.i)).normalized());
+template <class S>
+S read(const Configuration<S>& at, const AxialForce& c, const AxialForce&) {
+    const auto k = static_cast<std::size_t>(c.constraint);
+    const auto& rod = std::get<DistanceBetween>(at.model.constraints[k].kind);
+    const auto& d = std::get<DistanceBetween>(at.changing().constraints[k].kind);
+    return at.wrench(c.joint).force.dot(
+        (at.position(rod.j, d.j) - at.position(rod.i, d.i)).normalized());
 }
-double read(const State& at, const Reaction& c) {
-    const Wrench& on_i = at.wrench(c.joint);
+template <class S>
+S read(const Configuration<S>& at, const Reaction& c, const Reaction&) {
+    const ForceMoment<S> on_i = at.wrench(c.joint);
     return c.component < 3 ? on_i.force[c.component] : on_i.moment[c.component - 3];
 }
-double read(const State& at, const Total& c) {
-    const Vector3d about = at.position(joint_of(at.model, c.joints.front()).at);
-    double sum = 0;
+template <class S>
+S read(const Configuration<S>& at, const Total& c, const Total&) {
+    const auto point = [&](int joint) {
+        return at.position(joint_of(at.model, joint).at, joint_of(at.changing(), joint).at);
+    };
+    const Vector<S> about = point(c.joints.front());
+    S sum = 0;
     for (const int k : c.joints) {
         const ModelJoint& joint = joint_of(at.model, k);
-        const double sign = joint.i == c.on ? 1 : -1;
-        const Wrench& w = at.wrench(k);
-        const Vector3d moment = w.moment + (at.position(joint.at) - about).cross(w.force);
+        const S sign = joint.i == c.on ? 1 : -1;
+        const ForceMoment<S> w = at.wrench(k);
+        const Vector<S> moment = w.moment + (point(k) - about).cross(w.force);
         sum += sign * (c.component < 3 ? w.force[c.component] : moment[c.component - 3]);
     }
     return sum;
 }
 // Need more than the state.
-double read(const State&, const OfElement&) { return std::nan(""); }
-double read(const State&, const Characteristic&) { return std::nan(""); }
+template <class S>
+S read(const Configuration<S>&, const OfElement&, const OfElement&) {
+    return std::nan("");
+}
+template <class S>
+S read(const Configuration<S>&, const Characteristic&, const Characteristic&) {
+    return std::nan("");
+}
 
 // ---- Units, in the order of Unit.
 
@@ -212,6 +268,32 @@ constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::percent) + 1> uni
 
 // ---- The list
 
+// The model as drawn. With a rate of the model, the channels read the rates of their points and
+// numbers in place of these.
+struct Drawing {
+    const Model& model;
+    const Model* rate = nullptr;
+
+    const Model& read() const { return rate != nullptr ? *rate : model; }
+    // A number of the design position, `formula` of its configuration; its rate, with a rate.
+    template <class Formula>
+    double number(const Formula& formula) const {
+        const Equilibrium drawn = design_state(model);
+        if (rate == nullptr) return formula(Configuration<double>{model, drawn});
+        std::vector<Increment> motion;
+        for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+            const Pose &at = model.bodies[b].design, &by = rate->bodies[b].design;
+            motion.push_back({by.r, 2 * (by.p * at.p.conjugate()).vec()});
+        }
+        return formula(Configuration<Dual>{model, drawn, motion, rate}).dx;
+    }
+    double coordinate(const Point& at, const Point& d, int axis) const {
+        return number([&](const auto& design) { return design.position(at, d)[axis]; });
+    }
+};
+Point centre_of(const Wheel& wheel) { return {wheel.body, wheel.centre_local}; }
+Point patch_of(const Wheel& wheel) { return {wheel.body, wheel.contact_local}; }
+
 std::string body_name(const Model& model, BodyId body) {
     return body == ground ? "ground"
                           : "'" + model.bodies[static_cast<std::size_t>(body)].name + "'";
@@ -228,11 +310,12 @@ void add_position(std::vector<Channel>& list, const std::string& stem, const std
 }
 
 // Channels of a wheel beside its position and angles.
-void add_patch(std::vector<Channel>& list, const Model& model, std::size_t w,
+void add_patch(std::vector<Channel>& list, const Drawing& design, std::size_t w,
                const std::string& prefix) {
+    const Model& model = design.model;
     const Wheel& wheel = model.wheels[w];
-    const Point patch{wheel.body, wheel.contact_local};
-    const Vector3d drawn = position(design_state(model), patch);
+    const Point patch = patch_of(design.read().wheels[w]);
+    const auto drawn = [&](int axis) { return design.coordinate(patch_of(wheel), patch, axis); };
     const std::size_t first = list.size();
     add_position(list, prefix + "contact_patch",
                  "the point of the wheel's body that is the contact patch at the design position",
@@ -240,14 +323,14 @@ void add_patch(std::vector<Channel>& list, const Model& model, std::size_t w,
     for (std::size_t k = first; k < list.size(); ++k) list[k].main = false;
     list.push_back({.name = prefix + "track_change",
                     .main = false,
-                    .reads = Coordinate{patch, 1, drawn.y(), wheel.side},
+                    .reads = Coordinate{patch, 1, drawn(1), wheel.side},
                     .definition = "lateral displacement of this wheel's contact patch from its "
                                   "design position, positive outwards"});
     if (model.vehicle)
         list.push_back(
             {.name = prefix + "wheelbase_change",
              .main = false,
-             .reads = Coordinate{patch, 0, drawn.x(), model.vehicle->axle == Axle::front ? +1 : -1},
+             .reads = Coordinate{patch, 0, drawn(0), model.vehicle->axle == Axle::front ? +1 : -1},
              .definition = "longitudinal displacement of this wheel's contact patch from its "
                            "design position, positive where the wheelbase grows (forward in front, "
                            "rearward at the rear)"});
@@ -281,7 +364,8 @@ void add_steering(std::vector<Channel>& list, std::size_t w, const std::string& 
 }
 
 // Channels of two opposite wheels.
-void add_axle(std::vector<Channel>& list, const Model& model) {
+void add_axle(std::vector<Channel>& list, const Drawing& design) {
+    const Model& model = design.model;
     if (model.wheels.size() != 2 || model.wheels[0].side == model.wheels[1].side) return;
     const std::size_t left = model.wheels[0].side > 0 ? 0 : 1, right = 1 - left;
     list.push_back({.name = "track",
@@ -290,18 +374,21 @@ void add_axle(std::vector<Channel>& list, const Model& model) {
                     .definition = "lateral distance between the contact patches of the two wheels, "
                                   "positive where the left one is to the left"});
     if (!model.vehicle || model.vehicle->axle != Axle::front) return;
-    const Equilibrium drawn = design_state(model);
-    const auto y = [&](std::size_t w) {
-        const Wheel& wheel = model.wheels[w];
-        const double to_pivot = wheel.steering_axis ? pivot(State{model, drawn}, w).y() : 0;
-        return position(drawn, {wheel.body, wheel.contact_local}).y() +
-               (std::isinf(to_pivot) ? 0 : to_pivot);
-    };
+    const double wheelbase_by_pivots = design.number([&]<class S>(const Configuration<S>& at) {
+        const auto y = [&](std::size_t w) -> S {
+            const S patch = at.patch(w).y();
+            if (!at.wheel(w).steering_axis) return patch;
+            const S to_pivot = pivot(at, w).y();
+            return std::isinf(value_of(to_pivot)) ? patch : patch + to_pivot;
+        };
+        const Vehicle &vehicle = *at.model.vehicle, &d = *at.changing().vehicle;
+        return at.number(vehicle.wheelbase, d.wheelbase) / (y(left) - y(right));
+    });
     list.push_back(
         {.name = "ackermann",
          .unit = Unit::percent,
          .main = false,
-         .reads = Ackermann{left, right, model.vehicle->wheelbase / (y(left) - y(right))},
+         .reads = Ackermann{left, right, wheelbase_by_pivots},
          .definition =
              "(cot of the right wheel's angle less cot of the left one's) times the wheelbase over "
              "the lateral distance between the pivots on the road: positive where the inner wheel "
@@ -309,21 +396,27 @@ void add_axle(std::vector<Channel>& list, const Model& model) {
              "rear axle; undefined unless both are turned in the same direction by 2 deg or more"});
 }
 
-void add_compression(std::vector<Channel>& list, const Model& model, const std::string& name,
-                     const char* what, const Point& i, const Point& j) {
-    const Equilibrium drawn = design_state(model);
+// i and j, and the same of design.read().
+struct Between {
+    Point i, j;
+};
+void add_compression(std::vector<Channel>& list, const Drawing& design, const std::string& name,
+                     const char* what, const Between& ends, const Between& read) {
+    const double drawn = design.number([&](const auto& at) {
+        return (at.position(ends.j, read.j) - at.position(ends.i, read.i)).norm();
+    });
     list.push_back(
         {.name = name + ".compression",
          .main = false,
-         .reads = Compression{i, j, (position(drawn, j) - position(drawn, i)).norm()},
+         .reads = Compression{read.i, read.j, drawn},
          .definition = fmt::format("design length less length of {} '{}', positive in compression",
                                    what, name)});
 }
 
-void add_wheel(std::vector<Channel>& list, const Model& model, std::size_t w) {
-    const Wheel& wheel = model.wheels[w];
+void add_wheel(std::vector<Channel>& list, const Drawing& design, std::size_t w) {
+    const Wheel& wheel = design.model.wheels[w];
     const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
-    const Point centre{wheel.body, wheel.centre_local};
+    const Point centre = centre_of(design.read().wheels[w]);
     add_position(list, prefix + "wheel_centre", "the wheel centre", centre);
     list.push_back(
         {.name = prefix + "toe",
@@ -339,11 +432,11 @@ void add_wheel(std::vector<Channel>& list, const Model& model, std::size_t w) {
                         "outwards"});
     list.push_back({.name = prefix + "travel",
                     .main = false,
-                    .reads = Coordinate{centre, 2, position(design_state(model), centre).z()},
+                    .reads = Coordinate{centre, 2, design.coordinate(centre_of(wheel), centre, 2)},
                     .definition =
                         "vertical displacement of the wheel centre from its design position, "
                         "positive in jounce (up)"});
-    add_patch(list, model, w, prefix);
+    add_patch(list, design, w, prefix);
     if (wheel.steering_axis) add_steering(list, w, prefix);
 }
 
@@ -441,18 +534,28 @@ std::vector<int> Channel::joints() const {
         reads);
 }
 
-std::vector<Channel> channels(const Model& model) {
+namespace {
+
+std::vector<Channel> list_of(const Drawing& design) {
+    const Model &model = design.model, &read = design.read();
     std::vector<Channel> list;
-    for (std::size_t w = 0; w < model.wheels.size(); ++w) add_wheel(list, model, w);
-    add_axle(list, model);
-    for (const auto& probe : model.probes)
-        add_position(list, probe.name, "'" + probe.name + "'", probe.at);
-    for (const auto& elastic : model.elastics)
-        if (const auto ends = points_of(elastic.kind);
-            ends.size() == 2 && elastic.written_as == WrittenAs::itself)
-            add_compression(list, model, elastic.name, "spring", ends[0], ends[1]);
-    for (const auto& damper : model.dampers)
-        add_compression(list, model, damper.name, "damper", damper.i, damper.j);
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) add_wheel(list, design, w);
+    add_axle(list, design);
+    for (std::size_t k = 0; k < model.probes.size(); ++k) {
+        const std::string& name = model.probes[k].name;
+        add_position(list, name, "'" + name + "'", read.probes[k].at);
+    }
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
+        if (const auto ends = points_of(model.elastics[k].kind);
+            ends.size() == 2 && model.elastics[k].written_as == WrittenAs::itself) {
+            const auto of_read = points_of(read.elastics[k].kind);
+            add_compression(list, design, model.elastics[k].name, "spring", {ends[0], ends[1]},
+                            {of_read[0], of_read[1]});
+        }
+    for (std::size_t k = 0; k < model.dampers.size(); ++k)
+        add_compression(list, design, model.dampers[k].name, "damper",
+                        {model.dampers[k].i, model.dampers[k].j},
+                        {read.dampers[k].i, read.dampers[k].j});
     for (const int k : joints_moved(model)) add_effort(list, model, k);
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const ModelJoint& joint = model.joints[k];
@@ -463,6 +566,15 @@ std::vector<Channel> channels(const Model& model) {
                    });
     }
     return list;
+}
+
+}  // namespace
+
+std::vector<Channel> channels(const Model& model) { return list_of({model}); }
+std::vector<Reads> read_rates(const Model& model, const Model& rate) {
+    std::vector<Reads> reads;
+    for (auto& channel : list_of({model, &rate})) reads.push_back(std::move(channel.reads));
+    return reads;
 }
 
 std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups) {
@@ -516,11 +628,12 @@ std::vector<double> evaluate(const Model& model, std::span<const Channel> channe
     std::vector<double> values;
     values.reserve(channels.size());
     for (const auto& channel : channels)
-        values.push_back(in_unit(channel.unit) * std::visit(
-                                                     [&](const auto& c) {
-                                                         return read(State{model, state}, c);
-                                                     },
-                                                     channel.reads));
+        values.push_back(in_unit(channel.unit) *
+                         std::visit(
+                             [&](const auto& c) {
+                                 return read(Configuration<double>{model, state}, c, c);
+                             },
+                             channel.reads));
     return values;
 }
 
@@ -530,10 +643,22 @@ double rate_of(const Model& model, const Reads& reads, const Equilibrium& state,
     return std::visit(
         [&](const auto& c) {
             if constexpr (std::decay_t<decltype(c)>::kind == ChannelKind::motion) {
-                const Dual value = read(at, c);
+                const Dual value = read(at, c, c);
                 return std::isinf(value.x) ? std::nan("") : value.dx;
             } else
                 return std::nan("");
+        },
+        reads);
+}
+
+double rate_of(const Model& model, const Reads& reads, const Equilibrium& state, const Model& rate,
+               const Reads& reads_rate, const StateRate& state_rate) {
+    if (state_rate.outcome != Outcome::converged) return std::nan("");
+    const Configuration<Dual> at{model, state, state_rate.increments, &rate, state_rate.reactions};
+    return std::visit(
+        [&]<class Kind>(const Kind& c) {
+            const Dual value = read(at, c, std::get<Kind>(reads_rate));
+            return std::isinf(value.x) ? std::nan("") : value.dx;
         },
         reads);
 }

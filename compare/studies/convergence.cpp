@@ -128,16 +128,16 @@ double grid(int k) { return lowest + (highest - lowest) * k / cells; }
 
 // The shapes at all of these. A study fits thousands of values with the same steps.
 const std::vector<Shape>& shapes(const std::vector<double>& l) {
-    struct Known {
+    struct KnownShapes {
         std::vector<double> l;
         std::vector<Shape> shapes;
     };
     constexpr std::size_t most_known = 64;
-    thread_local std::deque<Known> all;
-    for (const Known& known : all)
+    thread_local std::deque<KnownShapes> all;
+    for (const KnownShapes& known : all)
         if (known.l == l) return known.shapes;
     if (all.size() == most_known) all.pop_front();
-    Known& made = all.emplace_back(Known{l, std::vector<Shape>(cells + 1)});
+    KnownShapes& made = all.emplace_back(KnownShapes{l, std::vector<Shape>(cells + 1)});
     for (int k = 0; k <= cells; ++k) shape(l, grid(k), made.shapes[static_cast<std::size_t>(k)]);
     return made.shapes;
 }

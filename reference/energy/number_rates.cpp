@@ -1,5 +1,6 @@
 #include "reference/energy/number_rates.hpp"
 
+#include <limits>
 #include <stdexcept>
 
 #include "models/kinds.hpp"
@@ -13,6 +14,8 @@ using Eigen::MatrixXd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+
+constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
 
 // ---- A part alone, its ends as bodies 0 and 1.
 
@@ -324,8 +327,8 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
     const Chart chart = chart_about(at.state.poses);
     const double a = at.state.a;
     const Prescribed change = prescribed_rate(model, branch, rate, a);
-    NumberRate number{
-        VectorXd::Zero(coordinates(model)), VectorXd::Zero(constraint_rows(model)), {}, {}};
+    const VectorXd none = VectorXd::Zero(coordinates(model));
+    NumberRate number{none, none, VectorXd::Zero(constraint_rows(model)), {}, {}};
     {
         // loads alone: the elements follow
         Prescribed loads = nothing_prescribed(model);
@@ -339,7 +342,10 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
         const ElasticKind &kind = model.elastics[k].kind, &d = rate.elastics[k].kind;
         const PartCurvature& part = parts.elements[k];
         const Vector12 y = end_motion(kind, d, chart);
-        if (!y.isZero(0)) add_ends(part, mixed(part, y), number.b);
+        if (!y.isZero(0)) {
+            add_ends(part, mixed(part, y), number.b);
+            add_ends(part, last_digits * (part.H.cwiseAbs() * y.cwiseAbs()), number.rounding);
+        }
         const double* length = driven_number(d);
         const double dfree_length = (length != nullptr ? *length : 0) + change.free_length[n];
         if (keeps_stress(d) && dfree_length == 0 && change.preload.col(n).isZero(0)) continue;
@@ -356,6 +362,7 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
         Vector12& turned = number.turned.emplace_back(Vector12::Zero());
         if (!y.isZero(0)) {
             add_ends(part, mixed(part, y), number.b);
+            add_ends(part, last_digits * (part.H.cwiseAbs() * y.cwiseAbs()), number.rounding);
             number.Phi_rate.segment(row, rows(kind)) += part.Phi_x.topRows(rows(kind)) * y;
         }
         const double* value = driven_number(d);

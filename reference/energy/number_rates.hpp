@@ -37,6 +37,7 @@ Parts parts_of(const Model& model, const StateTangent& tangent);
 // Change by one number at a constant x and λ, and what the reactions need of it.
 struct NumberRate {
     Eigen::VectorXd b;             // of ∂V/∂x + Φ_qᵀ λ [6nb]
+    Eigen::VectorXd rounding;      // of b: features that move together cancel [6nb]
     Eigen::VectorXd Phi_rate;      // of Φ [m]
     std::vector<Vector12> motion;  // per constraint: y of its two ends
     std::vector<Vector12> turned;  // per constraint: change of ∂(λᵀΦ_k)/∂x by its offset

@@ -33,7 +33,8 @@ std::vector<StateRate> sensitivity(const Model& model, const Branch& branch,
         StateRate& result = all.emplace_back();
         const NumberRate number = number_rate(model, branch, rate, tangent, parts);
         const Answer answered = answer(
-            tangent, number.b, number.Phi_rate.isZero(0) ? Eigen::VectorXd() : number.Phi_rate);
+            tangent, number.b, number.Phi_rate.isZero(0) ? Eigen::VectorXd() : number.Phi_rate,
+            number.rounding);
         if (answered.outcome != Outcome::converged) {
             result.outcome = answered.outcome, result.detail = answered.what;
             continue;

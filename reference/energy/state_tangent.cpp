@@ -70,7 +70,8 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     return t;
 }
 
-Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_rate) {
+Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_rate,
+              const VectorXd& rounding) {
     VectorXd t = VectorXd::Zero(b_SI.size());
     if (Phi_rate.size() > 0) {
         const VectorXd driven_rate = -at.D.cwiseProduct(Phi_rate);
@@ -96,7 +97,8 @@ Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_
     // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
     if (!(remains <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}, {}};
-    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size))
+    const double noise = rounding.size() > 0 ? largest(at.S.cwiseProduct(rounding)) / energy : 0.0;
+    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size + noise))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
     const VectorXd dlambda = at.lambda.size() > 0 && t.size() > 0
                                  ? VectorXd(at.state.at.qr.solve(-left))

@@ -28,12 +28,14 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
 
 // The change (dx, dλ), SI, of the stationary point where its conditions change by
 //   b   of ∂V/∂x + Φ_qᵀ λ [6nb],   Phi_rate   of Φ [m]; empty: none
-// Idle motions are held.
+// Idle motions are held. `rounding` of b [6nb] where that is more than its own last digits: a
+// smaller load on an idle motion does not count.
 struct Answer {
     Outcome outcome = Outcome::converged;
     std::string what;  // half a sentence on the failure
     Eigen::VectorXd x, lambda;
 };
-Answer answer(const StateTangent& at, const Eigen::VectorXd& b, const Eigen::VectorXd& Phi_rate);
+Answer answer(const StateTangent& at, const Eigen::VectorXd& b, const Eigen::VectorXd& Phi_rate,
+              const Eigen::VectorXd& rounding = {});
 
 }  // namespace elastocheck::reference::energy

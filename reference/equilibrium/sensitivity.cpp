@@ -1,9 +1,16 @@
 #include "reference/equilibrium/sensitivity.hpp"
 
+#include <limits>
+
 #include "reference/equilibrium/linear_algebra/number_rates.hpp"
 #include "reference/equilibrium/state_tangent.hpp"
 
 namespace elastocheck::reference::equilibrium {
+namespace {
+
+constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
 
 std::vector<StateRate> sensitivity(const Model& model, const Branch& branch,
                                    const Equilibrium& state, std::span<const Model> rates) {
@@ -17,7 +24,9 @@ std::vector<StateRate> sensitivity(const Model& model, const Branch& branch,
             continue;
         }
         const NumberRate number = number_rate(system, rate, state.load, tangent.x);
-        const Answered answered = answer_to(tangent, rate_of(number, tangent.x));
+        // The forces of features that move together cancel but for rounding of the stiffness.
+        const double rounding = last_digits * largest_entry(tangent.at.J) * number.motion;
+        const Answered answered = answer_to(tangent, rate_of(number, tangent.x), rounding);
         if (answered.outcome != Outcome::converged) {
             result.outcome = answered.outcome, result.detail = answered.what;
             continue;

@@ -53,8 +53,8 @@ VectorXd with_shortest_motion(const System& system, const Linearisation& at, con
 }
 
 // Whether the right-hand side has a part outside the range of ∂E/∂x.
-bool is_pushed(const Rate& rate, const VectorXd& E_rate) {
-    return rate.mu.norm() > residual_round_off * E_rate.norm();
+bool is_pushed(const Rate& rate, const VectorXd& E_rate, double rounding = 0) {
+    return rate.mu.norm() > residual_round_off * E_rate.norm() + rounding;
 }
 
 }  // namespace
@@ -84,12 +84,12 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     return t;
 }
 
-Answered answer_to(const StateTangent& t, const VectorXd& E_rate) {
+Answered answer_to(const StateTangent& t, const VectorXd& E_rate, double rounding) {
     const Rate rate = refined_answer(t.at, E_rate);
     if (!rate.dx.allFinite()) return {Outcome::not_finite, "a response that is not finite", {}};
     if (rate.dx.norm() > farthest * E_rate.norm())
         return {Outcome::singular, "a motion with almost no stiffness", {}};
-    if (is_pushed(rate, E_rate)) {
+    if (is_pushed(rate, E_rate, rounding)) {
         const Failure why = unsolvable_load(t.system, t.at.modes.left * rate.mu);
         return {why.outcome, why.what, {}};
     }

@@ -62,10 +62,12 @@ struct Randomly {
     void turn(Vector3d& u, const Vector3d& omega) { u = omega.cross(u); }
     void change(ScalarLaw& law) {
         std::visit(overloaded{[&](LinearRate& u) { u.k *= number(); },
+                              // scaled and shifted, so that it stays continuous
                               [&](elastocheck::Curve& u) {
-                                  for (double& x : u.knots) x = 1e-3 * number();
+                                  const double factor = number(), shift = 1e-3 * number();
+                                  for (double& x : u.knots) x = shift;
                                   for (auto& piece : u.pieces)
-                                      for (double& c : piece) c *= number();
+                                      for (double& c : piece) c *= factor;
                               }},
                    law);
     }
@@ -223,6 +225,58 @@ TEST(Sensitivity, TheLegsAgreeOnEverySceneAlongRandomChangesOfAllNumbers) {
     });
     EXPECT_GT(answered, 250);
     RecordProperty("worst", fmt::format("{:.1e} poses, {:.1e} forces", worst, worst_force));
+}
+
+// Re-solves with all numbers changed by ±h, ±h/2: the remainder of the first-order expansion falls
+// with h², and extrapolated differences are the derivative.
+TEST(Sensitivity, IsTheDerivativeOfEveryLegsOwnSolutions) {
+    const double h = 1e-3;
+    int compared = 0;
+    double worst = 0;
+    for (const auto& scene :
+         {"double_wishbone", "four_bar", "single_bushing", "bushing_by_small_angles",
+          "two_spring_arch", "follower", "tyre_on_road", "semi_trailing_arm"}) {
+        const Model model = compile(trim(support::scene(scene)).scene);
+        const BranchSide side = sides_of(model, model.branches.front(), 1).front();
+        const OneWay way{side.model, side.branch};
+        const double a = side.branch.to / 2;
+        const Model rate = Randomly{std::mt19937(11)}.rate_of(way.model);
+        for (const auto& leg : three_legs()) {
+            if (leg.leg == Leg::energy && !support::has_potential(support::scene(scene))) continue;
+            const auto solved = [&](double by) {
+                OneWay here{changed(way.model, rate, by), {}};
+                here.branch = here.model.branches.front();
+                return state_at(here, a, leg.leg);
+            };
+            const Equilibrium state = solved(0);
+            const StateRate found = leg.sensitivity(way, state, rate);
+            ASSERT_EQ(found.outcome, Outcome::converged) << scene << ": " << found.detail;
+            const Equilibrium up = solved(h), down = solved(-h), near_up = solved(h / 2),
+                              near_down = solved(-h / 2);
+            const auto of = [&](const Equilibrium& at) { return motion(state, at); };
+            const auto forces = [&](const Equilibrium& at) { return stacked(at.reactions); };
+            const auto extrapolated = [&](const auto& value) {
+                return VectorXd(
+                    (8 * (value(near_up) - value(near_down)) - (value(up) - value(down))) /
+                    (6 * h));
+            };
+            const std::string where = fmt::format("{}, {}", scene, leg.name);
+            const double poses = apart(extrapolated(of), of_poses(found), least_motion),
+                         reactions = apart(extrapolated(forces), stacked(found.reactions), 1);
+            EXPECT_LE(poses, 1e-7) << where;
+            EXPECT_LE(reactions, 1e-6) << where;
+            worst = std::max(worst, poses);
+            // Taylor test
+            const double whole = (of(up) - h * of_poses(found)).norm(),
+                         half = (of(near_up) - h / 2 * of_poses(found)).norm();
+            if (whole > 1e-9) {
+                EXPECT_NEAR(std::log2(whole / half), 2, 0.1) << where;
+            }
+            ++compared;
+        }
+    }
+    EXPECT_GE(compared, 20);
+    RecordProperty("worst", fmt::format("{:.1e}", worst));
 }
 
 }  // namespace

@@ -33,11 +33,12 @@ const std::vector<Part> parts{
     {"reference/certificate", {}, {"models"}},
     {"compare",
      {"*"},  // every other public header
-     {"models", "recursive", "reference/equilibrium", "reference/energy", "reference/certificate"}},
+     {"models", "models/rates", "recursive", "reference/equilibrium", "reference/energy",
+      "reference/certificate"}},
     {"reports",
      {},
-     {"models/reader", "models/import", "models", "recursive", "reference/equilibrium",
-      "reference/energy", "reference/certificate", "compare"}},
+     {"models/reader", "models/import", "models/rates", "models", "recursive",
+      "reference/equilibrium", "reference/energy", "reference/certificate", "compare"}},
 };
 
 // A solver library belongs to one leg, and to its .cpp files.

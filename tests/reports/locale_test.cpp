@@ -87,6 +87,8 @@ const Line lines[] = {
      "$E stress $SCENES/../extremes/redundant_link.yaml --set joints.link.length=500.25 -o "
      "extremes"},
     {"equilibria", "$E equilibria $SCENES/two_spring_arch.yaml --at -120.5 --turned 80.5"},
+    {"sensitivity",
+     "$E sensitivity $SCENES/pendulum.yaml --points 1 --most 0 --csv derivatives.csv --json"},
     {"completion", "$E completion bash; $E man"},
     // Errors are reported with line and number.
     {"inspect",

@@ -2,6 +2,7 @@
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace elastocheck::reference::equilibrium {
@@ -204,6 +205,16 @@ NumberRate number_rate(const System& frozen, const Model& rate, double a, const 
             driver.what);
     }
     system.loads.insert(system.loads.end(), more.begin(), more.end());
+
+    const auto larger = [&](const Twists& both) {
+        for (const Twist* twist : {&both.i, &both.j})
+            number.motion =
+                std::max({number.motion, twist->v.norm() / system.length, twist->w.norm()});
+    };
+    for (std::size_t e = 0; e < model.elastics.size(); ++e)
+        larger(twists_of(model.elastics[e].kind, rate.elastics[e].kind));
+    for (std::size_t c = 0; c < model.constraints.size(); ++c)
+        larger(twists_of(model.constraints[c].kind, rate.constraints[c].kind));
 
     // The laws of bushings, and their undeformed state.
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {

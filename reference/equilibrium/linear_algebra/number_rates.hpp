@@ -16,6 +16,7 @@ namespace elastocheck::reference::equilibrium {
 struct NumberRate {
     const Model* rate = nullptr;  // with its branch first
     System changing;              // each quantity at the rate of the number
+    double motion = 0;  // largest motion of a feature within its body, over L or in radians
 };
 // `x`: at which the laws change. Throws std::invalid_argument for a rate of another model.
 NumberRate number_rate(const System& frozen, const Model& rate, double a, const Eigen::VectorXd& x);

@@ -1,0 +1,268 @@
+#include "compare/sensitivity/sensitivity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "compare/comparison/legs.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "compare/outputs/not_a_number.hpp"
+#include "compare/outputs/rates.hpp"
+#include "models/branch.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/sensitivity.hpp"
+#include "reference/energy/sensitivity.hpp"
+#include "reference/equilibrium/sensitivity.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// Smallest size of a row, of the largest row of its unit.
+constexpr double smallest_row = 1e-6;
+
+std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
+                                      std::span<const Model> rates) {
+    switch (leg) {
+        case Leg::recursive:
+        case Leg::series:
+            if (side.analysis == nullptr)
+                return recursive::sensitivity(side.model, side.branch, state, rates);
+            return recursive::sensitivity(side.model, side.branch, state, rates, *side.analysis);
+        case Leg::equilibrium:
+            return reference::equilibrium::sensitivity(side.model, side.branch, state, rates);
+        case Leg::energy:
+            return reference::energy::sensitivity(side.model, side.branch, state, rates);
+    }
+    return {};
+}
+
+// The rate of the model on a side of the branch.
+Model on_side(const Model& rate, std::size_t branch, const BranchSide& side) {
+    Branch here = side.branch;
+    here.drivers = rate.branches[branch].drivers;
+    return on_branch(rate, here);
+}
+
+// A rate of the model with what the outputs read, on any side.
+struct NumberColumn {
+    const ModelRate* rate;
+    std::vector<Reads> reads;
+};
+std::vector<NumberColumn> columns_of(const Model& model, std::span<const std::size_t> outputs,
+                                     std::span<const ModelRate> rates) {
+    std::vector<NumberColumn> all;
+    for (const ModelRate& rate : rates) {
+        NumberColumn& column = all.emplace_back(NumberColumn{&rate, {}});
+        if (!rate.undefined.empty()) continue;
+        const auto changed = read_rates(model, rate.rate);
+        for (const std::size_t output : outputs) column.reads.push_back(changed.at(output));
+    }
+    return all;
+}
+
+// What a side of a branch needs of the scene: columns of the numbers, then of the adjustments.
+struct SideJob {
+    const BranchSide& side;
+    std::span<const Channel> outputs;
+    std::span<const NumberColumn> columns;
+    std::vector<Model> rates;            // on this side, of the columns that have a derivative
+    std::vector<std::size_t> of_column;  // their columns
+    std::size_t numbers = 0;
+};
+
+// Derivatives of the outputs by every number; `adjusting`: dx/dp of a trim, or empty.
+MatrixXd derivatives_at(const SideJob& job, Leg leg, const Equilibrium& state,
+                        const MatrixXd& adjusting, std::vector<std::string>* why) {
+    MatrixXd all = MatrixXd::Constant(std::ssize(job.outputs), std::ssize(job.columns), nan);
+    std::vector<std::string> reasons(job.columns.size());
+    for (std::size_t k = 0; k < job.columns.size(); ++k)
+        reasons[k] = job.columns[k].rate->undefined;
+    const auto found = sensitivity_by(leg, job.side, state, job.rates);
+    const bool corner = at_corner(job.side.model, job.side.branch, state);
+    for (std::size_t n = 0; n < found.size(); ++n) {
+        const std::size_t k = job.of_column[n];
+        if (corner)
+            reasons[k] = "an element is at a corner of its law, where its stiffness has two values";
+        else if (found[n].outcome != Outcome::converged)
+            reasons[k] = fmt::format("{}: {}", name(found[n].outcome), found[n].detail);
+        if (!reasons[k].empty()) continue;
+        for (std::size_t c = 0; c < job.outputs.size(); ++c)
+            all(static_cast<Index>(c), static_cast<Index>(k)) =
+                in_unit(job.outputs[c].unit) * rate_of(job.side.model, job.outputs[c].reads, state,
+                                                       job.rates[n], job.columns[k].reads[c],
+                                                       found[n]);
+    }
+    const auto numbers = static_cast<Index>(job.numbers);
+    MatrixXd by_numbers = all.leftCols(numbers);
+    // A number that moves no adjustment takes none of their derivatives, which may be undefined.
+    for (Index k = 0; k < numbers; ++k)
+        for (Index j = 0; j < adjusting.rows(); ++j)
+            if (adjusting(j, k) != 0) by_numbers.col(k) += adjusting(j, k) * all.col(numbers + j);
+    if (why != nullptr) {
+        reasons.resize(job.numbers);
+        for (Index k = 0; k < adjusting.cols(); ++k) {
+            auto& reason = reasons[static_cast<std::size_t>(k)];
+            if (reason.empty() && !adjusting.col(k).allFinite())
+                reason = "the trim has no derivative by it";
+        }
+        *why = std::move(reasons);
+    }
+    return by_numbers;
+}
+
+// The largest entry of every output's row by the first leg, each number by its step.
+std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
+    std::vector<double> sizes(all.outputs.size(), 0);
+    std::map<Unit, double> of_unit;
+    for (std::size_t c = 0; c < sizes.size(); ++c) {
+        if (!side.why_output[c].empty()) continue;
+        for (const MatrixXd& at : side.legs.front().at)
+            for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+                const double entry = std::abs(at(static_cast<Index>(c), static_cast<Index>(k)) *
+                                              all.numbers[k].step);
+                if (entry > sizes[c]) sizes[c] = entry;
+            }
+        of_unit[all.outputs[c].unit] = std::max(of_unit[all.outputs[c].unit], sizes[c]);
+    }
+    for (std::size_t c = 0; c < sizes.size(); ++c)
+        sizes[c] = std::max(sizes[c], smallest_row * of_unit[all.outputs[c].unit]);
+    return sizes;
+}
+
+Disagreement compared(const Gradients& all, const SideGradients& side) {
+    Disagreement worst;
+    const auto sizes = row_sizes(all, side);
+    const LegGradients& first = side.legs.front();
+    for (const LegGradients& other : std::span(side.legs).subspan(1)) {
+        if (other.not_applicable) continue;
+        for (std::size_t s = 0; s < std::min(first.at.size(), other.at.size()); ++s)
+            for (std::size_t c = 0; c < sizes.size(); ++c) {
+                if (!side.why_output[c].empty()) continue;
+                for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+                    const auto row = static_cast<Index>(c), column = static_cast<Index>(k);
+                    const double a = first.at[s](row, column), b = other.at[s](row, column);
+                    if (std::isnan(a) && std::isnan(b)) continue;
+                    ++worst.compared;
+                    const double off = std::abs(a - b) * all.numbers[k].step,
+                                 share = off == 0 ? 0 : off / sizes[c];
+                    if (share <= worst.share || std::isnan(worst.share)) continue;
+                    worst.share = share;
+                    worst.where = fmt::format("{} by {} at {:g} {}: {} {:.12g}, {} {:.12g}",
+                                              all.outputs[c].name, all.numbers[k].path,
+                                              in_unit(side.unit) * side.a[s], symbol(side.unit),
+                                              name(first.leg), a, name(other.leg), b);
+                }
+            }
+    }
+    return worst;
+}
+
+}  // namespace
+
+VariedNumber varied_number(const ModelRate& rate, std::span<const Number> numbers) {
+    const std::string first = rate.path.substr(0, rate.path.find(','));
+    const auto found = std::ranges::find(numbers, first, &Number::path);
+    const Number number = found == numbers.end() ? Number{} : *found;
+    VariedNumber varied{
+        .path = rate.path, .value = number.value, .unit = number.unit, .undefined = rate.undefined};
+    const std::pair<const char*, double> millimetre[] = {
+        {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};
+    for (const auto& [unit, step] : millimetre)
+        if (number.unit == unit) {
+            varied.step = step, varied.step_name = "1 mm";
+            return varied;
+        }
+    varied.step = number.value != 0 ? std::abs(number.value) / 100 : 1;
+    if (number.value == 0) varied.step_name = "1 unit";
+    return varied;
+}
+
+bool Gradients::conclusive() const {
+    bool any = false;
+    for (const SideGradients& side : sides) {
+        for (const LegGradients& leg : side.legs)
+            if (!leg.failure.empty() && !leg.not_applicable) return false;
+        if (!(side.worst.share <= gradients_agree)) return false;
+        any = any || side.worst.compared > 0;
+    }
+    return any;
+}
+
+Gradients gradients(const Model& model, std::span<const Channel> outputs,
+                    std::span<const VariedNumber> numbers, std::span<const ModelRate> rates,
+                    const GradientOptions& options) {
+    Gradients all{{outputs.begin(), outputs.end()}, {numbers.begin(), numbers.end()}, {}};
+    const auto every = channels(model);
+    std::vector<std::size_t> places;
+    for (const Channel& output : outputs)
+        places.push_back(static_cast<std::size_t>(find_channel(every, output.name)));
+    std::vector<NumberColumn> columns = columns_of(model, places, rates);
+    std::map<Leg, MatrixXd> adjusting;
+    for (const Leg leg : options.legs) adjusting[leg] = {};
+    if (options.trim != nullptr) {
+        for (auto& column : columns_of(model, places, options.trim->adjustments))
+            columns.push_back(std::move(column));
+        for (auto& [leg, dx] : adjusting)
+            dx = adjustment_rates(model, *options.trim, leg,
+                                  [leg = leg](const BranchSide& side, const Equilibrium& state,
+                                              std::span<const Model> by) {
+                                      return sensitivity_by(leg, side, state, by);
+                                  });
+    }
+    for (std::size_t branch = 0; branch < model.branches.size(); ++branch) {
+        const std::string& branch_name = model.branches[branch].name;
+        if (!options.branches.empty() && std::ranges::count(options.branches, branch_name) == 0)
+            continue;
+        for (BranchSide side : sides_of(model, model.branches[branch], options.points)) {
+            if (options.progress) options.progress(side.name);
+            side.analysis =
+                std::make_shared<const recursive::Analysis>(recursive::analyse(side.model));
+            SideJob job{side, outputs, columns, {}, {}, numbers.size()};
+            for (std::size_t k = 0; k < columns.size(); ++k)
+                if (columns[k].rate->undefined.empty()) {
+                    job.rates.push_back(on_side(columns[k].rate->rate, branch, side));
+                    job.of_column.push_back(k);
+                }
+            SideGradients& here = all.sides.emplace_back();
+            here.name = side.name, here.branch = branch_name;
+            here.unit = unit_of(side.branch.unit);
+            const auto determined =
+                determined_channels(outputs, side.model, side.analysis->diagnosis.determined);
+            for (std::size_t c = 0; c < outputs.size(); ++c)
+                here.why_output.push_back(
+                    determined[c] ? ""
+                                  : "its joint is inactive on this branch, or shares its load with "
+                                    "redundant joints in an undetermined way");
+            for (const Leg leg : options.legs) {
+                LegGradients& by = here.legs.emplace_back();
+                by.leg = leg;
+                const bool first = here.legs.size() == 1;
+                const EquilibriumPath path =
+                    walk(side, {.leg = leg}, [&](const Equilibrium& state) {
+                        std::vector<std::string>* why = nullptr;
+                        if (first) {
+                            here.a.push_back(state.load);
+                            here.values.push_back(evaluate(side.model, outputs, state));
+                            why = &here.why_number.emplace_back();
+                        }
+                        by.at.push_back(derivatives_at(job, leg, state, adjusting.at(leg), why));
+                    });
+                if (path.outcome != Outcome::converged) {
+                    by.failure =
+                        fmt::format("{}: {}", elastocheck::name(path.outcome), path.detail);
+                    by.not_applicable = is_not_applicable(path.outcome);
+                }
+            }
+            here.worst = compared(all, here);
+        }
+    }
+    return all;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,93 @@
+// Derivatives of the outputs by the numbers of a scene along its branches, by every leg.
+//
+// Each leg follows the branch and differentiates its own conditions at its own states:
+// recursive/sensitivity.hpp, reference/equilibrium/sensitivity.hpp, reference/energy/sensitivity.hpp.
+// A derivative is taken at a constant parameter of the branch; the settled start is part of it.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/sensitivity/trim_rates.hpp"
+#include "elastocheck/channels.hpp"
+#include "elastocheck/legs.hpp"
+#include "elastocheck/model_rates.hpp"
+
+namespace elastocheck::compare {
+
+// A number of the file, its unit there, and the step in which its effect is shown: 1 mm of a
+// length, else 1 % of the value; one unit where that is zero.
+struct VariedNumber {
+    std::string path = {};
+    double value = 0;
+    std::string unit = {};
+    double step = 1;  // in its unit
+    const char* step_name = "1 %";
+    std::string undefined = {};  // reason why the model has no derivative by it
+};
+// Of the first where the rate is that of several numbers together.
+VariedNumber varied_number(const ModelRate& rate, std::span<const Number> numbers);
+
+// Of one leg along one side of a branch.
+struct LegGradients {
+    Leg leg = Leg::equilibrium;
+    // per station [outputs × numbers], unit of the output per unit of the number in the file; NaN
+    // where there is none
+    std::vector<Eigen::MatrixXd> at;
+    std::string failure;  // reason why stations are missing; empty if none is
+    bool not_applicable = false;
+};
+
+// Largest difference of two legs.
+struct Disagreement {
+    double share = 0;   // of the largest entry of the output's row
+    std::string where;  // "toe by points.a.z at 100 N: equilibrium 1.2, energy 1.3"
+    long compared = 0;
+};
+
+struct SideGradients {
+    std::string name;  // of the side of the branch
+    std::string branch;
+    Unit unit = Unit::newton;
+    std::vector<double> a;                    // stations [SI]
+    std::vector<std::vector<double>> values;  // per station: of the outputs, in their units
+    std::vector<LegGradients> legs;           // the equilibrium leg first
+    // per station and number: reason why there is no derivative, by the equilibrium leg; empty: there
+    // is one
+    std::vector<std::vector<std::string>> why_number;
+    std::vector<std::string> why_output;  // per output, likewise: not determined on this branch
+    Disagreement worst;
+};
+
+// Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
+// the output over all numbers and stations of the side, each number by its step. The largest entry
+// counts as at least a millionth of the largest of all rows of the same unit.
+inline constexpr double gradients_agree = 1e-8;
+
+struct Gradients {
+    std::vector<Channel> outputs;
+    std::vector<VariedNumber> numbers;
+    std::vector<SideGradients> sides;
+
+    bool conclusive() const;  // every leg that applies converged, something is compared, all agree
+};
+
+struct GradientOptions {
+    int points = 4;  // stations per branch after the start, equal increments of a
+    std::vector<std::string> branches = {};  // names; empty: all
+    std::vector<Leg> legs = {Leg::equilibrium, Leg::energy, Leg::series};
+    // of a trimmed scene: `rates` are then TrimRates::numbers
+    const TrimRates* trim = nullptr;
+    std::function<void(const std::string&)> progress = {};
+};
+
+// `rates`: of `model`, one per number.
+Gradients gradients(const Model& model, std::span<const Channel> outputs,
+                    std::span<const VariedNumber> numbers, std::span<const ModelRate> rates,
+                    const GradientOptions& options = {});
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,50 @@
+// `elastocheck sensitivity`: output, files and exit codes.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/reports/command.hpp"
+
+namespace elastocheck {
+namespace {
+
+using nlohmann::json;
+
+TEST(SensitivityCommand, ShowsWhatMovesAnOutputMostAndThatTheLegsAgree) {
+    expect_says("sensitivity " + scenes + "/pinned_bar.yaml --of tip_z --to 'points.*' --points 2",
+                0,
+                {.out = {"up: derivatives at 0 and 5000 N", "tip_z", "points.tip.x", "mm per mm",
+                         "the legs agree within 1e-08"}});
+}
+
+TEST(SensitivityCommand, RejectsAnUnknownNameWithTheNearest) {
+    const std::string asks = "sensitivity " + scenes + "/pinned_bar.yaml ";
+    expect_says(asks + "--of tip_zz", 2, {.err = {"--of", "did you mean 'tip_z'"}});
+    expect_says(asks + "--to points.tip.u", 2, {.err = {"--to", "did you mean 'points.tip."}});
+    expect_says(asks + "--branch upp", 2, {.err = {"--branch", "did you mean 'up'"}});
+}
+
+TEST(SensitivityCommand, WritesEveryDerivative) {
+    const Folder folder;
+    const std::string file = (folder.path / "derivatives.csv").string();
+    const Said said = expect_says("sensitivity " + scenes +
+                                      "/pinned_bar.yaml --of 'tip_*' --to points.tip.x --points 1 "
+                                      "--json --csv " +
+                                      file,
+                                  0);
+    const json document = json::parse(said.out);
+    EXPECT_EQ(document["schema"], "elastocheck/sensitivity/1");
+    EXPECT_EQ(document["conclusive"], true);
+    EXPECT_EQ(document["derivatives"]["rows"].size(), 2 * 2 * 3);  // sides, stations, outputs
+    EXPECT_TRUE(contains(text_of(file), "branch,parameter,unit,output,number,derivative,per"));
+}
+
+// A number that decides which parts there are, or counts, has no derivative: the entry says so.
+TEST(SensitivityCommand, SaysWhyThereIsNoDerivative) {
+    expect_says("sensitivity " + scenes +
+                    "/pinned_bar.yaml --of tip_z --to branches.up.steps,points.tip.x --points 1",
+                0, {.out = {"no derivative: ", "branches.up.steps"}});
+}
+
+}  // namespace
+}  // namespace elastocheck
