@@ -23,7 +23,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Smallest size of a row, of the largest row of its unit.
+// Smallest size of a row, of the largest row of motions [mm, deg] or of forces [N, N·m].
 constexpr double smallest_row = 1e-6;
 
 std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
@@ -119,7 +119,10 @@ MatrixXd derivatives_at(const SideJob& job, Leg leg, const Equilibrium& state,
 // The largest entry of every output's row by the first leg, each number by its step.
 std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
     std::vector<double> sizes(all.outputs.size(), 0);
-    std::map<Unit, double> of_unit;
+    double motions = 0, forces = 0;
+    const auto largest = [&](std::size_t c) -> double& {
+        return all.outputs[c].kinematic() ? motions : forces;
+    };
     for (std::size_t c = 0; c < sizes.size(); ++c) {
         if (!side.why_output[c].empty()) continue;
         for (const MatrixXd& at : side.legs.front().at)
@@ -128,10 +131,10 @@ std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
                                               all.numbers[k].step);
                 if (entry > sizes[c]) sizes[c] = entry;
             }
-        of_unit[all.outputs[c].unit] = std::max(of_unit[all.outputs[c].unit], sizes[c]);
+        largest(c) = std::max(largest(c), sizes[c]);
     }
     for (std::size_t c = 0; c < sizes.size(); ++c)
-        sizes[c] = std::max(sizes[c], smallest_row * of_unit[all.outputs[c].unit]);
+        sizes[c] = std::max(sizes[c], smallest_row * largest(c));
     return sizes;
 }
 
@@ -247,7 +250,7 @@ Gradients gradients(const Model& model, std::span<const Channel> outputs,
                     walk(side, {.leg = leg}, [&](const Equilibrium& state) {
                         std::vector<std::string>* why = nullptr;
                         if (first) {
-                            here.a.push_back(state.load);
+                            here.a.push_back(state.load + 0.0);  // no -0
                             here.values.push_back(evaluate(side.model, outputs, state));
                             why = &here.why_number.emplace_back();
                         }

@@ -349,6 +349,8 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
         const double* length = driven_number(d);
         const double dfree_length = (length != nullptr ? *length : 0) + change.free_length[n];
         if (keeps_stress(d) && dfree_length == 0 && change.preload.col(n).isZero(0)) continue;
+        add_ends(part, last_digits * std::abs(dfree_length) * part.H.cwiseAbs().rowwise().sum(),
+                 number.rounding);
         const ElementAlone one =
             with_changed_stress(alone(model, at, k), d, dfree_length, change.preload.col(n));
         add_ends(part, potential(one.model, one.prescribed, one.chart).gradient, number.b);

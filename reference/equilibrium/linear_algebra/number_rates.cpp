@@ -206,15 +206,33 @@ NumberRate number_rate(const System& frozen, const Model& rate, double a, const 
     }
     system.loads.insert(system.loads.end(), more.begin(), more.end());
 
-    const auto larger = [&](const Twists& both) {
+    // Whether features move.
+    const auto moves = [&](const Twists& both) {
+        double most = 0;
         for (const Twist* twist : {&both.i, &both.j})
-            number.motion =
-                std::max({number.motion, twist->v.norm() / system.length, twist->w.norm()});
+            most = std::max({most, twist->v.norm() / system.length, twist->w.norm()});
+        number.motion = std::max(number.motion, most);
+        return most != 0;
     };
     for (std::size_t e = 0; e < model.elastics.size(); ++e)
-        larger(twists_of(model.elastics[e].kind, rate.elastics[e].kind));
+        number.elements.push_back(moves(twists_of(model.elastics[e].kind, rate.elastics[e].kind)) ||
+                                  system.elements[e].free_length.rate != 0);
     for (std::size_t c = 0; c < model.constraints.size(); ++c)
-        larger(twists_of(model.constraints[c].kind, rate.constraints[c].kind));
+        number.constraints.push_back(
+            moves(twists_of(model.constraints[c].kind, rate.constraints[c].kind)) ||
+            system.values[c].rate != 0);
+    for (std::size_t k = 0; k < system.loads.size(); ++k) {
+        const LoadKind* d = load_rate(rate, k);
+        number.loads.push_back(system.loads[k].factor.rate != 0 ||
+                               (d != nullptr && moves(twists_of(system.loads[k].kind, *d))));
+    }
+    for (const ElementPath& path : system.elements)
+        number.motion = std::max(number.motion, std::abs(path.free_length.rate) / system.length);
+    for (const auto& elastic : rate.elastics)
+        each_member(elastic.kind, [&](Deformation<const Vector6> e) {
+            number.motion = std::max({number.motion, e.value.head<3>().norm() / system.length,
+                                      e.value.tail<3>().norm()});
+        });
 
     // The laws of bushings, and their undeformed state.
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
@@ -233,6 +251,10 @@ NumberRate number_rate(const System& frozen, const Model& rate, double a, const 
             path.preload[static_cast<std::size_t>(k)].rate += answer[k].v[0] + law[k];
         for (std::size_t k = 3; k < 6; ++k)
             path.rotational = path.rotational || path.preload[k].rate != 0;
+        number.elements[e] =
+            number.elements[e] || std::ranges::any_of(path.preload, [](const Affine& preload) {
+                return preload.rate != 0;
+            });
     }
     return number;
 }
@@ -244,6 +266,15 @@ struct Source {
     const VectorXd& x;
     const VectorXd& dx;  // empty: none
 
+    bool wants(Term term, std::size_t k) const {
+        switch (term) {
+            case Term::element: return number.elements[k];
+            case Term::load: return number.loads[k];
+            case Term::ground_spring: return false;
+            case Term::constraint: return number.constraints[k];
+        }
+        return true;
+    }
     Frame<Dual> frame(const Part& part, int which) const {
         return moving(number.changing, x, dx, which == 0 ? part.i : part.j,
                       twist_of(number, part, which));
@@ -293,10 +324,10 @@ VectorXd rate_of(const NumberRate& number, const VectorXd& x) {
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         const auto* spring = std::get_if<AxialSpring>(&model.elastics[e].kind);
         if (spring == nullptr) continue;
+        const auto& d = std::get<AxialSpring>(number.rate->elastics[e].kind);
         const Frame<double> i = frame_of(system, x, spring->i.body),
                             j = frame_of(system, x, spring->j.body);
         const double at = deformations(system, e, 0., i, j)[0];
-        const auto& d = std::get<AxialSpring>(number.rate->elastics[e].kind);
         AxialSpring without = *spring;
         without.law = LinearRate{};
         const auto on =

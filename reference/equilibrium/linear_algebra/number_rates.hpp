@@ -16,7 +16,11 @@ namespace elastocheck::reference::equilibrium {
 struct NumberRate {
     const Model* rate = nullptr;  // with its branch first
     System changing;              // each quantity at the rate of the number
-    double motion = 0;  // largest motion of a feature within its body, over L or in radians
+    // largest motion of a feature within its body, or change of an undeformed length, over L or in
+    // radians
+    double motion = 0;
+    // the terms of the system that the number changes, by their positions
+    std::vector<bool> elements = {}, loads = {}, constraints = {};
 };
 // `x`: at which the laws change. Throws std::invalid_argument for a rate of another model.
 NumberRate number_rate(const System& frozen, const Model& rate, double a, const Eigen::VectorXd& x);
