@@ -30,8 +30,6 @@
 
 namespace elastocheck::recursive::series {
 
-using V3 = Vector3<double>;
-
 // start + rate · a, or · t
 template <class T>
 struct Driven {
@@ -40,182 +38,248 @@ struct Driven {
 };
 
 // A rotation by its Gibbs vector.
+template <class Real>
 struct TurnSeries {
-    Vector3Series g, h;
-    Scalar stretch, shrink;  // 1 + g·g, 1 / (1 + g·g)
-    Matrix3Series hg, C;     // h gᵀ, C(g)
+    Vector3Series<Real> g, h;
+    Series<Real> stretch, shrink;  // 1 + g·g, 1 / (1 + g·g)
+    Matrix3Series<Real> hg, C;     // h gᵀ, C(g)
 };
-struct BodySeries : TurnSeries {
-    Vector3Series r;
+template <class Real>
+struct BodySeries : TurnSeries<Real> {
+    Vector3Series<Real> r;
 };
 
 // A vector fixed in a body.
+template <class Real>
 struct Arm {
     BodyId body = ground;
-    V3 fixed = V3::Zero();  // at τ = 0
-    Vector3Series s;        // C fixed
+    Vector3<Real> local = Vector3<Real>::Zero();  // in body axes
+    Vector3<Real> fixed = Vector3<Real>::Zero();  // at τ = 0
+    Vector3Series<Real> s;                        // C fixed
 };
 
 // A curve on one piece: f = c_0 + ξ (c_1 + ξ (c_2 + ξ c_3)), ξ = x - about.
+template <class Real>
 struct CubicSeries {
-    double about = 0;
-    std::array<double, 4> c{};
-    Scalar xi, inner, slope;  // ξ, c_2 + ξ c_3, c_1 + ξ (c_2 + ξ c_3)
+    Real about = 0;
+    std::array<Real, 4> c{0, 0, 0, 0};
+    Series<Real> xi, inner, slope;  // ξ, c_2 + ξ c_3, c_1 + ξ (c_2 + ξ c_3)
 };
 
+template <class Real>
 struct SpringSeries {
     AxialSpring kind;
-    Driven<double> free_length;
-    Arm i, j;
-    Vector3Series D, F;
-    Scalar length_squared, length, inverse, stretch, force, tension;  // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
-    CubicSeries cubic;                                                // if the law is a curve
+    Real k = 0;  // of a linear law
+    Driven<Real> free_length;
+    Arm<Real> i, j;
+    Vector3Series<Real> D, F;
+    Series<Real> length_squared, length, inverse, stretch, force,
+        tension;              // ℓ - ℓ₀, u'(ℓ - ℓ₀), F / D
+    CubicSeries<Real> cubic;  // if the law is a curve
 };
 
 // One deformation of a bushing with a law per axis.
+template <class Real>
 struct AxisSeries {
-    Scalar x, force;    // a component of e - e₀, u'(x)
-    CubicSeries cubic;  // if the law is a curve
+    Real k = 0;               // of a linear law
+    Series<Real> x, force;    // a component of e - e₀, u'(x)
+    CubicSeries<Real> cubic;  // if the law is a curve
 };
 
 // d in axes half way between those of i and j (Formulation::Frame::middle): B^½ has the Gibbs
 // vector tan(|θ|/4) θ/|θ| = V / (|p| + W), p = (W, V) the relative quaternion.
+template <class Real>
 struct MiddleSeries {
-    Scalar squared, size, sum, inverse;  // p·p, |p|, |p| + W, 1 / (|p| + W)
-    TurnSeries half;                     // B^½
-    Vector3Series d_i, d, F_local, F_i, m,
+    Series<Real> squared, size, sum, inverse;  // p·p, |p|, |p| + W, 1 / (|p| + W)
+    TurnSeries<Real> half;                     // B^½
+    Vector3Series<Real> d_i, d, F_local, F_i, m,
         g_m;  // d_i in axes of i, d = B^-½ d_i; F_i = B^½ F', F_i × d_i
 };
 
 // One of the three Cardan or projected angles of B: the polar angle of a vector in a plane, with
 // its row of H, δθ = H ω, ω the rotation of j relative to i in axes of i:
 // row = fixed + z/r · along.
+template <class Real>
 struct PlaneAngleSeries {
-    Vector2Series xy, unit;  // r (cos, sin), (cos, sin)
-    Scalar squared, r, inverse, angle, z, factor, moment;
-    Vector3Series along, row, share;
+    Vector2Series<Real> xy, unit;  // r (cos, sin), (cos, sin)
+    Series<Real> squared, r, inverse, angle, z, factor, moment;
+    Vector3Series<Real> along, row, share;
 };
+template <class Real>
 struct AnglesSeries {
-    Matrix3Series B;  // times p·p
-    std::array<PlaneAngleSeries, 3> axis;
+    Matrix3Series<Real> B;  // times p·p
+    std::array<PlaneAngleSeries<Real>, 3> axis;
 };
 
+template <class Real>
 struct BushingSeries {
     Bushing kind;
-    Driven<Vector6<double>> preload;
+    Matrix6<Real> K = Matrix6<Real>::Zero();           // of a linear law
+    Vector6<Real> undeformed = Vector6<Real>::Zero();  // e₀
+    Vector4<Real> A_i_local = Vector4<Real>::Zero(),   // quaternions of the markers (x, y, z, w)
+        A_j_local = Vector4<Real>::Zero();
+    Driven<Vector6<Real>> preload;
     bool rotational = true;  // whether there is a moment M' = ∂U/∂θ; else θ is not computed
-    Arm i, j;
-    Matrix3<double> E_i;  // axes of marker i at τ = 0
-    Eigen::Matrix4d
+    Arm<Real> i, j;
+    Matrix3<Real> E_i;  // axes of marker i at τ = 0
+    Eigen::Matrix<Real, 4, 4>
         to_relative;  // (1 + g_i·g_j, g_j - g_i - g_i × g_j) → quaternion p of B = A_iᵀ A_j, any length
-    Vector3Series rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1,
+    Vector3Series<Real> rho, D, strain, cross_g, V, u, theta, moment_local, u_M, u_u_M, spread_1,
         spread_2, force_i, moment_i, F, M;
-    Series<Eigen::Vector4d> relative;
-    Vector6Series e, gradient, stress;  // (d, θ) - e₀, ∂u/∂e, ∂u/∂e + preload
-    Scalar dot_g, W, inverse, s;
-    Composition phi, psi;
+    Series<Vector4<Real>> relative;
+    Vector6Series<Real> e, gradient, stress;  // (d, θ) - e₀, ∂u/∂e, ∂u/∂e + preload
+    Series<Real> dot_g, W, inverse, s;
+    Composition<Real> phi, psi;
     // Allocated only if the law or the formulation needs them.
-    AxisSeries* axis = nullptr;  // [6]
-    MiddleSeries* middle = nullptr;
-    AnglesSeries* angles = nullptr;
+    AxisSeries<Real>* axis = nullptr;  // [6]
+    MiddleSeries<Real>* middle = nullptr;
+    AnglesSeries<Real>* angles = nullptr;
 
     bool twists() const { return rotational || middle != nullptr; }  // whether M is computed
 };
 
+template <class Real>
 struct CoincidentSeries {
     static constexpr std::size_t rows = 3;
     CoincidentPoints kind;
-    Arm i, j;
-    Vector3Series F;
+    Arm<Real> i, j;
+    Vector3Series<Real> F;
 };
+template <class Real>
 struct PlaneSeries {
     static constexpr std::size_t rows = 1;
     PointInPlane kind;
-    Driven<double> offset;
-    Arm i, j, normal;
-    Vector3Series d, rho, F;
+    Driven<Real> offset;
+    Arm<Real> i, j, normal;
+    Vector3Series<Real> d, rho, F;
 };
+template <class Real>
 struct PerpendicularSeries {
     static constexpr std::size_t rows = 1;
     PerpendicularDirections kind;
-    Arm i, j;
-    Vector3Series M;
+    Arm<Real> i, j;
+    Vector3Series<Real> M;
 };
+template <class Real>
 struct DistanceSeries {
     static constexpr std::size_t rows = 1;
     DistanceBetween kind;
-    Driven<double> length;
-    Arm i, j;
-    Scalar ell, inverse, share;  // ℓ, 1/ℓ, λ/ℓ
-    Vector3Series d, F;
+    Driven<Real> length;
+    Arm<Real> i, j;
+    Series<Real> ell, inverse, share;  // ℓ, 1/ℓ, λ/ℓ
+    Vector3Series<Real> d, F;
 };
+template <class Real>
 struct AngleSeries {
     static constexpr std::size_t rows = 1;
     DirectionAtAngle kind;
-    Driven<double> angle;
-    Arm i, x, y;
-    Scalar alpha, cosine, sine;
-    Vector3Series along, across, w, M;  // cos α y_j, sin α x_j, w = cos α y_j - sin α x_j, u_i × w
+    Driven<Real> angle;
+    Arm<Real> i, x, y;
+    Series<Real> alpha, cosine, sine;
+    Vector3Series<Real> along, across, w,
+        M;  // cos α y_j, sin α x_j, w = cos α y_j - sin α x_j, u_i × w
 };
 
+template <class Real>
 struct ForceSeries {
     DeadForce kind;
-    Driven<double> factor;
-    Scalar size;
-    Arm at;
+    Vector3<Real> f = Vector3<Real>::Zero();
+    Driven<Real> factor;
+    Series<Real> size;
+    Arm<Real> at;
 };
+template <class Real>
 struct MomentSeries {
     DeadMoment kind;
-    Driven<double> factor;
+    Vector3<Real> m = Vector3<Real>::Zero();
+    Driven<Real> factor;
 };
 // A follower rotates with its body, and so does its moment about the origin, s × f or m.
+template <class Real>
 struct FollowerSeries {
-    V3 f_local, m_local;
-    Driven<double> factor;
-    Scalar size;
-    Arm f, m;
+    Driven<Real> factor;
+    Series<Real> size;
+    Arm<Real> f, m;
 };
 
-using ElasticSeries = std::variant<SpringSeries, BushingSeries>;
+template <class Real>
+using ElasticSeries = std::variant<SpringSeries<Real>, BushingSeries<Real>>;
+template <class Real>
 using ConstraintSeries =
-    std::variant<CoincidentSeries, PlaneSeries, PerpendicularSeries, DistanceSeries, AngleSeries>;
-using LoadSeries = std::variant<ForceSeries, MomentSeries, FollowerSeries>;
+    std::variant<CoincidentSeries<Real>, PlaneSeries<Real>, PerpendicularSeries<Real>,
+                 DistanceSeries<Real>, AngleSeries<Real>>;
+template <class Real>
+using LoadSeries = std::variant<ForceSeries<Real>, MomentSeries<Real>, FollowerSeries<Real>>;
 
 // All series of a model on a branch; allocated once.
+template <class Real>
 struct Equations {
     Arena room;
-    Drive drive = Drive::rate;      // rate: the parameter is a; start: t
-    std::vector<BodySeries> slots;  // ground, fixed, in slot 0
-    std::vector<Scalar> lambda;     // one per row of Φ
-    Scalar a;                       // the parameter
-    std::vector<ElasticSeries> elastics;
-    std::vector<ConstraintSeries> constraints;
-    std::vector<LoadSeries> loads;  // static, then driven
-    Vector<double> G, Phi;          // coefficient k after pass `known` [6nb], [m]
+    Drive drive = Drive::rate;            // rate: the parameter is a; start: t
+    std::vector<BodySeries<Real>> slots;  // ground, fixed, in slot 0
+    std::vector<Series<Real>> lambda;     // one per row of Φ
+    Series<Real> a;                       // the parameter
+    std::vector<ElasticSeries<Real>> elastics;
+    std::vector<ConstraintSeries<Real>> constraints;
+    std::vector<LoadSeries<Real>> loads;  // static, then driven
+    Vector<Real> G, Phi;                  // coefficient k after pass `known` [6nb], [m]
     // While settling, G - (1 - t) G_d and Φ - (1 - t) Φ_d replace G and Φ; d: at the design
     // position.
-    Vector<double> G_d, Phi_d;  // [6nb], [m]
-    bool curved = false;        // whether any law is a curve
+    Vector<Real> G_d, Phi_d;  // [6nb], [m]
+    bool curved = false;      // whether any law is a curve
 
     int order() const { return room.order; }
-    const BodySeries& operator[](BodyId b) const { return slots[static_cast<std::size_t>(b + 1)]; }
-    BodySeries& operator[](BodyId b) { return slots[static_cast<std::size_t>(b + 1)]; }
+    const BodySeries<Real>& operator[](BodyId b) const {
+        return slots[static_cast<std::size_t>(b + 1)];
+    }
+    BodySeries<Real>& operator[](BodyId b) { return slots[static_cast<std::size_t>(b + 1)]; }
 };
 
-Equations equations(const Model& model, const Branch& branch, int order, Drive drive = Drive::rate);
+// The equations of a model on a branch. Each lane of Real may have a variant with other numbers, of
+// the same kinds between the same bodies (`take`); a double has the one lane 0.
+template <class Real>
+Equations<Real> equations(const Model& model, const Branch& branch, int order,
+                          Drive drive = Drive::rate);
+
+// Sets the numbers of a lane: of the model's elements, constraints and loads, and of the drivers.
+// settle_on_constants() follows the last lane.
+template <class Real>
+void take(Equations<Real>& e, const Model& model, const Branch& branch, int lane);
+template <class Real>
+void settle_on_constants(Equations<Real>& e);
 
 // The cubic of a deformation x_axis with a curve (a spring has axis 0 only), and coefficient k of
 // that deformation.
-CubicSeries& cubic_of(Equations& e, std::size_t elastic, int axis);
-double deformation(const Equations& e, std::size_t elastic, int axis, int k);
+template <class Real>
+CubicSeries<Real>& cubic_of(Equations<Real>& e, std::size_t elastic, int axis);
+template <class Real>
+const Real& deformation(const Equations<Real>& e, std::size_t elastic, int axis, int k);
 
-// Sets τ = 0 at (q, λ, a): coefficients 0 of the unknowns, and the vectors fixed in the bodies.
-void begin(Equations& e, const State<double>& q, const Vector<double>& lambda, double a);
+// Sets τ = 0 at (q, λ, a) in a lane: coefficients 0 of the unknowns, and the vectors fixed in the
+// bodies.
+template <class Real>
+void begin(Equations<Real>& e, const State<double>& q, const Vector<double>& lambda, double a,
+           int lane = 0);
 
 // Computes coefficient k of all series; in pass `known` also of G and Φ.
-void evaluate(Equations& e, Order o);
+template <class Real>
+void evaluate(Equations<Real>& e, Order o);
 
 // Sets coefficient k of the unknowns to x_k = (r_k, 2 g_k; λ_k) and a_k.
-void assign(Equations& e, int k, const Vector<double>& x, double a);
+template <class Real>
+void assign(Equations<Real>& e, int k, const Vector<std::type_identity_t<Real>>& x,
+            const std::type_identity_t<Real>& a);
+
+// Instantiated in equations.cpp; terms.hpp defines them.
+extern template struct Equations<double>;
+extern template Equations<double> equations<double>(const Model&, const Branch&, int, Drive);
+extern template void take<double>(Equations<double>&, const Model&, const Branch&, int);
+extern template void settle_on_constants<double>(Equations<double>&);
+extern template CubicSeries<double>& cubic_of<double>(Equations<double>&, std::size_t, int);
+extern template const double& deformation<double>(const Equations<double>&, std::size_t, int, int);
+extern template void begin<double>(Equations<double>&, const State<double>&, const Vector<double>&,
+                                   double, int);
+extern template void evaluate<double>(Equations<double>&, Order);
+extern template void assign<double>(Equations<double>&, int, const Vector<double>&, const double&);
 
 }  // namespace elastocheck::recursive::series

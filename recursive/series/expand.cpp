@@ -5,23 +5,12 @@
 
 namespace elastocheck::recursive::series {
 
-// Limit on the relative correction of the first coefficient. Above it coefficients are refined:
-// along hundreds of stiff links the rounded matrix solves to 1e-12 only, and shorter expansions do
-// not help.
-constexpr double loses_digits = 1e-13;
-
-Coefficients reserve_coefficients(const SteppingState<double>& s, int order) {
-    const int N = s.n() + s.m();
-    return {Matrix<double>::Zero(N, order + 1), Vector<double>::Zero(order + 1),
-            Vector<double>::Zero(N), Vector<double>::Zero(N)};
-}
-
 double parameter(const SteppingState<double>& s, Drive drive) {
     return drive == Drive::start ? s.parameters.t : s.parameters.a;
 }
 
-void expand(SteppingState<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
-            const Vector<double>& ahead) {
+void expand(SteppingState<double>& s, Equations<double>& e, Coefficients<double>& c, double first,
+            bool arc_length, const Vector<double>& ahead) {
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     const auto inner = [&](const auto& a, const auto& b) {
@@ -47,50 +36,27 @@ void expand(SteppingState<double>& s, Equations& e, Coefficients& c, double firs
     c.x.col(1) = c.load[1] * c.unit;
     s.x = c.x.col(1);
 
-    // Residual correction of x_k: coefficient k of (G, Φ) evaluated element by element with x_k,
-    // and solved with the same factors. It removes the rounding of the assembled matrix.
-    const auto correct = [&](int k) {
-        assign(e, k, s.x, c.load[k]);
-        evaluate(e, {k, Pass::known});
-        s.upper = -e.G;
-        s.lower = -e.Phi;
-        back_substitute(s);
-    };
-    bool loses = false;
-    if (!arc_length) {
-        correct(1);
-        loses = !(s.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
-        if (loses) c.x.col(1) += s.x;
-        s.x = c.x.col(1);
-    }
-    for (int k = 1; k <= e.order(); ++k) {
-        assign(e, k, c.none, 0);
-        evaluate(e, {k, Pass::known});
-        if (k > 1) {
+    compute_orders(
+        e, c, s.x,
+        [&] {
             s.upper = -e.G;
             s.lower = -e.Phi;
             back_substitute(s);
-            if (arc_length) {  // x_k ⟂ x_1
-                c.load[k] = -inner(s.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
-                s.x += c.load[k] * c.unit;
-            }
-            c.x.col(k) = s.x;
-            if (loses) {
-                correct(k);
-                c.x.col(k) += s.x;
-                s.x = c.x.col(k);
-                assign(e, k, c.none, 0);
-                evaluate(e, {k, Pass::known});
-            }
-        }
-        // a curved law needs its last deformation coefficient for knots
-        if (k == e.order() && !e.curved) break;
-        assign(e, k, s.x, c.load[k]);
-        evaluate(e, {k, Pass::change});
-    }
+        },
+        [&](int k) {  // x_k ⟂ x_1
+            if (!arc_length) return;
+            c.load[k] = -inner(s.x, c.x.col(1)) / inner(c.unit, c.x.col(1));
+            s.x += c.load[k] * c.unit;
+        },
+        [&](auto&& correct) {
+            if (arc_length) return false;
+            correct();
+            return !(s.x.head(n).norm() <= loses_digits * c.x.col(1).head(n).norm());
+        },
+        [] {});
 }
 
-double reach(const SteppingState<double>& s, const Coefficients& c, double tolerance,
+double reach(const SteppingState<double>& s, const Coefficients<double>& c, double tolerance,
              double per_load, double radius) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     // Where constraints alone determine the motion, λ has a longer series than the motion. A force
@@ -117,7 +83,7 @@ double reach(const SteppingState<double>& s, const Coefficients& c, double toler
     return least;
 }
 
-Singularity nearest_singularity(const SteppingState<double>& s, const Coefficients& c) {
+Singularity nearest_singularity(const SteppingState<double>& s, const Coefficients<double>& c) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     const int from = std::max(4, p - 5);
     Singularity none{std::numeric_limits<double>::infinity(), 0, 1};

@@ -8,20 +8,78 @@
 namespace elastocheck::recursive::series {
 
 // Coefficients of the present expansion; allocated once.
+template <class Real>
 struct Coefficients {
-    Matrix<double> x;     // (r_k, 2 g_k; λ_k) [(n+m) × (p+1)]
-    Vector<double> load;  // a_k
-    Vector<double> unit;  // x̂, the solution for a unit of a
-    Vector<double> none;  // zero
+    Matrix<Real> x;     // (r_k, 2 g_k; λ_k) [(n+m) × (p+1)]
+    Vector<Real> load;  // a_k
+    Vector<Real> unit;  // x̂, the solution for a unit of a
+    Vector<Real> none;  // zero
 };
 
-Coefficients reserve_coefficients(const SteppingState<double>& s, int order);
+template <class Real>
+Coefficients<Real> reserve_coefficients(int unknowns, int order) {
+    return {Matrix<Real>::Zero(unknowns, order + 1), Vector<Real>::Zero(order + 1),
+            Vector<Real>::Zero(unknowns), Vector<Real>::Zero(unknowns)};
+}
+
+// Computes the orders 1 ... p after begin() and pass `known` of order 0. x_1 = a_1 x̂ is in c.x and in
+// `x`, a workspace.
+//
+//   solve()          sets x to the solution for the right-hand side (-G, -Φ)
+//   straighten(k)    may change x_k, in x, and a_k
+//   loses(correct)   whether the correction of x_1, which correct() puts into x, is so large that
+//                    all orders are corrected
+//   keep()           drops from x the corrections that are not needed
+//
+// Residual correction of x_k: coefficient k of (G, Φ) evaluated element by element with x_k, and
+// solved with the same factors. It removes the rounding of the assembled matrix.
+template <class Real, class Solve, class Straighten, class Loses, class Keep>
+void compute_orders(Equations<Real>& e, Coefficients<Real>& c, Vector<Real>& x, Solve&& solve,
+                    Straighten&& straighten, Loses&& loses, Keep&& keep) {
+    const auto correct = [&](int k) {
+        assign(e, k, x, c.load[k]);
+        evaluate(e, {k, Pass::known});
+        solve();
+    };
+    const bool corrected = loses([&] { correct(1); });
+    if (corrected) {
+        keep();
+        c.x.col(1) += x;
+    }
+    x = c.x.col(1);
+    for (int k = 1; k <= e.order(); ++k) {
+        assign(e, k, c.none, 0);
+        evaluate(e, {k, Pass::known});
+        if (k > 1) {
+            solve();
+            straighten(k);
+            c.x.col(k) = x;
+            if (corrected) {
+                correct(k);
+                keep();
+                c.x.col(k) += x;
+                x = c.x.col(k);
+                assign(e, k, c.none, 0);
+                evaluate(e, {k, Pass::known});
+            }
+        }
+        // a curved law needs its last deformation coefficient for knots
+        if (k == e.order() && !e.curved) break;
+        assign(e, k, x, c.load[k]);
+        evaluate(e, {k, Pass::change});
+    }
+}
+
+// Limit on the relative correction of the first coefficient. Above it coefficients are refined:
+// along hundreds of stiff links the rounded matrix solves to 1e-12 only, and shorter expansions do
+// not help.
+inline constexpr double loses_digits = 1e-13;
 
 // Computes the polynomial x(τ) about (s.q, s.lambda, s.a), with the factors in s.system. `first` is
 // a_1 with a as parameter. With arc length only the sign of `first` counts, or, where `ahead` [n]
 // is not zero, the direction of the previous motion. Allocates nothing.
-void expand(SteppingState<double>& s, Equations& e, Coefficients& c, double first, bool arc_length,
-            const Vector<double>& ahead);
+void expand(SteppingState<double>& s, Equations<double>& e, Coefficients<double>& c, double first,
+            bool arc_length, const Vector<double>& ahead);
 
 // The present parameter of the equations: a, or t while settling.
 double parameter(const SteppingState<double>& s, Drive drive);
@@ -31,14 +89,14 @@ double parameter(const SteppingState<double>& s, Drive drive);
 // `per_load` metres for a unit of a. The range is shorter where the radius of convergence R is less
 // than twice that: the terms fall as (τ/R)^k and sum to |x_p| τ^p (τ/R) / (1 - τ/R). An x_p that
 // vanishes by symmetry is replaced by |x_{p-1}| / R. NaN if a coefficient is not finite.
-double reach(const SteppingState<double>& s, const Coefficients& c, double tolerance,
+double reach(const SteppingState<double>& s, const Coefficients<double>& c, double tolerance,
              double per_load, double radius);
 
 // Singularity nearest to τ = 0. Near a limit point, and near most branch points, x ~ (1 - τ/τ_s)^½:
 // the coefficients divided by the binomial coefficients (½ over k) form a geometric series, and two
 // of them for a complex pair, y_k = b_1 y_{k-1} + b_2 y_{k-2}. b follows from the last orders by
 // least squares, τ_s from the roots.
-Singularity nearest_singularity(const SteppingState<double>& s, const Coefficients& c);
+Singularity nearest_singularity(const SteppingState<double>& s, const Coefficients<double>& c);
 
 // Evaluates Σ c_k τ^k, c_k the columns of c.
 void horner(const Eigen::MatrixXd& c, double tau, Vector<double>& value);

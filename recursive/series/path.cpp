@@ -8,6 +8,7 @@
 #include "recursive/formula/parameter.hpp"
 #include "recursive/series/expand.hpp"
 #include "recursive/series/pieces.hpp"
+#include "recursive/series/sides.hpp"
 #include "recursive/stepping/recording.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/stability.hpp"
@@ -59,8 +60,8 @@ std::optional<double> first_zero(Function f, double reach) {
 struct Continuation {
     SteppingState<double>& s;
     const recursive::Series& options;
-    Equations e;
-    Coefficients c;
+    Equations<double> e;
+    Coefficients<double> c;
     std::vector<Followed>& curves;
     Near near;
     double to;  // of the parameter
@@ -84,8 +85,8 @@ struct Continuation {
                  const recursive::Series& options_, Drive drive)
         : s(s_),
           options(options_),
-          e(equations(s.model, s.branch, options.order, drive)),
-          c(reserve_coefficients(s, options.order)),
+          e(equations<double>(s.model, s.branch, options.order, drive)),
+          c(reserve_coefficients<double>(s.n() + s.m(), options.order)),
           curves(curves_),
           near{s.length, 0.1 * options.tolerance, 10 * options.tolerance},
           to(drive == Drive::start ? 1 : s.branch.to),
@@ -516,29 +517,67 @@ std::size_t most_expansions(const Continuation& w, std::size_t gone_over) {
     return static_cast<std::size_t>(w.options.expansions) * (1 + std::min(gone_over, knots));
 }
 
-// From an equilibrium, with its factors in s.system, to the end. `known`: its stability.
-Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr) {
+// What the sides of a branch share: the start, its stability and the expansion there. With another
+// a_1, r times as large, x_k is rᵏ times as large.
+struct Begun {
+    State<double> q;
+    Vector<double> lambda;
+    std::vector<double> held;  // Held::value
+    Matrix<double> x;
+    Vector<double> load;
+    double log_determinant = 0;
+    int side = 0;
+    StartStability stability;
+};
+
+// The expansion at the start that another side of the branch has computed.
+Outcome expand_as(Continuation& w, const Begun& begun, Singularity& singularity, End& end) {
+    const double share = w.first / begun.load[1];
+    double power = 1;
+    for (Eigen::Index k = 0; k < begun.x.cols(); ++k, power *= share)
+        w.c.x.col(k) = power * begun.x.col(k);
+    w.c.load = begun.load;
+    w.c.load[1] = w.first;
+    singularity = nearest_singularity(w.s, w.c);
+    return range_of_validity(w, w.at(), singularity, end);
+}
+
+// From an equilibrium, with its factors in s.system, to the end. `known`: its stability. `begun`:
+// of another side of the branch, or to be filled for one.
+Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
+                      std::optional<Begun>* begun = nullptr) {
     SteppingState<double>& s = w.s;
     std::size_t gone_over = 0;
     while (w.path.expansions.size() < most_expansions(w, gone_over)) {
+        const bool starts = w.path.expansions.empty();
+        const bool again = starts && begun != nullptr && *begun;
         const State<double> from = s.q;
         Singularity singularity;
         End end;
         Certificate judged;
-        if (const Outcome o = expand_here(w, singularity, end); o != Outcome::converged) return o;
+        if (const Outcome o =
+                again ? expand_as(w, **begun, singularity, end) : expand_here(w, singularity, end);
+            o != Outcome::converged)
+            return o;
         // Crossing a knot must not have changed the sign of the determinant.
-        if (const int here = side(w, w.to); w.path.expansions.empty()) {
+        if (const int here = again ? (*begun)->side : side(w, w.to); starts) {
             w.side = here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
-                const StartStability start = known != nullptr ? *known : start_stability(s);
+                const StartStability start = again              ? (*begun)->stability
+                                             : known != nullptr ? *known
+                                                                : start_stability(s);
                 w.softest = start.softest;
                 w.stable = start.least.of_energy && start.least.value > 0;
                 if (const Outcome o = check_start_stability(s, start); o != Outcome::converged)
                     return o;
+                if (begun != nullptr && !again)
+                    *begun = {s.q,   s.lambda, s.system.held.value,
+                              w.c.x, w.c.load, log_determinant(s.system),
+                              here,  start};
             }
         } else if (here != w.side && !w.by_arc())
             return Outcome::singular;
-        w.log_begin = log_determinant(s.system);
+        w.log_begin = again ? (*begun)->log_determinant : log_determinant(s.system);
         if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
             return o;
         // The polynomial continues past a bifurcation point, and the branch past a loss of
@@ -603,8 +642,51 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
 
 }  // namespace
 
+namespace {
+
+bool same(const LoadKind& a, const LoadKind& b) {
+    return std::visit(
+        overloaded{
+            [](const DeadForce& x, const DeadForce& y) {
+                return x.at.body == y.at.body && x.at.s_local == y.at.s_local && x.f == y.f;
+            },
+            [](const DeadMoment& x, const DeadMoment& y) { return x.body == y.body && x.m == y.m; },
+            [](const FollowerForce& x, const FollowerForce& y) {
+                return x.at.body == y.at.body && x.at.s_local == y.at.s_local &&
+                       x.f_local == y.f_local;
+            },
+            [](const FollowerMoment& x, const FollowerMoment& y) {
+                return x.body == y.body && x.m_local == y.m_local;
+            },
+            [](const auto&, const auto&) { return false; }},
+        a, b);
+}
+
+}  // namespace
+
+bool same_drivers(const Branch& a, const Branch& b) {
+    return std::ranges::equal(a.drivers, b.drivers, [](const Driver& x, const Driver& y) {
+        return x.start == y.start && x.rate == y.rate &&
+               std::visit(
+                   overloaded{[](const Load& l, const Load& m) { return same(l.kind, m.kind); },
+                              [](const Motion& m, const Motion& n) { return m.joint == n.joint; },
+                              [](const FreeLength& f, const FreeLength& g) {
+                                  return f.elastic == g.elastic;
+                              },
+                              [](const Preload& p, const Preload& r) {
+                                  return p.elastic == r.elastic && p.direction == r.direction;
+                              },
+                              [](const auto&, const auto&) { return false; }},
+                   x.what, y.what);
+    });
+}
+
+namespace {
+
+// Follows one side. `begun`: empty, or of another side with the same drivers; filled where the side
+// may be begun alike.
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options,
-            const Analysis& analysis) {
+            const Analysis& analysis, std::optional<Begun>* begun) {
     check(model, branch);
     if (std::isnan(analysis.diagnosis.constraint_error)) {
         Path none;
@@ -623,6 +705,17 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         if (w.e.drive == Drive::start) w.path.expansions.clear();
         return std::move(w.path);
     };
+    if (!curves.empty() || options.arc_length) begun = nullptr;
+    if (begun != nullptr && *begun) {
+        s.q = (*begun)->q;
+        s.lambda = (*begun)->lambda;
+        s.system.held.value = (*begun)->held;
+        Continuation w(s, curves, options, Drive::rate);
+        w.go_to(w.to);  // with all forces at the end of the branch
+        const Outcome loaded = check_idle_load_here(w, 0);
+        w.go_to(0);
+        return finish(w, loaded == Outcome::converged ? follow_to_end(w, nullptr, begun) : loaded);
+    }
     // The factors of the analysis belong to the design position. If that is no equilibrium,
     // settling starts there; if it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
@@ -637,12 +730,30 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
             return finish(settling, o);
         Continuation w(s, curves, options, Drive::rate);
         w.go_to(0);
-        return finish(w, follow_to_end(w));
+        return finish(w, follow_to_end(w, nullptr, begun));
     }
     Continuation w(s, curves, options, Drive::rate);
     if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
         return finish(w, o);
-    return finish(w, follow_to_end(w, curves.empty() ? &analysis.start : nullptr));
+    return finish(w, follow_to_end(w, curves.empty() ? &analysis.start : nullptr, begun));
+}
+
+}  // namespace
+
+Path follow(const Model& model, const Branch& branch, const recursive::Series& options,
+            const Analysis& analysis) {
+    return follow(model, branch, options, analysis, nullptr);
+}
+
+std::vector<Path> follow_sides(const Model& model, std::span<const Branch> sides,
+                               const recursive::Series& options, const Analysis& analysis) {
+    std::vector<Path> paths;
+    std::optional<Begun> begun;
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+        if (k > 0 && !same_drivers(sides[k - 1], sides[k])) begun.reset();
+        paths.push_back(follow(model, sides[k], options, analysis, &begun));
+    }
+    return paths;
 }
 
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options) {

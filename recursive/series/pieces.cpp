@@ -53,12 +53,16 @@ bool has_knot(const Followed& f, int direction) {
 double knot(const Followed& f, int direction) {
     return f.curve->knots[static_cast<std::size_t>(direction > 0 ? f.piece : f.piece - 1)];
 }
-// Distance of the deformation from that knot, positive inside the piece.
-Polynomial inside(const Equations& e, const Followed& f, int direction) {
-    Polynomial c(e.order() + 1);
-    for (int k = 0; k <= e.order(); ++k) c[k] = -direction * deformation(e, f.elastic, f.axis, k);
+// Distance of the deformation x from that knot, positive inside the piece.
+Polynomial inside(const Polynomial& x, const Followed& f, int direction) {
+    Polynomial c = -direction * x;
     c[0] += direction * knot(f, direction);
     return c;
+}
+Polynomial series_of(const Equations<double>& e, const Followed& f) {
+    Polynomial x(e.order() + 1);
+    for (int k = 0; k <= e.order(); ++k) x[k] = deformation(e, f.elastic, f.axis, k);
+    return x;
 }
 
 std::optional<Leaving> leaving(const Polynomial& f, int direction, double reach, double touch,
@@ -99,13 +103,13 @@ std::vector<Followed> curves_of(const Model& model) {
     return curves;
 }
 
-void find_piece(const Equations& e, Followed& f) {
+void find_piece(const Equations<double>& e, Followed& f) {
     f.piece = piece_at<double>(*f.curve, deformation(e, f.elastic, f.axis, 0));
 }
 
-void follow_on(const Followed& f, Equations& e) {
+void follow_on(const Followed& f, Equations<double>& e) {
     const auto piece = static_cast<std::size_t>(f.piece);
-    CubicSeries& cubic = cubic_of(e, f.elastic, f.axis);
+    CubicSeries<double>& cubic = cubic_of(e, f.elastic, f.axis);
     cubic.c = f.curve->pieces[piece];
     cubic.about = f.curve->knots[piece == 0 ? 0 : piece - 1];
 }
@@ -113,7 +117,7 @@ void follow_on(const Followed& f, Inputs<double>& inputs) {
     inputs.rest[f.elastic].piece[static_cast<std::size_t>(f.axis)] = f.piece;
 }
 
-std::optional<double> to_knot(const Equations& e, const Followed& f, int direction) {
+std::optional<double> to_knot(const Equations<double>& e, const Followed& f, int direction) {
     if (!has_knot(f, direction)) return std::nullopt;
     return direction * (knot(f, direction) - deformation(e, f.elastic, f.axis, 0));
 }
@@ -126,22 +130,31 @@ bool step_over(Followed& f, int direction) {
     return std::abs(behind - before) > 1e-12 * std::max(std::abs(before), std::abs(behind));
 }
 
-std::optional<Leaving> leaving(const Equations& e, const Followed& f, double reach,
+std::optional<Leaving> leaving(const Equations<double>& e, const Followed& f, double reach,
+                               const Near& near) {
+    return leaving(series_of(e, f), f, reach, near);
+}
+std::optional<Leaving> leaving(const Eigen::VectorXd& x, const Followed& f, double reach,
                                const Near& near) {
     const double unit = f.turns() ? near.length : 1;
     std::optional<Leaving> first;
     for (const int direction : {+1, -1}) {
         if (!has_knot(f, direction)) continue;
-        const auto there = leaving(inside(e, f, direction), direction, reach, near.touch / unit,
+        const auto there = leaving(inside(x, f, direction), direction, reach, near.touch / unit,
                                    near.arrived / unit);
         if (there && (!first || there->tau < first->tau)) first = there;
     }
     return first;
 }
 
-bool meets(const Equations& e, const Followed& f, int direction, double tau, const Near& near) {
-    return std::abs(value(inside(e, f, direction), tau)) <=
+bool meets(const Eigen::VectorXd& x, const Followed& f, int direction, double tau,
+           const Near& near) {
+    return std::abs(value(inside(x, f, direction), tau)) <=
            near.touch / (f.turns() ? near.length : 1);
+}
+bool meets(const Equations<double>& e, const Followed& f, int direction, double tau,
+           const Near& near) {
+    return meets(series_of(e, f), f, direction, tau, near);
 }
 
 }  // namespace elastocheck::recursive::series

@@ -26,15 +26,15 @@ struct Followed {
 // The curves of the model; find_piece() selects the piece of the deformation in e at τ = 0 (a knot
 // belongs to the piece behind it).
 std::vector<Followed> curves_of(const Model& model);
-void find_piece(const Equations& e, Followed& curve);
+void find_piece(const Equations<double>& e, Followed& curve);
 
 // Sets the piece of the curve in the equations, or in the inputs.
-void follow_on(const Followed& curve, Equations& e);
+void follow_on(const Followed& curve, Equations<double>& e);
 void follow_on(const Followed& curve, Inputs<double>& inputs);
 
 // Distance of the deformation at τ = 0 from the knot behind the piece (+1), or before it (-1), in
 // units of the deformation; none if the piece has no knot on that side.
-std::optional<double> to_knot(const Equations& e, const Followed& curve, int direction);
+std::optional<double> to_knot(const Equations<double>& e, const Followed& curve, int direction);
 
 // Changes to the piece behind the next knot (+1) or before the last one (-1). Returns whether the
 // slope jumps at that knot.
@@ -55,10 +55,16 @@ struct Leaving {
     int direction = 0;     // the knot behind the piece (+1), or the one before it (-1)
     bool at_once = false;  // it starts at that knot and moves out of the piece: wrong piece
 };
-std::optional<Leaving> leaving(const Equations& e, const Followed& curve, double reach,
+std::optional<Leaving> leaving(const Equations<double>& e, const Followed& curve, double reach,
+                               const Near& near);
+// The same of a deformation with the coefficients x [p + 1].
+std::optional<Leaving> leaving(const Eigen::VectorXd& x, const Followed& curve, double reach,
                                const Near& near);
 
 // Whether the deformation at τ is at the knot in that direction.
-bool meets(const Equations& e, const Followed& curve, int direction, double tau, const Near& near);
+bool meets(const Eigen::VectorXd& x, const Followed& curve, int direction, double tau,
+           const Near& near);
+bool meets(const Equations<double>& e, const Followed& curve, int direction, double tau,
+           const Near& near);
 
 }  // namespace elastocheck::recursive::series

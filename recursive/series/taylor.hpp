@@ -14,6 +14,7 @@
 #include <memory>
 #include <memory_resource>
 #include <span>
+#include <vector>
 
 #include "recursive/formula/state.hpp"
 
@@ -44,6 +45,12 @@ struct Arena {
     }
 };
 
+// The arithmetic of the coefficients: double, or several variants at once, one to a lane
+// (recursive/batch/lanes.hpp). For a lane's number, and what holds of all of them:
+inline void set_lane(double& all, int, double value) { all = value; }
+inline double lane(double all, int) { return all; }
+inline bool is_zero(double all) { return all == 0; }
+
 template <class T>
 struct Series {
     T* c = nullptr;  // c[0 ... p], in the memory of its equations
@@ -52,17 +59,24 @@ struct Series {
 
     Series() : change(zero()) {}
     static T zero() {
-        if constexpr (std::is_arithmetic_v<T>)
-            return T(0);
-        else
+        if constexpr (requires { T::Zero(); })
             return T::Zero();
+        else
+            return T(0);
     }
 };
-using Scalar = Series<double>;
-using Vector2Series = Series<Eigen::Vector2d>;
-using Vector3Series = Series<Vector3<double>>;
-using Vector6Series = Series<Vector6<double>>;
-using Matrix3Series = Series<Matrix3<double>>;
+template <class Real>
+using Vector2 = Eigen::Matrix<Real, 2, 1>;
+template <class Real>
+using Vector4 = Eigen::Matrix<Real, 4, 1>;
+template <class Real>
+using Vector2Series = Series<Vector2<Real>>;
+template <class Real>
+using Vector3Series = Series<Vector3<Real>>;
+template <class Real>
+using Vector6Series = Series<Vector6<Real>>;
+template <class Real>
+using Matrix3Series = Series<Matrix3<Real>>;
 
 template <class T>
 void reserve(Arena& room, Series<T>& s, bool constant = false) {
@@ -99,24 +113,25 @@ void product(Order o, const Series<A>& a, const Series<B>& b, Series<C>& c, Time
     }
 }
 
-inline constexpr auto scale = [](double a, const Vector3<double>& b) -> Vector3<double> {
-    return a * b;
-};
-inline constexpr auto dot = [](const Vector3<double>& a, const Vector3<double>& b) {
+inline constexpr auto scale =
+    []<class Real>(const Real& a, const Vector3<Real>& b) -> Vector3<Real> { return a * b; };
+inline constexpr auto dot = []<class Real>(const Vector3<Real>& a, const Vector3<Real>& b) -> Real {
     return a.dot(b);
 };
-inline constexpr auto cross = [](const Vector3<double>& a,
-                                 const Vector3<double>& b) -> Vector3<double> {
+inline constexpr auto cross = []<class Real>(const Vector3<Real>& a,
+                                             const Vector3<Real>& b) -> Vector3<Real> {
     return a.cross(b);
 };
-inline constexpr auto outer = [](const Vector3<double>& a,
-                                 const Vector3<double>& b) -> Matrix3<double> {
+inline constexpr auto outer = []<class Real>(const Vector3<Real>& a,
+                                             const Vector3<Real>& b) -> Matrix3<Real> {
     return a * b.transpose();
 };
-inline constexpr auto apply = [](const Matrix3<double>& A,
-                                 const Vector3<double>& b) -> Vector3<double> { return A * b; };
-inline constexpr auto apply_transposed = [](const Matrix3<double>& A,
-                                            const Vector3<double>& b) -> Vector3<double> {
+inline constexpr auto apply = []<class Real>(const Matrix3<Real>& A,
+                                             const Vector3<Real>& b) -> Vector3<Real> {
+    return A * b;
+};
+inline constexpr auto apply_transposed = []<class Real>(const Matrix3<Real>& A,
+                                                        const Vector3<Real>& b) -> Vector3<Real> {
     return A.transpose() * b;
 };
 
@@ -144,45 +159,51 @@ void add_linear(Order o, Series<C>& c, Map map) {
 }
 
 // c = 1 / a:  Σ a_i c_{k-i} = 0
-inline void reciprocal(Order o, const Scalar& a, Scalar& c) {
+template <class Real>
+void reciprocal(Order o, const Series<Real>& a, Series<Real>& c) {
     if (o.pass == Pass::change) {
         c.change = -a.change * c.c[0] * c.c[0];
         at(c, o.k) += c.change;
     } else if (o.k == 0) {
         c.c[0] = 1 / a.c[0];
     } else {
-        double sum = 0;
+        Real sum = 0;
         for (int i = 1; i <= o.k; ++i) sum += at(a, i) * at(c, o.k - i);
         at(c, o.k) = -sum * c.c[0];
     }
 }
 
 // c = √a:  Σ c_i c_{k-i} = a_k
-inline void square_root(Order o, const Scalar& a, Scalar& c) {
+template <class Real>
+void square_root(Order o, const Series<Real>& a, Series<Real>& c) {
     if (o.pass == Pass::change) {
         c.change = a.change / (2 * c.c[0]);
         at(c, o.k) += c.change;
     } else if (o.k == 0) {
-        c.c[0] = std::sqrt(a.c[0]);
+        using std::sqrt;
+        c.c[0] = sqrt(a.c[0]);
     } else {
-        double sum = at(a, o.k);
+        Real sum = at(a, o.k);
         for (int i = 1; i < o.k; ++i) sum -= at(c, i) * at(c, o.k - i);
         at(c, o.k) = sum / (2 * c.c[0]);
     }
 }
 
 // c = cos α, s = sin α:  c' = -s α',  s' = c α'
-inline void cosine_sine(Order o, const Scalar& alpha, Scalar& c, Scalar& s) {
+template <class Real>
+void cosine_sine(Order o, const Series<Real>& alpha, Series<Real>& c, Series<Real>& s) {
     if (o.pass == Pass::change) {
         c.change = -s.c[0] * alpha.change;
         s.change = c.c[0] * alpha.change;
         at(c, o.k) += c.change;
         at(s, o.k) += s.change;
     } else if (o.k == 0) {
-        c.c[0] = std::cos(alpha.c[0]);
-        s.c[0] = std::sin(alpha.c[0]);
+        using std::cos;
+        using std::sin;
+        c.c[0] = cos(alpha.c[0]);
+        s.c[0] = sin(alpha.c[0]);
     } else {
-        double of_c = 0, of_s = 0;
+        Real of_c = 0, of_s = 0;
         for (int i = 1; i <= std::min(o.k, alpha.last); ++i) {
             of_c -= i * at(alpha, i) * at(s, o.k - i);
             of_s += i * at(alpha, i) * at(c, o.k - i);
@@ -193,17 +214,19 @@ inline void cosine_sine(Order o, const Scalar& alpha, Scalar& c, Scalar& s) {
 }
 
 // α of u = (cos α, sin α):  α' = u × u'
-inline void arc(Order o, const Vector2Series& u, Scalar& alpha) {
-    const auto across = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+template <class Real>
+void arc(Order o, const Vector2Series<Real>& u, Series<Real>& alpha) {
+    const auto across = [](const Vector2<Real>& a, const Vector2<Real>& b) -> Real {
         return a.x() * b.y() - a.y() * b.x();
     };
     if (o.pass == Pass::change) {
         alpha.change = across(u.c[0], u.change);
         at(alpha, o.k) += alpha.change;
     } else if (o.k == 0) {
-        alpha.c[0] = std::atan2(u.c[0].y(), u.c[0].x());
+        using std::atan2;
+        alpha.c[0] = atan2(u.c[0].y(), u.c[0].x());
     } else {
-        double sum = 0;
+        Real sum = 0;
         for (int i = 1; i <= o.k; ++i) sum += i * across(at(u, o.k - i), at(u, i));
         at(alpha, o.k) = sum / o.k;
     }
@@ -223,7 +246,8 @@ inline void arc(Order o, const Vector2Series& u, Scalar& alpha) {
 inline void taylor_of_F(int m, double s_0, std::span<double> b) {
     const double inverse = 1 / (1 + s_0), shrinks = s_0 * inverse;
     const int p = static_cast<int>(b.size()) - 1;
-    const int beyond = shrinks > 0 ? static_cast<int>(std::min(-40 / std::log(shrinks), 1e6)) : 0;
+    const int beyond =
+        shrinks > 0 ? static_cast<int>(std::clamp(-40 / std::log(shrinks), 0., 1e6)) : 0;
     double next = 0;
     for (int n = p + beyond; n >= 0; --n) {
         next = ((n % 2 == 0 ? inverse : -inverse) - 2 * (n + 1) * shrinks * next) / (2 * n + m);
@@ -232,22 +256,34 @@ inline void taylor_of_F(int m, double s_0, std::span<double> b) {
     double power = 1;
     for (int n = 0; n <= p; ++n, power *= inverse) b[static_cast<std::size_t>(n)] *= power;
 }
+// The same in every lane.
+template <class Real>
+void taylor_of_F(int m, const Real& s_0, std::span<Real> b) {
+    std::vector<double> one(b.size());
+    for (int at = 0; at < Real::count; ++at) {
+        taylor_of_F(m, lane(s_0, at), std::span<double>(one));
+        for (std::size_t n = 0; n < b.size(); ++n) set_lane(b[n], at, one[n]);
+    }
+}
 
 // f(s(τ)) from the Taylor coefficients b_n of f about s_0:  Σ b_n σⁿ, σ = s - s_0.
+template <class Real>
 struct Composition {
-    std::span<double> b;  // [p + 1]
-    double* power;        // coefficient k of σⁿ at n (p + 1) + k, n = 2 ... p
-    bool fills = true;    // whether it computes the powers; else another function of s has done so
-    Scalar f;
+    std::span<Real> b;  // [p + 1]
+    Real* power;        // coefficient k of σⁿ at n (p + 1) + k, n = 2 ... p
+    bool fills = true;  // whether it computes the powers; else another function of s has done so
+    Series<Real> f;
 };
-inline void reserve(Arena& room, Composition& c, const Composition* before = nullptr) {
+template <class Real>
+void reserve(Arena& room, Composition<Real>& c, const Composition<Real>* before = nullptr) {
     const int n = room.order + 1;
-    c.b = {room.take<double>(n, 0), static_cast<std::size_t>(n)};
+    c.b = {room.take<Real>(n, 0), static_cast<std::size_t>(n)};
     c.fills = before == nullptr;
-    c.power = c.fills ? room.take<double>(n * n, 0) : before->power;
+    c.power = c.fills ? room.take<Real>(n * n, 0) : before->power;
     reserve(room, c.f);
 }
-inline void compose(Order o, const Scalar& s, Composition& c) {
+template <class Real>
+void compose(Order o, const Series<Real>& s, Composition<Real>& c) {
     if (o.pass == Pass::change) {
         c.f.change = c.b[1] * s.change;
         at(c.f, o.k) += c.f.change;
@@ -258,16 +294,17 @@ inline void compose(Order o, const Scalar& s, Composition& c) {
         return;
     }
     const int k = o.k, columns = static_cast<int>(c.b.size());
-    double sum = c.b[1] * at(s, k);
-    for (int n = 2; n <= k; ++n) {
-        double& power = c.power[n * columns + k];
+    // σ begins at this order, σⁿ at n times as high a one: a square without constant at 2
+    const int first = k > 1 && is_zero(s.c[1]) ? 2 : 1;
+    Real sum = c.b[1] * at(s, k);
+    for (int n = 2; n * first <= k; ++n) {
         if (c.fills) {
-            const double* const lower =
-                n == 2 ? s.c : c.power + (n - 1) * columns;  // σⁿ⁻¹ begins at order n - 1
-            power = 0;
-            for (int i = 1; i + (n - 1) <= k; ++i) power += at(s, i) * lower[k - i];
+            const Real* const lower = n == 2 ? s.c : c.power + (n - 1) * columns;
+            Real power = 0;
+            for (int i = first; i + (n - 1) * first <= k; ++i) power += at(s, i) * lower[k - i];
+            c.power[n * columns + k] = power;
         }
-        sum += c.b[static_cast<std::size_t>(n)] * power;
+        sum += c.b[static_cast<std::size_t>(n)] * c.power[n * columns + k];
     }
     at(c.f, k) = sum;
 }

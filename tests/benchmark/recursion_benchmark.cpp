@@ -21,7 +21,7 @@
 #include "elastocheck/equilibrium.hpp"
 #include "elastocheck/recursive.hpp"
 #include "recursive/diagnosis/analysis.hpp"
-#include "recursive/series/path.hpp"
+#include "recursive/series/sides.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -93,8 +93,8 @@ void series() {  // 1e-12 m
     });
 }
 void branches(int order) {  // 1e-12 m, nothing evaluated
-    for (const auto& branch : mcpherson().branches)
-        recursive::series::follow(mcpherson(), branch, {.order = order}, analysis());
+    recursive::series::follow_sides(mcpherson(), mcpherson().branches, {.order = order},
+                                    analysis());
 }
 
 double seconds(const std::function<void()>& work) {

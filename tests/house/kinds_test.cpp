@@ -29,7 +29,7 @@ const std::set<std::string> implement_a_kind{
     "models/compile/links.cpp",                 // spherical joints of a link
     "models/import/export/export_chrono.cpp",   // stops between the ends of a spring
     "recursive/linear_response.cpp",            // a disturbance, not a driver
-    "recursive/series/equations.cpp",           // series of the laws
+    "recursive/series/terms.hpp",               // series of the laws
     "reference/certificate/interval/laws.cpp",  // laws in intervals
     "reference/certificate/interval/laws.hpp",
     "reference/certificate/statement/system.cpp",           // isotropic bushings

@@ -100,8 +100,8 @@ TEST(Allocation, NoExpansionOfTheSeriesAllocatesForItsCoefficients) {
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied.setZero();
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
-        series::Equations e = series::equations(model, branch, 16);
-        series::Coefficients c = series::reserve_coefficients(s, 16);
+        series::Equations<double> e = series::equations<double>(model, branch, 16);
+        series::Coefficients<double> c = series::reserve_coefficients<double>(s.n() + s.m(), 16);
         const Vector<double> ahead = Vector<double>::Zero(s.n() + s.m());
         for (const bool arc_length : {false, true}) {
             const long before = allocations;

@@ -36,7 +36,7 @@ void expect_same(const Case& c, Random& random, const std::string& what, Drive d
     Vector<double> lambda(m), load(p + 1);
     for (auto& value : lambda) value = random(-1e3, 1e3);
     load[0] = random(-1, 1);
-    Equations e = equations(c.model, c.branch, p, drive);
+    Equations<double> e = equations<double>(c.model, c.branch, p, drive);
     for (auto& value : e.G_d) value = random(-1e3, 1e3);
     for (auto& value : e.Phi_d) value = random(-0.1, 0.1);
     begin(e, c.q, lambda, load[0]);

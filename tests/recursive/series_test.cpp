@@ -329,8 +329,8 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied = Vector<double>::Zero(s.n());
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);
-        Equations e = equations(model, branch, 8);
-        Coefficients c = reserve_coefficients(s, 8);
+        Equations<double> e = equations<double>(model, branch, 8);
+        Coefficients<double> c = reserve_coefficients<double>(s.n() + s.m(), 8);
         expand(s, e, c, branch.to, false, Vector<double>::Zero(s.n() + s.m()));
         // All coefficients are set: a `known` pass then gives G_k and Φ_k.
         for (int k = 1; k <= 7; ++k) {
