@@ -15,6 +15,7 @@
 
 #include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
+#include "recursive/diagnosis/length.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/rank.hpp"
 
@@ -31,23 +32,6 @@ constexpr double stiffness_threshold = 1e-13;
 // coordinates.
 constexpr double lever_rounding = 1024 * std::numeric_limits<double>::epsilon();
 constexpr double part_threshold = 1e-7;  // smallest entry of a unit combination that counts
-
-// Root mean square lever of all attachments: invariant under motions of the ground frame.
-double characteristic_length(const Model& model) {
-    double sum = 0;
-    int count = 0;
-    const auto where = [&](BodyId b) {
-        return model.bodies[static_cast<std::size_t>(b)].design.r.norm();
-    };
-    const auto take = [&](const auto& end) {
-        if (end.body == ground || end.s_local.norm() <= lever_rounding * where(end.body)) return;
-        sum += end.s_local.squaredNorm();
-        ++count;
-    };
-    for (const auto& c : model.constraints) each_point(c.kind, take);
-    for (const auto& e : model.elastics) each_point(e.kind, take);
-    return count > 0 ? std::sqrt(sum / count) : 1.0;
-}
 
 // Rows of the model during assembly, each on at most two bodies.
 struct Stack {
@@ -392,6 +376,22 @@ IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
 }
 
 }  // namespace
+
+double characteristic_length(const Model& model) {
+    double sum = 0;
+    int count = 0;
+    const auto where = [&](BodyId b) {
+        return model.bodies[static_cast<std::size_t>(b)].design.r.norm();
+    };
+    const auto take = [&](const auto& end) {
+        if (end.body == ground || end.s_local.norm() <= lever_rounding * where(end.body)) return;
+        sum += end.s_local.squaredNorm();
+        ++count;
+    };
+    for (const auto& c : model.constraints) each_point(c.kind, take);
+    for (const auto& e : model.elastics) each_point(e.kind, take);
+    return count > 0 ? std::sqrt(sum / count) : 1.0;
+}
 
 Diagnosis diagnose(const Model& model) {
     const State<double> q = design_state<double>(model);

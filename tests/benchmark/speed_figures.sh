@@ -11,6 +11,8 @@ processor=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
     "$1/benchmark_recursion"
     echo
     "$1/benchmark_step" $scenes/chrono_mcpherson.yaml $scenes/mcpherson_strut.yaml $scenes/front_axle.yaml 1000
+    echo
+    "$1/benchmark_batch" $scenes/chrono_mcpherson.yaml 400
 } >"$1/speed.md"
 mv "$1/speed.md" speed.md
 sed -i -e '/^<!-- speed.md -->/,/^<!-- end -->/{//!d}' -e '/^<!-- speed.md -->/r speed.md' README.md

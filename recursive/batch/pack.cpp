@@ -1,0 +1,812 @@
+#include "recursive/batch/pack.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "recursive/batch/structure.hpp"
+#include "recursive/diagnosis/length.hpp"
+#include "recursive/formula/recentre.hpp"
+#include "recursive/series/path.hpp"
+#include "recursive/series/sides.hpp"
+#include "recursive/stepping/settle.hpp"
+#include "recursive/stepping/stability.hpp"
+#include "recursive/stepping/stiffness.hpp"
+
+namespace elastocheck::recursive::batch {
+namespace {
+// A lane whose smallest pivot at the design position, over the largest, is below this fraction of
+// the design's ratio leaves: it may have an idle mode or a redundancy that the design has not.
+constexpr double least_share_of_ratio = 1e-3;
+// Strain up to which a held mode is exactly idle, or a combination exactly redundant.
+constexpr double exactly_idle = 1e-12;
+// Relative correction of x_1 above which all coefficients of a lane are corrected. The scalar path
+// does so from 1e-13 on, which costs half as much again; x_1 itself is always corrected here, and of
+// the higher orders, a fraction of the travel, 3e-12 is below the tolerance of the series.
+constexpr double loses_digits = 30 * series::loses_digits;
+constexpr double largest_multiplier = 1e4;  // as in the scalar path
+constexpr int most_coordinates = 300;       // of a stability test with a dense matrix
+
+double value(const Vector<double>& c, double tau) {
+    double sum = 0;
+    for (Eigen::Index k = c.size(); k-- > 0;) sum = sum * tau + c[k];
+    return sum;
+}
+
+void go(SteppingState<double>& s, Drive drive, double to) {
+    go_to(s, drive == Drive::start ? Parameters<double>{to, 0} : Parameters<double>{1, to});
+    s.a = s.parameters.a;
+}
+
+// Sets the state to the polynomial about `from` at τ.
+void move_to(Slot& slot, Drive drive, double tau) {
+    SteppingState<double>& s = *slot.s;
+    series::horner(slot.c.x, tau, slot.x);
+    series::displace(slot.from, slot.x, s.q);
+    s.lambda = slot.x.tail(s.m());
+    go(s, drive, value(slot.c.load, tau));
+}
+
+bool loads_idle(SteppingState<double>& s, double missed) {
+    if (s.system.held.idle == 0) return false;
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
+    s.applied -= (1 - s.parameters.t) * s.R_d;
+    return check_idle_load(s, s.q, missed) != Outcome::converged;
+}
+
+// The deformations of the curves, as polynomials of the last expansion.
+void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int at) {
+    slot.deformations.resize(e.order() + 1, static_cast<Eigen::Index>(slot.curves.size()));
+    for (std::size_t c = 0; c < slot.curves.size(); ++c)
+        for (int k = 0; k <= e.order(); ++k)
+            slot.deformations(k, static_cast<Eigen::Index>(c)) =
+                lane(series::deformation(e, slot.curves[c].elastic, slot.curves[c].axis, k), at);
+}
+
+// Whether an idle mode may be unstable under load: the first look of negative_idle_stiffness().
+bool may_push_idle(SteppingState<double>& s) {
+    constexpr double noticed = 1e-6;
+    const double stiffness = least_of_idle(s);
+    if (!(stiffness < 0)) return false;
+    external_force<double>(s.model, s.branch, s.inputs, s.q, s.upper);
+    elastic_force<double>(s.model, s.inputs, s.q, s.force);
+    const double acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
+    return !(stiffness >= -noticed * acts / s.length);
+}
+
+// Whether the determinant, 1 at τ = 0, may have a zero inside: as lost_inside() begins.
+bool may_dip(double in_middle, double at_end) {
+    constexpr double dips = 0.5;
+    if (!(in_middle > 0)) return true;
+    const double before = 2 * (in_middle - 1), behind = 2 * (at_end - in_middle),
+                 bend = behind - before, there = 0.25 - before / (2 * bend),
+                 least = 1 + there * (before + bend * (there - 0.5));
+    return bend > 0 && there > 0 && there < 1 && least < dips * std::min(1.0, at_end);
+}
+
+}  // namespace
+
+Pack::Pack(const Model& model, const Analysis& analysis, const BatchOptions& batch_options)
+    : design(analysis),
+      options(batch_options),
+      lu(reserve_factors(analysis.system.lu.order)),
+      rhs(lu.size(), 0),
+      solution(lu.size(), 0) {
+    const SaddlePoint<double>& system = design.system;
+    std::vector<bool> covered(static_cast<std::size_t>(system.M.part_at(system.m, 0)), false);
+    for (const int source : system.lu.source)
+        if (const auto at = static_cast<std::size_t>(source); at < covered.size())  // else border
+            covered[at] = true;
+    for (std::size_t k = 0; k < covered.size(); ++k)
+        if (!covered[k]) outside.push_back(static_cast<int>(k));
+    for (std::size_t k = 0; k < model.branches.size(); ++k) {
+        const auto same = [&](const auto& group) {
+            return series::same_drivers(model.branches[group.front()], model.branches[k]);
+        };
+        const auto found = std::ranges::find_if(groups, same);
+        found == groups.end() ? groups.push_back({k}) : found->push_back(k);
+    }
+    const int order = options.series.order;
+    for (const auto& group : groups) {
+        const Branch& branch = model.branches[group.front()];
+        equations.push_back({series::equations<Lanes>(model, branch, order, Drive::start),
+                             series::equations<Lanes>(model, branch, order, Drive::rate)});
+    }
+    const int unknowns = system.n + system.m;
+    first = present = series::reserve_coefficients<Lanes>(unknowns, order);
+    x.setZero(unknowns);
+    for (Slot& slot : slots) {
+        slot.c = series::reserve_coefficients<double>(unknowns, order);
+        slot.paths.resize(model.branches.size());
+    }
+}
+
+Mask Pack::inside() const {
+    Mask mask{};
+    for (std::size_t k = 0; k < slots.size(); ++k) mask[k] = slots[k].inside;
+    return mask;
+}
+Mask Pack::going() const {
+    Mask mask{};
+    for (std::size_t k = 0; k < slots.size(); ++k) mask[k] = slots[k].inside && slots[k].going;
+    return mask;
+}
+template <class Visit>
+void Pack::each(const Mask& mask, Visit&& visit) {
+    for (std::size_t k = 0; k < slots.size(); ++k)
+        if (mask[k] && slots[k].inside) visit(slots[k], static_cast<int>(k));
+}
+
+void Pack::follow(std::span<const Model* const> variants) {
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+        Slot& slot = slots[k];
+        slot.inside = k < variants.size();
+        if (!slot.inside) continue;
+        slot.model = *variants[k];
+        if (far_centre(slot.model)) slot.inside = false;
+    }
+    for (std::size_t group = 0; group < groups.size(); ++group) follow_group(group);
+}
+
+// The state at the design position, and what belongs to it.
+void Pack::prepare(int at, const Branch& branch) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    slot.branch = branch;
+    if (!slot.s) slot.s = std::make_unique<SteppingState<double>>(slot.model, slot.branch, design);
+    SteppingState<double>& s = *slot.s;
+    s.consistent = true;
+    s.counts = {};
+    s.q = design_state<double>(slot.model);
+    s.lambda.setZero();
+    s.drawn = inputs_as_drawn<double>(slot.model);
+    s.inputs = s.drawn;
+    s.length = characteristic_length(slot.model);
+    for (int b = 0; b < s.n() / 6; ++b) s.system.weight.segment(6 * b + 3, 3).setConstant(s.length);
+    s.system.held.value = design.system.held.value;
+    slot.curves = series::curves_of(slot.model);
+    const Branch nothing;
+    go_to(s, {0, 0});
+    assemble_consistent<double>(s.model, nothing, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
+    external_force<double>(s.model, nothing, s.inputs, s.q, s.R_d);
+    s.R_d -= elastic_force<double>(s.model, s.inputs, s.q);
+    s.Phi_d = s.Phi;
+    // A residual that is rounding of coordinates, or of stiffness times them, counts as zero.
+    const double rounding = 10 * std::numeric_limits<double>::epsilon() * (s.length + reach(s.q));
+    const auto largest_of = [](const Vector<double>& v) {
+        return v.size() > 0 ? v.cwiseAbs().maxCoeff() : 0;
+    };
+    slot.at_rest = largest_of(s.R_d.cwiseQuotient(s.system.weight.head(s.n()))) <=
+                       rounding * stiffest(s.system.M) &&
+                   largest_of(s.Phi) <= rounding;
+    if (!s.R_d.allFinite() || !s.Phi.allFinite()) slot.inside = false;
+}
+
+void Pack::follow_group(std::size_t group) {
+    const std::vector<std::size_t>& branches = groups[group];
+    bool settles = false;
+    each(inside(), [&](Slot& slot, int at) {
+        const Branch& front = slot.model.branches[branches.front()];
+        slot.inside = has_energy(slot.model, front);
+        for (const std::size_t k : branches) {
+            const Branch& branch = slot.model.branches[k];
+            slot.inside = slot.inside && series::same_drivers(front, branch) && branch.to != 0 &&
+                          std::isfinite(branch.to);
+        }
+        if (slot.inside) prepare(at, front);
+        if (slot.inside) settles = settles || !slot.at_rest || !starts_as_drawn(front);
+    });
+    if (settles) {
+        walk(group, Drive::start, true);
+        each(inside(), [&](Slot& slot, int) {
+            SteppingState<double>& s = *slot.s;
+            if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
+            if (settled(s, Outcome::converged, 0.0) != Outcome::converged) slot.inside = false;
+        });
+    }
+    walk(group, Drive::rate, !settles);
+}
+
+void Pack::assemble(int at) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    SteppingState<double>& s = *slot.s;
+    assemble_consistent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
+    load_matrix(at);
+}
+// Scales and borders the matrix of a lane.
+void Pack::load_matrix(int at) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    SteppingState<double>& s = *slot.s;
+    for (const int k : outside)
+        if (s.system.M.values[static_cast<std::size_t>(k)] != 0) slot.inside = false;
+    set_border(s.system);
+    const SparseLU<double>& of = s.system.lu;
+    for (std::size_t e = 0; e < lu.values.size(); ++e)
+        set_lane(lu.values[e], at,
+                 s.system.M.values[static_cast<std::size_t>(of.source[e])] * of.factor[e]);
+}
+
+// Factorises the matrices of all lanes, and updates and checks the held directions of those in the
+// mask.
+void Pack::factorise(const Mask& mask, bool at_design) {
+    eliminate(lu);
+    const SaddlePoint<double>& of = design.system;
+    for (int c = 0; c < of.held.size(); ++c) {
+        std::fill(rhs.begin(), rhs.end(), Lanes(0));
+        rhs[static_cast<std::size_t>(of.n + of.m + c)] = 1;
+        solve(lu, rhs.data(), solution.data());
+        each(mask, [&](Slot& slot, int at) {
+            Held<double>& held = slot.s->system.held;
+            for (int e = held.begin(c); e < held.end(c); ++e) {
+                const int row = held.row[static_cast<std::size_t>(e)];
+                held.value[static_cast<std::size_t>(e)] =
+                    lane(solution[static_cast<std::size_t>(row)], at) * of.scale[row];
+            }
+        });
+    }
+    each(mask, [&](Slot& slot, int at) {
+        SteppingState<double>& s = *slot.s;
+        ++s.counts.factorisations;
+        orthonormalise(s.system);
+        const double ratio = lane(lu.least_pivot, at) / lane(lu.largest_pivot, at);
+        const bool regular = lane(lu.finite, at) == 0 && is_regular(s, ratio) &&
+                             lane(lu.largest_multiplier, at) <= largest_multiplier &&
+                             check_factors(s, s.q, ratio) == Outcome::converged;
+        slot.inside =
+            regular && (!at_design || (ratio > least_share_of_ratio * design.pivot_ratio &&
+                                       strain_of_held(s, s.q) <= exactly_idle));
+    });
+}
+
+void Pack::load_rhs(int at) {
+    const SteppingState<double>& s = *slots[static_cast<std::size_t>(at)].s;
+    const int n = s.n(), m = s.m();
+    const auto put = [&](int k, double of) {
+        set_lane(rhs[static_cast<std::size_t>(k)], at, of * s.system.scale[k]);
+    };
+    for (int k = 0; k < n; ++k) put(k, s.upper[k]);
+    for (int k = 0; k < m; ++k) put(n + k, s.lower[k]);
+    for (int k = n + m; k < n + m + s.system.borders(); ++k)
+        set_lane(rhs[static_cast<std::size_t>(k)], at, 0);
+}
+void Pack::back_substitute(const Mask& mask) {
+    solve(lu, rhs.data(), solution.data());
+    each(mask, [&](Slot& slot, int at) {
+        SteppingState<double>& s = *slot.s;
+        for (int k = 0; k < s.n() + s.m(); ++k)
+            s.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
+        ++s.counts.iterations;
+    });
+}
+
+// The pieces of the curves of a lane, in the equations and the inputs.
+void Pack::use_pieces(series::Equations<Lanes>& e, int at) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    for (const series::Followed& f : slot.curves) {
+        const auto piece = static_cast<std::size_t>(f.piece);
+        series::CubicSeries<Lanes>& cubic = series::cubic_of(e, f.elastic, f.axis);
+        for (std::size_t k = 0; k < 4; ++k) set_lane(cubic.c[k], at, f.curve->pieces[piece][k]);
+        set_lane(cubic.about, at, f.curve->knots[piece == 0 ? 0 : piece - 1]);
+        series::follow_on(f, slot.s->inputs);
+    }
+}
+
+void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
+                           const std::vector<std::array<double, Lanes::count>>& to) {
+    each(inside(), [&](Slot& slot, int) { go(*slot.s, drive, 0); });
+    if (e.curved) {
+        each(inside(),
+             [&](Slot& slot, int at) { series::begin(e, slot.s->q, slot.s->lambda, 0, at); });
+        evaluate(e, {0, series::Pass::known});
+        each(inside(), [&](Slot& slot, int at) {
+            for (series::Followed& f : slot.curves)
+                f.piece = piece_at<double>(*f.curve,
+                                           lane(series::deformation(e, f.elastic, f.axis, 0), at));
+            use_pieces(e, at);
+        });
+    }
+    each(inside(), [&](Slot& slot, int at) {
+        SteppingState<double>& s = *slot.s;
+        for (const auto& end : to) {
+            go(s, drive, end[static_cast<std::size_t>(at)]);
+            slot.inside =
+                slot.inside && !(drive == Drive::start ? loads_idle_mode(s) : loads_idle(s, 0));
+        }
+        go(s, drive, 0);
+        if (!slot.inside) return;
+        e.curved ? assemble(at) : load_matrix(at);  // without curves that of prepare()
+    });
+    // The first elimination gives the held directions of the variant, the second holds them.
+    if (design.system.held.size() > 0) {
+        factorise(inside(), false);
+        each(inside(), [&](Slot&, int at) { load_matrix(at); });
+    }
+    factorise(inside(), true);
+}
+
+// The polynomial about the states of the lanes, with the factors of the last elimination.
+void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, Drive drive,
+                  const std::array<double, Lanes::count>& to) {
+    const SaddlePoint<double>& of = design.system;
+    const int n = of.n, m = of.m;
+    each(inside(), [&](Slot& slot, int at) {
+        SteppingState<double>& s = *slot.s;
+        series::begin(e, s.q, s.lambda, series::parameter(s, drive), at);
+        drive_at(s, drive, 1.0, s.q, s.lambda);
+        load_rhs(at);
+    });
+    evaluate(e, {0, series::Pass::known});
+    solve(lu, rhs.data(), solution.data());
+    for (int k = 0; k < n + m; ++k)
+        c.unit[k] = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
+    c.x.setZero();
+    for (int row = 0; row < m; ++row)
+        c.x(n + row, 0) = e.lambda[static_cast<std::size_t>(row)].c[0];
+    c.load.setZero();
+    c.load[0] = e.a.c[0];
+    c.load[1] = each_lane([&](int at) { return to[static_cast<std::size_t>(at)]; });
+    for (int k = 0; k < n + m; ++k) c.x(k, 1) = c.load[1] * c.unit[k];
+    x = c.x.col(1);
+    Lanes corrected = 0;  // 1 in lanes that lose digits, else 0
+    series::compute_orders(
+        e, c, x,
+        [&] {
+            for (int k = 0; k < n; ++k)
+                rhs[static_cast<std::size_t>(k)] = e.G[k] * Lanes(-of.scale[k]);
+            for (int k = 0; k < m; ++k)
+                rhs[static_cast<std::size_t>(n + k)] = e.Phi[k] * Lanes(-of.scale[n + k]);
+            solve(lu, rhs.data(), solution.data());
+            for (int k = 0; k < n + m; ++k)
+                x[k] = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
+        },
+        [](int) {},
+        [&](auto&& correct) {
+            correct();
+            Lanes correction = 0, whole = 0;
+            for (int k = 0; k < n; ++k) {
+                correction += x[k] * x[k];
+                whole += c.x(k, 1) * c.x(k, 1);
+            }
+            each(inside(), [&](Slot&, int at) {
+                const bool too_large =
+                    !(std::sqrt(lane(correction, at)) <= loses_digits * std::sqrt(lane(whole, at)));
+                set_lane(corrected, at, too_large ? 1 : 0);
+            });
+            for (int k = 0; k < n + m; ++k) c.x(k, 1) += x[k] - only_where(corrected, x[k]);
+            return !is_zero(corrected);
+        },
+        // A lane that loses no digits keeps its x_k to the last bit beside one that does.
+        [&] {
+            for (Eigen::Index k = 0; k < x.size(); ++k) x[k] = only_where(corrected, x[k]);
+        });
+}
+
+// Shortens the range of a lane to where the first deformation leaves its piece. The lane leaves where
+// one does so at once: its expansion began on the wrong piece.
+static void stop_at_knots(Slot& slot, const series::Near& near) {
+    std::vector<series::Leaving> met;
+    std::vector<std::size_t> of;
+    slot.over.clear();
+    const auto column = [&](std::size_t k) {
+        return Eigen::VectorXd(slot.deformations.col(static_cast<Eigen::Index>(k)));
+    };
+    const double reach = slot.reached;
+    for (std::size_t k = 0; k < slot.curves.size(); ++k)
+        if (const auto there = series::leaving(column(k), slot.curves[k], reach, near)) {
+            met.push_back(*there);
+            of.push_back(k);
+            if (there->at_once) slot.inside = false;
+            if (there->tau < slot.reached) slot.reached = there->tau, slot.last = false;
+        }
+    // Several deformations may reach their knots at the same τ.
+    for (std::size_t k = 0; k < met.size(); ++k)
+        if (met[k].tau <= slot.reached ||
+            series::meets(column(of[k]), slot.curves[of[k]], met[k].direction, slot.reached, near))
+            slot.over.emplace_back(of[k], met[k].direction);
+}
+
+// Range of validity of a lane's polynomial. The lane leaves near a limit point.
+void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive, double to) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    SteppingState<double>& s = *slot.s;
+    for (Eigen::Index k = 0; k < c.x.size(); ++k) slot.c.x.data()[k] = lane(c.x.data()[k], at);
+    for (Eigen::Index k = 0; k < c.load.size(); ++k) slot.c.load[k] = lane(c.load[k], at);
+    slot.from = s.q;
+    const series::Singularity nearest = series::nearest_singularity(s, slot.c);
+    const double tolerance = options.series.tolerance, per_unit = s.length / std::abs(to),
+                 tau = series::reach(s, slot.c, tolerance, per_unit, nearest.radius),
+                 rest = (to - series::parameter(s, drive)) / to;
+    slot.last = tau >= rest;
+    slot.reached = slot.last ? rest : tau;
+    if (!(tau > 0) || !(tau >= 1e-9)) {
+        slot.inside = false;
+        return;
+    }
+    const bool whole = slot.last;
+    stop_at_knots(slot, {s.length, 0.1 * tolerance, 10 * tolerance});
+    constexpr double close = 1e-4;
+    const bool straight_ahead = nearest.angle < 1e-3 && nearest.misfit < 1e-2;
+    if (!whole && nearest.radius < close && straight_ahead) slot.inside = false;
+}
+
+// Newton corrections at the ends of the ranges; the last factors serve the next expansion.
+void Pack::correct_ends(Drive drive, const std::array<double, Lanes::count>& to) {
+    Mask correcting = going();
+    each(correcting, [&](Slot& slot, int at) {
+        move_to(slot, drive, slot.reached);
+        if (slot.last) go(*slot.s, drive, to[static_cast<std::size_t>(at)]);
+        slot.before = std::numeric_limits<double>::infinity();
+    });
+    for (int k = 0; k < 8 && std::ranges::count(correcting, true) > 0; ++k) {
+        each(correcting, [&](Slot&, int at) { assemble(at); });
+        factorise(correcting, false);
+        each(correcting, [&](Slot& slot, int at) {
+            residual_at(*slot.s, slot.s->q, slot.s->lambda);
+            load_rhs(at);
+        });
+        back_substitute(correcting);
+        for (std::size_t at = 0; at < slots.size(); ++at) {
+            Slot& slot = slots[at];
+            correcting[at] = correcting[at] && slot.inside;
+            if (!correcting[at]) continue;
+            SteppingState<double>& s = *slot.s;
+            const double size = std::sqrt(size_of_solution(s));
+            if (!s.x.allFinite() || loads_idle(s, size)) {
+                slot.inside = correcting[at] = false;
+                continue;
+            }
+            if (k == 0) slot.error = size;
+            if (!(size < slot.before)) {  // at rounding level
+                correcting[at] = false;
+                continue;
+            }
+            slot.before = size;
+            s.dq = s.x.head(s.n());
+            advance(s.q, s.dq);
+            s.lambda += s.x.tail(s.m());
+            const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
+            // No expansion starts at the end of a branch: its error is known, that is enough.
+            correcting[at] = !(slot.last && drive == Drive::rate) &&
+                             !(size <= std::max(rounding, 1e-2 * options.series.tolerance));
+        }
+    }
+    each(going(), [&](Slot& slot, int) {
+        SteppingState<double>& s = *slot.s;
+        if (!(slot.error <= 10 * options.series.tolerance)) slot.inside = false;
+        if (has_redundancy(s)) {
+            residual_at(s, s.q, s.lambda);
+            if (is_inconsistent(s, s.q)) slot.inside = false;
+        }
+    });
+}
+
+// As least_stiffness() of one variant: the same iteration with the factors of the lanes.
+std::array<LeastStiffness, Lanes::count> Pack::least_stiffness(const Mask& mask, Matrix<Lanes>& U) {
+    constexpr int vectors = 3, first_turns = 5, turns = 2;
+    std::array<LeastStiffness, Lanes::count> found{};
+    const int n = design.system.n;
+    const int free =
+        design.diagnosis.degrees_of_freedom() - static_cast<int>(design.diagnosis.idle.size());
+    if (free <= 0) return found;
+    Vector<Lanes> W(n), W2(n);
+    for (int k = 0; k < n; ++k) {
+        W[k] = 1;
+        each(mask, [&](Slot& slot, int at) { set_lane(W[k], at, slot.s->system.weight[k]); });
+        W2[k] = W[k] * W[k];
+    }
+    const auto inner = [&](const Matrix<Lanes>& A, Eigen::Index a, const Matrix<Lanes>& B,
+                           Eigen::Index b) {
+        Lanes sum = 0;
+        for (int k = 0; k < n; ++k) sum += A(k, a) * W2[k] * B(k, b);
+        return sum;
+    };
+    const auto orthonormalise_columns = [&] {
+        constexpr double nothing = 1e-9;
+        for (Eigen::Index c = 0; c < U.cols(); ++c) {
+            const Lanes whole = inner(U, c, U, c);
+            for (int pass = 0; pass < 2; ++pass)
+                for (Eigen::Index b = 0; b < c; ++b) {
+                    const Lanes part = inner(U, b, U, c);
+                    for (int k = 0; k < n; ++k) U(k, c) -= part * U(k, b);
+                }
+            const Lanes left = inner(U, c, U, c), inverse = 1 / sqrt(left);
+            for (int k = 0; k < n; ++k) U(k, c) *= inverse;
+            // one variant alone drops the dependent vector
+            each(mask, [&](Slot& slot, int at) {
+                if (!(lane(left, at) > nothing * nothing * lane(whole, at))) slot.inside = false;
+            });
+        }
+    };
+    const bool begins = U.cols() == 0;
+    if (begins) {
+        U.resize(n, std::min(vectors, free));
+        for (Eigen::Index c = 0; c < U.cols(); ++c)
+            for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered<double>(k + c * n) / W[k];
+        orthonormalise_columns();
+    }
+    const SaddlePoint<double>& of = design.system;
+    Matrix<Lanes> V(n, U.cols()), H(U.cols(), U.cols());
+    for (int turn = begins ? first_turns : turns; turn > 0; --turn) {
+        std::fill(rhs.begin(), rhs.end(), Lanes(0));
+        for (Eigen::Index c = 0; c < U.cols(); ++c) {
+            for (int k = 0; k < n; ++k)
+                rhs[static_cast<std::size_t>(k)] = U(k, c) * W2[k] * Lanes(of.scale[k]);
+            solve(lu, rhs.data(), solution.data());
+            for (int k = 0; k < n; ++k)
+                V(k, c) = solution[static_cast<std::size_t>(k)] * Lanes(of.scale[k]);
+        }
+        if (turn == 1)
+            for (Eigen::Index a = 0; a < U.cols(); ++a)
+                for (Eigen::Index b = 0; b < U.cols(); ++b) H(a, b) = inner(U, a, V, b);
+        U = V;
+        orthonormalise_columns();
+    }
+    each(mask, [&](Slot&, int at) {
+        Eigen::MatrixXd one(H.rows(), H.cols());
+        for (Eigen::Index k = 0; k < H.size(); ++k) one.data()[k] = lane(H.data()[k], at);
+        found[static_cast<std::size_t>(at)] = detail::least_of(one);
+    });
+    return found;
+}
+
+// Whether the start is stable by the tests of stability.hpp; a lane in which one of them fails
+// leaves.
+void Pack::judge_start(Matrix<Lanes>& softest) {
+    const int n = design.system.n;
+    const auto least = least_stiffness(inside(), softest);
+    if (n > most_coordinates) each(inside(), [](Slot& slot, int) { slot.inside = false; });
+    each(inside(), [&](Slot& slot, int at) {
+        const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
+        slot.inside = of_energy && mu > 0 && !may_push_idle(*slot.s);
+    });
+    definite.setZero(n, n);
+    each(inside(), [&](Slot& slot, int at) {
+        const SteppingState<double>& s = *slot.s;
+        const SaddleMatrix<double>& M = s.system.M;
+        const Vector<double>& W = s.system.weight;
+        const auto add = [&](Eigen::Index i, Eigen::Index j, double by) {
+            set_lane(definite(i, j), at, lane(definite(i, j), at) + by);
+        };
+        double stiffness = 0;
+        for_each_entry(M, [&](int i, int j, int entry) {
+            if (i >= n || j >= n) return;
+            const double K = M.values[static_cast<std::size_t>(entry)] / (W[i] * W[j]);
+            stiffness = std::max(stiffness, std::abs(K));
+            add(std::max(i, j), std::min(i, j), i == j ? K : K / 2);
+        });
+        for (int row = 0; row < M.m; ++row) {
+            std::array<double, 12> r{};
+            std::array<int, 12> place{};
+            double square = 0;
+            std::size_t count = 0;
+            for (int end = 0; end < 2; ++end) {
+                const BodyId b =
+                    M.ends[static_cast<std::size_t>(row)][static_cast<std::size_t>(end)];
+                for (int k = 0; b != ground && k < 6; ++k, ++count) {
+                    place[count] = 6 * b + k;
+                    r[count] = M.part(row, end)[k] / W[6 * b + k];
+                    square += r[count] * r[count];
+                }
+            }
+            const double by = square > 0 ? stiffness / square : 0;
+            for (std::size_t i = 0; i < count; ++i)
+                for (std::size_t j = 0; j < count; ++j)
+                    if (place[i] >= place[j]) add(place[i], place[j], by * r[i] * r[j]);
+        }
+        const double rounding = 16 * std::numeric_limits<double>::epsilon() * n;
+        for (int k = 0; k < n; ++k) add(k, k, rounding * stiffness);
+        const Held<double>& held = s.system.held;
+        for (int c = 0; c < held.idle; ++c) {
+            int most = -1;
+            double size = 0;
+            for (int e = held.begin(c); e < held.end(c); ++e) {
+                const auto k = static_cast<std::size_t>(e);
+                if (const double here = std::abs(held.value[k] * W[held.row[k]]); here > size)
+                    most = held.row[k], size = here;
+            }
+            if (most >= 0) add(most, most, stiffness);
+        }
+    });
+    const Lanes least_of_all = least_pivot(definite);
+    each(inside(), [&](Slot& slot, int at) { slot.inside = lane(least_of_all, at) > 0; });
+}
+
+// Stability at the ends of the ranges, and of the determinant between.
+void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
+    std::array<LeastStiffness, Lanes::count> least{};
+    if (stable) least = least_stiffness(going(), softest);
+    each(going(), [&](Slot& slot, int at) {
+        const double log_end = log_determinant(lu, at);
+        slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side;
+        if (stable) {
+            const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
+            slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&
+                          !may_dip(slot.in_middle, std::exp2(log_end - slot.log_begin));
+        }
+        slot.log_begin = log_end;
+    });
+}
+
+// The points of the branch in the accepted range.
+void Pack::sample(int at, std::size_t branch) {
+    Slot& slot = slots[static_cast<std::size_t>(at)];
+    SteppingState<double>& s = *slot.s;
+    EquilibriumPath& path = slot.paths[branch];
+    const auto points = static_cast<std::size_t>(options.points);
+    const double to = slot.model.branches[branch].to, end = s.a;
+    const Vector<double>& load = slot.c.load;
+    const auto load_at = [&](std::size_t k) {
+        return to * static_cast<double>(k) / static_cast<double>(options.points);
+    };
+    constexpr double eps = std::numeric_limits<double>::epsilon();
+    std::size_t count = 0;
+    powers.resize(slot.c.x.cols(), static_cast<Eigen::Index>(points) + 1);
+    for (; slot.next + count <= points; ++count) {
+        const double a = load_at(slot.next + count), tau = (a - load[0]) / load[1],
+                     slack = 1e-12 * slot.reached +
+                             4 * eps * (std::abs(a) + std::abs(load[0])) / std::abs(load[1]);
+        if (!slot.last && tau > slot.reached + slack) break;
+        double power = 1;
+        const double inside = std::clamp(tau, 0.0, slot.reached);
+        for (Eigen::Index k = 0; k < powers.rows(); ++k, power *= inside)
+            powers(k, static_cast<Eigen::Index>(count)) = power;
+    }
+    values.noalias() = slot.c.x * powers.leftCols(static_cast<Eigen::Index>(count));
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto at_tau = values.col(static_cast<Eigen::Index>(k));
+        Equilibrium& to_point = path.points[slot.next + k];
+        point = slot.from;
+        series::displace(slot.from, at_tau, point);
+        to_point.load = load_at(slot.next + k);
+        if (options.wrenches) {
+            go(s, Drive::rate, to_point.load);
+            record<double>(s.model, s.inputs, point, point, Vector<double>(at_tau.tail(s.m())),
+                           to_point.load, to_point);
+        } else {
+            for (BodyId b = 0; b < point.bodies(); ++b)
+                to_point.poses[static_cast<std::size_t>(b)] = {point[b].r, point[b].p};
+            to_point.constraint_error = std::numeric_limits<double>::quiet_NaN();
+        }
+    }
+    slot.next += count;
+    if (options.wrenches) go(s, Drive::rate, end);
+}
+
+// Goes over to the pieces behind the knots at the ends of the ranges.
+void Pack::cross_knots(series::Equations<Lanes>& e) {
+    Mask jumping{};
+    each(going(), [&](Slot& slot, int at) {
+        for (const auto& [k, direction] : slot.over)
+            if (series::step_over(slot.curves[k], direction))
+                jumping[static_cast<std::size_t>(at)] = true;
+        if (slot.over.empty()) return;
+        use_pieces(e, at);
+        if (jumping[static_cast<std::size_t>(at)]) assemble(at);
+    });
+    if (std::ranges::count(jumping, true) == 0) return;
+    factorise(jumping, false);
+    each(jumping, [&](Slot& slot, int at) {
+        slot.inside = slot.inside && static_cast<int>(lane(lu.sign, at)) == slot.side;
+        slot.log_begin = log_determinant(lu, at);
+    });
+}
+
+void Pack::walk(std::size_t group, Drive drive, bool from_design) {
+    const bool rate = drive == Drive::rate;
+    series::Equations<Lanes>& e = rate ? equations[group].rate : equations[group].start;
+    const std::vector<std::size_t>& branches = groups[group];
+    const std::size_t sides = rate ? branches.size() : 1;
+    std::vector<std::array<double, Lanes::count>> to(sides);
+    for (auto& end : to) end.fill(1);
+    each(inside(), [&](Slot& slot, int at) {
+        const auto k = static_cast<std::size_t>(at);
+        series::take(e, slot.model, slot.branch, at);
+        for (std::size_t side = 0; rate && side < sides; ++side)
+            to[side][k] = slot.model.branches[branches[side]].to;
+        for (Eigen::Index row = 0; !rate && row < e.G_d.size(); ++row)
+            set_lane(e.G_d[row], at, -slot.s->R_d[row]);
+        for (Eigen::Index row = 0; !rate && row < e.Phi_d.size(); ++row)
+            set_lane(e.Phi_d[row], at, slot.s->Phi_d[row]);
+    });
+    series::settle_on_constants(e);
+    if (from_design)
+        start_at_design(e, drive, to);
+    else
+        each(inside(), [&](Slot& slot, int at) {
+            go(*slot.s, drive, 0);
+            use_pieces(e, at);
+        });
+    expand(e, first, drive, to.front());
+    Matrix<Lanes> softest_at_start, softest;
+    if (rate) judge_start(softest_at_start);
+    std::array<double, Lanes::count> log_start{};
+    each(inside(), [&](Slot& slot, int at) {
+        read_deformations(e, slot, at);
+        slot.deformations_at_start = slot.deformations;
+        slot.curves_at_start = slot.curves;
+        slot.q_start = slot.s->q;
+        slot.lambda_start = slot.s->lambda;
+        slot.side = static_cast<int>(lane(lu.sign, at));
+        log_start[static_cast<std::size_t>(at)] = log_determinant(lu, at);
+    });
+    for (std::size_t side = 0; side < sides; ++side) {
+        softest = softest_at_start;
+        present = first;
+        if (side > 0) {
+            const Lanes share = each_lane([&](int at) {
+                const auto k = static_cast<std::size_t>(at);
+                return to[side][k] / to.front()[k];
+            });
+            Lanes power = 1;
+            for (Eigen::Index k = 1; k < present.x.cols(); ++k) {
+                power *= share;
+                for (Eigen::Index row = 0; row < present.x.rows(); ++row)
+                    present.x(row, k) *= power;
+            }
+            present.load[1] *= share;
+        }
+        each(inside(), [&](Slot& slot, int at) {
+            slot.s->q = slot.q_start;
+            slot.s->lambda = slot.lambda_start;
+            go(*slot.s, drive, 0);
+            slot.log_begin = log_start[static_cast<std::size_t>(at)];
+            slot.deformations = slot.deformations_at_start;
+            slot.curves = slot.curves_at_start;
+            use_pieces(e, at);
+            const auto lane_at = static_cast<std::size_t>(at);
+            double power = 1;
+            for (Eigen::Index row = 0; row < slot.deformations.rows(); ++row) {
+                slot.deformations.row(row) *= power;
+                power *= to[side][lane_at] / to.front()[lane_at];
+            }
+            slot.going = true;
+            slot.next = 0;
+            if (!rate) return;
+            EquilibriumPath& path = slot.paths[branches[side]];
+            path.outcome = Outcome::converged;
+            path.detail.clear();
+            const Equilibrium blank{0, std::vector<Pose>(slot.model.bodies.size()),
+                                    std::vector<Wrench>(slot.model.joints.size()), 0};
+            path.points.resize(static_cast<std::size_t>(options.points) + 1, blank);
+        });
+        int knots = 0;
+        for (const auto& f : slots.front().curves) knots += static_cast<int>(f.curve->knots.size());
+        const int most_expansions = options.series.expansions * (1 + knots);
+        for (int k = 0; std::ranges::count(going(), true) > 0; ++k) {
+            if (k == most_expansions) {
+                each(going(), [](Slot& slot, int) { slot.inside = false; });
+                break;
+            }
+            if (k > 0) {
+                expand(e, present, drive, to[side]);
+                each(going(), [&](Slot& slot, int at) { read_deformations(e, slot, at); });
+            }
+            each(going(), [&](Slot&, int at) {
+                find_range(present, at, drive, to[side][static_cast<std::size_t>(at)]);
+            });
+            if (rate) {
+                each(going(), [&](Slot& slot, int at) {
+                    move_to(slot, drive, slot.reached / 2);
+                    assemble(at);
+                });
+                factorise(going(), false);
+                each(going(), [&](Slot& slot, int at) {
+                    slot.in_middle = static_cast<int>(lane(lu.sign, at)) == slot.side
+                                         ? std::exp2(log_determinant(lu, at) - slot.log_begin)
+                                         : -1;
+                });
+            }
+            correct_ends(drive, to[side]);
+            check_ends(rate, softest);
+            each(going(), [&](Slot& slot, int at) {
+                if (rate) sample(at, branches[side]);
+                slot.going = !slot.last;
+                if (slot.going) return;
+                if (!rate) return;
+                slot.paths[branches[side]].counts = slot.s->counts;
+                if (slot.next != static_cast<std::size_t>(options.points) + 1) slot.inside = false;
+            });
+            cross_knots(e);
+        }
+    }
+}
+
+}  // namespace elastocheck::recursive::batch

@@ -1,0 +1,69 @@
+#include "recursive/batch/structure.hpp"
+
+#include "models/kinds.hpp"
+
+namespace elastocheck::recursive::batch {
+namespace {
+
+void note(const ScalarLaw& law, std::vector<int>& list) {
+    list.push_back(static_cast<int>(law.index()));
+    if (const Curve* curve = curve_of(law)) list.push_back(static_cast<int>(curve->pieces.size()));
+}
+void note(const LinearStiffness&, std::vector<int>&) {}
+void note(const PerAxis& law, std::vector<int>& list) {
+    for (const ScalarLaw& axis : law.axis) note(axis, list);
+}
+void note(const SpatialLaw& law, std::vector<int>& list) {
+    list.push_back(static_cast<int>(law.index()));
+    std::visit([&](const auto& kind) { note(kind, list); }, law);
+}
+void note(const Formulation& f, std::vector<int>& list) {
+    for (const auto value : {static_cast<int>(f.frame), static_cast<int>(f.angles),
+                             static_cast<int>(f.conjugate), static_cast<int>(f.offset_moment)})
+        list.push_back(value);
+}
+
+// Kind and bodies of a constraint, an element or a load, and the law of an element.
+template <class Kinds>
+void note_kind(const Kinds& kinds, std::vector<int>& list) {
+    list.push_back(static_cast<int>(kinds.index()));
+    each_member(kinds, [&](const auto& member) {
+        if constexpr (std::is_same_v<decltype(member), const BodyId&>)
+            list.push_back(member);
+        else if constexpr (requires { member.body; })
+            list.push_back(member.body);
+        else if constexpr (requires { member.direction.body; })
+            list.push_back(member.direction.body);
+        else if constexpr (requires { note(member, list); })
+            note(member, list);
+    });
+}
+
+}  // namespace
+
+void structure(const Model& model, std::vector<int>& list) {
+    list.clear();
+    for (const std::size_t count :
+         {model.bodies.size(), model.joints.size(), model.constraints.size(), model.elastics.size(),
+          model.static_loads.size(), model.branches.size()})
+        list.push_back(static_cast<int>(count));
+    for (const auto& joint : model.joints) list.insert(list.end(), {joint.i, joint.driven});
+    for (const auto& constraint : model.constraints) {
+        list.push_back(constraint.joint);
+        note_kind(constraint.kind, list);
+    }
+    for (const auto& elastic : model.elastics) note_kind(elastic.kind, list);
+    for (const auto& load : model.static_loads) note_kind(load.kind, list);
+    for (const auto& branch : model.branches) {
+        list.push_back(static_cast<int>(branch.drivers.size()));
+        for (const auto& driver : branch.drivers) {
+            list.push_back(static_cast<int>(driver.what.index()));
+            std::visit(overloaded{[&](const Load& load) { note_kind(load.kind, list); },
+                                  [&](const Motion& motion) { list.push_back(motion.joint); },
+                                  [&](const auto& of) { list.push_back(of.elastic); }},
+                       driver.what);
+        }
+    }
+}
+
+}  // namespace elastocheck::recursive::batch
