@@ -27,16 +27,15 @@ void note(const Formulation& f, std::vector<int>& list) {
 template <class Kinds>
 void note_kind(const Kinds& kinds, std::vector<int>& list) {
     list.push_back(static_cast<int>(kinds.index()));
-    each_member(kinds, [&](const auto& member) {
-        if constexpr (std::is_same_v<decltype(member), const BodyId&>)
-            list.push_back(member);
-        else if constexpr (requires { member.body; })
-            list.push_back(member.body);
-        else if constexpr (requires { member.direction.body; })
-            list.push_back(member.direction.body);
-        else if constexpr (requires { note(member, list); })
-            note(member, list);
-    });
+    const auto body = [&](const auto& member) { list.push_back(member.body); };
+    each_member(kinds,
+                overloaded{[&](const BodyId& member) { list.push_back(member); },
+                           [&](const Point& member) { body(member); },
+                           [&](const Direction& member) { body(member); },
+                           [&](const Marker& member) { body(member); },
+                           [&](const ScalarLaw& law) { note(law, list); },
+                           [&](const SpatialLaw& law) { note(law, list); },
+                           [&](const Formulation& formulation) { note(formulation, list); }});
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ struct Series {
 
     Series() : change(zero()) {}
     static T zero() {
-        if constexpr (requires { T::Zero(); })
+        if constexpr (std::is_base_of_v<Eigen::MatrixBase<T>, T>)
             return T::Zero();
         else
             return T(0);

@@ -157,7 +157,7 @@ template <class Real, class Value>
 void put(Real& all, int lane, const Value& value) {
     if constexpr (std::is_same_v<Real, Value>)
         all = value;
-    else if constexpr (requires { all.size(); })
+    else if constexpr (std::is_base_of_v<Eigen::MatrixBase<Real>, Real>)
         for (Eigen::Index k = 0; k < all.size(); ++k)
             set_lane(all.data()[k], lane, value.data()[k]);
     else
@@ -253,17 +253,15 @@ void take(FollowerSeries<Real>& t, const FollowerMoment& m, int lane) {
     put(t.f.local, lane, Eigen::Vector3d(Eigen::Vector3d::Zero()));
     put(t.m.local, lane, m.m_local);
 }
+// A term and a kind that do not belong together.
+template <class Term, class Kind>
+void take(Term&, const Kind&, int) {
+    throw std::invalid_argument("a variant has elements of other kinds");
+}
 // Takes the numbers of the kind that the term is of. The term was made for a kind of the same name.
 template <class Terms, class Kind>
 void take_kind(Terms& terms, const Kind& kind, int lane) {
-    std::visit(
-        [&](auto& t, const auto& k) {
-            if constexpr (requires { take(t, k, lane); })
-                take(t, k, lane);
-            else
-                throw std::invalid_argument("a variant has elements of other kinds");
-        },
-        terms, kind);
+    std::visit([&](auto& t, const auto& k) { take(t, k, lane); }, terms, kind);
 }
 
 // ---- Driven inputs. Constraints without an offset cannot be driven (models/lowering.hpp).
@@ -272,7 +270,7 @@ void take_kind(Terms& terms, const Kind& kind, int lane) {
 template <class T, class Value>
 void add(Driven<T>& driven, Drive drive, const Driver& driver, const Value& what, int at) {
     const auto add_to = [&](auto& all, double by) {
-        if constexpr (requires { all.size(); }) {
+        if constexpr (std::is_base_of_v<Eigen::MatrixBase<T>, T>) {
             for (Eigen::Index k = 0; k < all.size(); ++k)
                 set_lane(all[k], at, lane(all[k], at) + by * what[k]);
         } else {
