@@ -297,6 +297,39 @@ EquilibriumPath rest(const BranchSide& side, Leg leg) {
     return path;
 }
 
+EquilibriumPath walk_through(const BranchSide& side, Leg leg, std::span<const double> points,
+                             const Visit& visit) {
+    std::string ended;
+    const Visit checked = [&](const Equilibrium& state) {
+        if (ended.empty()) ended = ends_at_table(side.model, side.branch, state);
+        if (ended.empty()) visit(state);
+    };
+    EquilibriumPath path;
+    switch (leg) {
+        case Leg::equilibrium:
+            path = reference::equilibrium::solve(side.model, side.branch, points, {}, checked);
+            break;
+        case Leg::energy:
+            path = reference::energy::solve(side.model, side.branch, points, {}, checked);
+            break;
+        case Leg::recursive:
+        case Leg::series:
+            // Its points are equal increments: one run to each value.
+            for (const double a : points) {
+                BranchSide to = side;
+                if (a != 0) to.branch.to = a, to.branch.steps = 1;
+                path = walk_anywhere(to, {.leg = leg}, [&](const Equilibrium& state) {
+                    if (state.load == a) checked(state);
+                });
+                if (path.outcome != Outcome::converged) break;
+            }
+            break;
+    }
+    if (!ended.empty()) path.outcome = Outcome::outside_table, path.detail = ended;
+    path.points.clear();
+    return path;
+}
+
 Residuals judge(Leg by, const BranchSide& side, const Equilibrium& state) {
     switch (by) {
         case Leg::recursive:

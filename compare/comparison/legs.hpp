@@ -63,6 +63,11 @@ PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCur
 // not settle.
 EquilibriumPath rest(const BranchSide& side, Leg leg);
 
+// States of a leg at these values of the parameter [SI], of the sign of the side and in ascending
+// size, with the ends of curves as walk() has them.
+EquilibriumPath walk_through(const BranchSide& side, Leg leg, std::span<const double> points,
+                             const Visit& visit);
+
 // ---- The references along a branch.
 
 // Runs of the equilibrium leg and of the energy leg, or of the series where the energy leg does not

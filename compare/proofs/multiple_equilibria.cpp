@@ -27,7 +27,7 @@ using reference::certificate::Answer;
 constexpr double one_state = 1e-6;
 
 // Distance of a start along a soft motion, as a share of the scene's size, or of a radian.
-constexpr std::array along{0.03, 0.3, 1.0};
+constexpr std::array shares_along{0.03, 0.3, 1.0};
 
 // Larger models are not searched: `beside` has no motions for them, and the many starts take long.
 constexpr std::size_t most_bodies = 100;
@@ -186,7 +186,7 @@ AllEquilibria find_equilibria(const Model& model, const Branch& branch, double a
         FoundEquilibrium one{found.state, {}, found.stable, found.stiffness, on_branch};
         all.list.push_back(std::move(one));
         for (auto& start :
-             leg::beside(side.model, side.branch, found.state, options.motions, along))
+             leg::beside(side.model, side.branch, found.state, options.motions, shares_along))
             starts.push_back(std::move(start));
         say(fmt::format("{} found", known.size()));
     };

@@ -38,4 +38,10 @@ Scene read_scene(const std::filesystem::path& file, std::span<const Setting> set
 Scene parse_scene(std::string_view text, const std::string& name,
                   std::span<const Setting> settings = {});
 
+// The text of a scene file with these values replaced where they are written, each old value in a
+// comment at the end of its line; all else stays as it is. Throws SceneError for text that is not
+// YAML, a setting as read_scene() rejects it, and a value that is not written as one word.
+std::string rewrite_scene(std::string_view text, const std::string& name,
+                          std::span<const Setting> settings);
+
 }  // namespace elastocheck

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <functional>
+#include <map>
 #include <set>
+#include <vector>
 
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -71,6 +74,36 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
     *value = {.kind = Value::Kind::scalar, .text = text, .line = value->line, .is_set = true};
 }
 
+// A value in a line of the file, and its replacement.
+struct Edit {
+    const Value* value;
+    const Setting* setting;
+};
+
+// The line with the values replaced, the old ones in a comment at its end. `edits` from right to
+// left.
+std::string edited(std::string line, const std::vector<Edit>& edits, const std::string& file) {
+    std::string end;
+    while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) {
+        end.insert(end.begin(), line.back());
+        line.pop_back();
+    }
+    std::string comment;
+    for (const auto& [value, setting] : edits) {
+        const auto at = static_cast<std::size_t>(value->column);
+        const bool is_quoted = at < line.size() && (line[at] == '"' || line[at] == '\'');
+        const std::size_t length = value->text.size() + (is_quoted ? 2 : 0);
+        if (at + length > line.size() ||
+            line.substr(at + (is_quoted ? 1 : 0), value->text.size()) != value->text)
+            fail(file, value->line, shown(setting->path),
+                 "cannot be replaced where it is written; write it on one line, without escapes");
+        line.replace(at, length, setting->value);
+        comment.insert(
+            0, fmt::format("{} was {}{}", setting->path, value->text, comment.empty() ? "" : ", "));
+    }
+    return line + "  # " + comment + end;
+}
+
 }  // namespace
 
 void apply(std::span<const Setting> settings, Value& tree, const std::string& file) {
@@ -78,6 +111,39 @@ void apply(std::span<const Setting> settings, Value& tree, const std::string& fi
 }
 
 }  // namespace reader
+
+std::string rewrite_scene(std::string_view text, const std::string& name,
+                          std::span<const Setting> settings) {
+    reader::Value tree = reader::parse_yaml(text, name);
+    {
+        reader::Value changed = tree;
+        reader::apply(settings, changed, name);  // rejects what cannot be set
+    }
+    std::map<int, std::vector<reader::Edit>> edits;  // by row
+    for (const Setting& setting : settings) {
+        const reader::Value* value = reader::follow(tree, setting.path).value;
+        edits[value->row].push_back({value, &setting});
+    }
+    std::string result;
+    int row = 0;
+    for (std::size_t from = 0; from < text.size(); ++row) {
+        const std::size_t end = std::min(text.find('\n', from), text.size() - 1) + 1;
+        std::string line(text.substr(from, end - from));
+        if (const auto here = edits.find(row); here != edits.end()) {
+            std::ranges::sort(here->second, std::ranges::greater{},
+                              [](const reader::Edit& edit) { return edit.value->column; });
+            line = reader::edited(std::move(line), here->second, name);
+        }
+        result += line;
+        from = end;
+    }
+    reader::Value again = reader::parse_yaml(result, name);
+    for (const Setting& setting : settings)
+        if (reader::follow(again, setting.path).value->text != setting.value)
+            reader::fail(name, 0, reader::shown(setting.path),
+                         "cannot be replaced where it is written; write the value as one word");
+    return result;
+}
 
 Setting parse_setting(std::string_view text) {
     const std::size_t equals = text.find('=');

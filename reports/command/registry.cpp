@@ -13,12 +13,14 @@
 
 namespace elastocheck::reports {
 
-// Each is in NAME_command.cpp; inspect, compare, converge and trade are in study_commands.cpp.
+// Each is in NAME_command.cpp; inspect, compare, converge and trade are in study_commands.cpp;
+// solve-for, fit and tolerances in design_commands.cpp.
 Command certify_command();
 Command compare_command();
 Command converge_command();
 Command equilibria_command();
 Command export_command();
+Command fit_command();
 Command gate_command();
 Command import_command();
 Command inspect_command();
@@ -27,7 +29,9 @@ Command new_command();
 Command report_command();
 Command sensitivity_command();
 Command solve_command();
+Command solve_for_command();
 Command stress_command();
+Command tolerances_command();
 Command trade_command();
 
 namespace {
@@ -80,11 +84,12 @@ Command printing(const char* name, const char* description, std::vector<Option> 
 Program program() { return program_with(documentation); }
 
 std::vector<Command> commands() {
-    std::vector<Command> all{inspect_command(),  solve_command(),      compare_command(),
-                             converge_command(), trade_command(),      new_command(),
-                             import_command(),   export_command(),     gate_command(),
-                             certify_command(),  judge_command(),      report_command(),
-                             stress_command(),   equilibria_command(), sensitivity_command()};
+    std::vector<Command> all{inspect_command(),   solve_command(),      compare_command(),
+                             converge_command(),  trade_command(),      new_command(),
+                             import_command(),    export_command(),     gate_command(),
+                             certify_command(),   judge_command(),      report_command(),
+                             stress_command(),    equilibria_command(), sensitivity_command(),
+                             solve_for_command(), fit_command(),        tolerances_command()};
     const auto given = std::make_shared<std::string>();
     all.push_back(printing(
         "completion", "Print the completion of this command for a shell",

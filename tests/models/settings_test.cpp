@@ -185,5 +185,79 @@ TEST(Settings, AreParsedFromOneWord) {
     EXPECT_EQ(setting("a", -28e3).value, "-28000");
 }
 
+// ---- rewrite_scene
+
+constexpr const char* written = R"(# a comment
+elastocheck: 1   # the version
+name: "two points"
+points:
+  a: [0.1, -0.2, 30e-2]  # first: "a"
+  'b': {at: [1, 2,
+             3]}
+springs: {coil: {rate: "30e3", law: 'x # y', free: 4}}
+last: 7)";
+
+TEST(RewriteScene, ChangesTheValuesAndNothingElse) {
+    const std::vector<Setting> settings{{"points.a.z", "0.25"},     {"points.a.x", "-1"},
+                                        {"points.b.at.z", "3.5"},   {"points.b.at.y", "2.5"},
+                                        {"springs.coil.rate", "1"}, {"last", "8"}};
+    EXPECT_EQ(rewrite_scene(written, "a.yaml", settings), R"(# a comment
+elastocheck: 1   # the version
+name: "two points"
+points:
+  a: [-1, -0.2, 0.25]  # first: "a"  # points.a.x was 0.1, points.a.z was 30e-2
+  'b': {at: [1, 2.5,  # points.b.at.y was 2
+             3.5]}  # points.b.at.z was 3
+springs: {coil: {rate: 1, law: 'x # y', free: 4}}  # springs.coil.rate was 30e3
+last: 8  # last was 7)");
+    EXPECT_EQ(rewrite_scene(written, "a.yaml", {}), written);
+    const Setting last{"a", "2"};
+    EXPECT_EQ(rewrite_scene("a: 1\r\nb: 3\r\n", "a.yaml", {&last, 1}),
+              "a: 2  # a was 1\r\nb: 3\r\n");
+}
+
+// Every number of every built-in scene is found at its place, and the rewritten scene is the one
+// that read_scene() makes with the setting.
+TEST(RewriteScene, FindsEveryNumberOfTheBuiltInScenes) {
+    int compared = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ELASTOCHECK_SCENES)) {
+        if (entry.path().extension() != ".yaml") continue;
+        const std::string file = entry.path();
+        std::ifstream in(file);
+        const std::string text{std::istreambuf_iterator<char>(in), {}};
+        const Scene scene = read_scene(file);
+        std::vector<Setting> settings;
+        for (const Number& number : scene.numbers)
+            settings.push_back(setting(number.path, number.value));
+        const Scene again = parse_scene(rewrite_scene(text, file, settings), file);
+        ASSERT_EQ(again.numbers.size(), scene.numbers.size()) << file;
+        for (std::size_t k = 0; k < scene.numbers.size(); ++k) {
+            EXPECT_EQ(again.numbers[k].path, scene.numbers[k].path);
+            EXPECT_EQ(again.numbers[k].value, scene.numbers[k].value) << scene.numbers[k].path;
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, 500);
+}
+
+TEST(RewriteScene, RefusesWhatCannotBeSetOrIsNotWrittenAsOneWord) {
+    const auto complaint = [](const char* text, const Setting& setting) -> std::string {
+        try {
+            (void)rewrite_scene(text, "a.yaml", {&setting, 1});
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(complaint(written, {"points.c.x", "1"}),
+              "a.yaml: points.c.x: points has no 'c'; there: a, b");
+    EXPECT_EQ(complaint("a: \"1\\x32\"\n", {"a", "3"}),
+              "a.yaml:1: a: cannot be replaced where it is written; write it on one line, without "
+              "escapes");
+    EXPECT_EQ(complaint("a: >-\n  12\n", {"a", "3"}),
+              "a.yaml:1: a: cannot be replaced where it is written; write it on one line, without "
+              "escapes");
+}
+
 }  // namespace
 }  // namespace elastocheck

@@ -42,7 +42,11 @@ class TreeBuilder final : public YAML::EventHandler {
                   const std::string& text) override {
         refuse_tag(mark, tag);
         refuse_unprintable(mark, text);
-        add({.kind = Value::Kind::scalar, .text = text, .line = line_of(mark)});
+        add({.kind = Value::Kind::scalar,
+             .text = text,
+             .line = line_of(mark),
+             .row = mark.line,
+             .column = mark.column});
     }
     void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
                          YAML::EmitterStyle::value) override {

@@ -16,6 +16,8 @@ struct Value {
     int line = 1;                     // where it begins; where its key stands, if it has one
     bool is_set = false;              // the value comes from a setting, not from the file
     bool is_string = false;           // of JSON: in quotes, so no number
+    // of a scalar in YAML: where its text begins, both from 0, in bytes; -1: not in the file
+    int row = -1, column = -1;
 };
 
 // Rejects, with the line: text that is not YAML, duplicate keys, keys that are not plain text,

@@ -1,0 +1,295 @@
+#include "reports/command/options/design_options.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "compare/candidate/candidate.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/points.hpp"
+#include "models/reader/document/cursor.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
+#include "reports/files/files.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr FileKind changed_scene{"scene changed by elastocheck", "# Changed by elastocheck "};
+
+double number_of(std::string_view text, const std::string& option, const std::string& word) {
+    double value = 0;
+    const char *first = text.data(), *last = first + text.size();
+    if (text.starts_with('+')) ++first;  // from_chars rejects a plus
+    const auto [end, error] = std::from_chars(first, last, value);
+    if (error != std::errc() || end != last || !std::isfinite(value))
+        throw std::invalid_argument(
+            fmt::format("{} '{}': '{}' is not a number", option, word, text));
+    return value;
+}
+
+template <class Item, class Name>
+const Item& named(const std::vector<Item>& all, const std::string& name, const Name& name_of,
+                  const std::string& option, const char* what, const char* label) {
+    std::vector<std::string> names;
+    for (const Item& item : all) {
+        if (name_of(item) == name) return item;
+        names.push_back(name_of(item));
+    }
+    throw std::invalid_argument(fmt::format("{}: the scene has no {} {}{}", option, what,
+                                            reader::quote(name),
+                                            reader::did_you_mean(name, names, label)));
+}
+
+Settings without(Settings settings, const std::vector<Number>& numbers) {
+    std::erase_if(settings, [&](const Setting& setting) {
+        return std::ranges::find(numbers, setting.path, &Number::path) != numbers.end();
+    });
+    return settings;
+}
+
+}  // namespace
+
+Varied parse_varied(const std::vector<std::string>& words, const Scene& scene) {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    struct Limits {
+        double low = -none, high = none;
+    };
+    Varied varied;
+    std::vector<Limits> limits;
+    for (const std::string& word : words) {
+        const auto equals = word.find('=');
+        const std::string path = word.substr(0, equals);
+        Limits of;
+        if (equals != word.npos) {
+            const std::string range = word.substr(equals + 1);
+            const auto colon = range.find(':');
+            if (colon == range.npos)
+                throw std::invalid_argument(
+                    fmt::format("--vary '{}': allowed: NAME=LOW:HIGH, such as "
+                                "points.tie_rod_inner.z=260:340",
+                                word));
+            of = {number_of(range.substr(0, colon), "--vary", word),
+                  number_of(range.substr(colon + 1), "--vary", word)};
+            if (!(of.low < of.high))
+                throw std::invalid_argument(
+                    fmt::format("--vary '{}': the lower limit is not below the upper one", word));
+        }
+        std::vector<Number> matching;
+        if (path.find('*') != path.npos)
+            std::ranges::copy_if(scene.numbers, std::back_inserter(matching),
+                                 [&](const Number& number) {
+                                     return ::fnmatch(path.c_str(), number.path.c_str(), 0) == 0;
+                                 });
+        if (matching.empty())
+            matching.push_back(named(
+                scene.numbers, path, [](const Number& number) { return number.path; }, "--vary",
+                "number", "numbers"));
+        for (const Number& number : matching) {
+            if (std::ranges::find(varied.numbers, number.path, &Number::path) !=
+                varied.numbers.end())
+                throw std::invalid_argument(fmt::format("--vary: {} is given twice", number.path));
+            varied.numbers.push_back(number);
+            limits.push_back(of);
+        }
+    }
+    const auto n = static_cast<Index>(limits.size());
+    varied.start.resize(n), varied.low.resize(n), varied.high.resize(n);
+    for (Index k = 0; k < n; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        varied.start[k] = varied.numbers[i].value;
+        varied.low[k] = limits[i].low, varied.high[k] = limits[i].high;
+    }
+    return varied;
+}
+
+compare::SceneAt scene_at(const std::string& file, const Settings& settings,
+                          const std::vector<Number>& numbers) {
+    return [file, fixed = without(settings, numbers), numbers](const VectorXd& p) {
+        Settings all = fixed;
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            all.push_back(elastocheck::setting(numbers[k].path, p[static_cast<Index>(k)]));
+        return read_scene(file, all);
+    };
+}
+
+NamedFigure parse_figure(const std::string& word, const std::string& option, const Model& model) {
+    if (model.branches.empty())
+        throw std::invalid_argument(
+            fmt::format("{}: the scene has no branch, so no output has a value", option));
+    NamedFigure named_figure;
+    const Branch* branch = &model.branches.front();
+    double at = 0;
+    const auto place = word.find('@');
+    const std::string name = word.substr(0, place);
+    if (place != word.npos) {
+        const std::string text = word.substr(place + 1);
+        const auto colon = text.rfind(':');
+        branch = &named(
+            model.branches, text.substr(0, colon), [](const Branch& b) { return b.name; }, option,
+            "branch", "branches");
+        if (colon != text.npos) at = number_of(text.substr(colon + 1), option, word);
+    }
+    const compare::Unit unit = compare::unit_of(branch->unit);
+    const double factor = compare::in_unit(unit);
+    named_figure.output = named(
+        compare::figure_outputs(model), name, [](const compare::Channel& c) { return c.name; },
+        option, "output", "outputs");
+    named_figure.figure = {.name = name, .branch = branch->name, .at = at / factor};
+    named_figure.place = fmt::format("{} = {:g} {}", branch->name, at, symbol(unit));
+    const double low = factor * std::min(branch->from, branch->to),
+                 high = factor * std::max(branch->from, branch->to), within = 1e-9 * (high - low);
+    if (!(at >= low - within && at <= high + within))
+        throw std::invalid_argument(fmt::format("{} '{}': branch '{}' goes from {:g} to {:g} {}",
+                                                option, word, branch->name, low, high,
+                                                symbol(unit)));
+    return named_figure;
+}
+
+std::pair<NamedFigure, double> parse_wanted(const std::string& word, const Model& model) {
+    const auto equals = word.rfind('=');
+    if (equals == word.npos || equals == 0)
+        throw std::invalid_argument(fmt::format(
+            "--want '{}': allowed: OUTPUT=VALUE or OUTPUT@BRANCH:PARAMETER=VALUE, such as "
+            "bump_steer=0 or toe@jounce:3000=-0.1",
+            word));
+    return {parse_figure(word.substr(0, equals), "--want", model),
+            number_of(word.substr(equals + 1), "--want", word)};
+}
+
+std::vector<compare::Figure> figures_of(const std::vector<NamedFigure>& named_figures) {
+    std::vector<compare::Figure> figures;
+    for (const NamedFigure& one : named_figures) figures.push_back(one.figure);
+    return figures;
+}
+
+Tolerances read_tolerances(std::string_view yaml, const std::string& file, const Scene& scene) {
+    const reader::Value tree = reader::parse_yaml(yaml, file);
+    std::vector<Number> ignored;
+    const reader::Cursor whole{&tree, "", &file, &ignored};
+    std::vector<std::string> names, known;
+    for (const Number& number : scene.numbers) known.push_back(number.path);
+    Tolerances all;
+    const auto positive = [](const reader::Cursor& at) {
+        const double value = at.number();
+        if (!(value > 0)) at.fail(fmt::format("{:g}; allowed: more than zero", value));
+        return value;
+    };
+    for (const auto& [name, at] : whole.entries()) {
+        if (name == "correlations") continue;
+        if (std::ranges::find(known, name) == known.end())
+            at.fail("the scene has no such number" + reader::did_you_mean(name, known, "numbers"));
+        at.only_keys({"normal", "uniform"});
+        const auto normal = at.optional("normal"), uniform = at.optional("uniform");
+        if (normal.has_value() == uniform.has_value())
+            at.fail("allowed: one of {normal: {sd: ...}} and {uniform: {half_width: ...}}");
+        if (normal) {
+            normal->only_keys({"sd"});
+            all.numbers.push_back({name, compare::Normal{positive(normal->require("sd"))}});
+        } else {
+            uniform->only_keys({"half_width"});
+            all.numbers.push_back(
+                {name, compare::Uniform{positive(uniform->require("half_width"))}});
+        }
+        names.push_back(name);
+    }
+    if (names.empty()) whole.fail("no tolerance; allowed: NUMBER: {normal: {sd: 0.5}}");
+    const auto correlations = whole.optional("correlations");
+    if (!correlations) return all;
+    const auto n = static_cast<Index>(names.size());
+    all.correlation = Eigen::MatrixXd::Identity(n, n);
+    for (const reader::Cursor& entry : correlations->items()) {
+        const auto parts = entry.list(3, "two numbers of the file and their correlation");
+        Index k[2];
+        for (std::size_t i = 0; i < 2; ++i)
+            k[i] = static_cast<Index>(parts[i].one_of("a number with a tolerance", names));
+        const double rho = parts[2].number();
+        if (k[0] == k[1]) entry.fail("a number with itself");
+        if (!(std::abs(rho) <= 1)) parts[2].fail(fmt::format("{:g}; allowed: -1 to 1", rho));
+        all.correlation(k[0], k[1]) = all.correlation(k[1], k[0]) = rho;
+    }
+    if (!compare::is_correlation(all.correlation))
+        correlations->fail("contradict each other: their matrix has a negative eigenvalue");
+    return all;
+}
+
+MeasuredFigures read_measured(std::string_view csv, const std::string& file, const ColumnMap& map,
+                              const Model& model) {
+    compare::Comparison outline = compare::outline(model);
+    PointTable table = read_points(csv, file, outline, map, nullptr);
+    const compare::Points& points = table.points;
+    MeasuredFigures measured;
+    measured.left_out = table.left_out;
+    // A point without the name of its branch is on the one that reaches it.
+    if (points.branch.empty())
+        for (std::size_t b = 0; b < model.branches.size(); ++b) {
+            const auto ways = compare::sides_of(model, model.branches[b]);
+            outline.branches[b].runs.resize(compare::legs.size());
+            static_cast<compare::PathCurve&>(
+                outline.branches[b].runs[static_cast<std::size_t>(compare::Leg::equilibrium)]) =
+                compare::walk(model, compare::channels(model), model.branches[b], ways,
+                              {.leg = compare::Leg::equilibrium});
+        }
+    const bool by_parameter = !points.a.empty();
+    std::vector<int> branch;
+    try {
+        branch =
+            compare::branches_of(model, outline, points.branch, by_parameter ? points.a : points.at,
+                                 by_parameter ? std::nullopt : points.abscissa);
+    } catch (const std::invalid_argument& error) {
+        fail_at(file, 1, error.what());
+    }
+    std::vector<double> values;
+    for (const auto& column : points.columns) {
+        const compare::Channel& channel = outline.channels[column.channel];
+        if (is_travel(channel)) continue;
+        bool is_used = false;
+        for (std::size_t k = 0; k < column.values.size(); ++k) {
+            if (branch[k] < 0 || !std::isfinite(column.values[k])) continue;
+            const Branch& of = model.branches[static_cast<std::size_t>(branch[k])];
+            const double place = by_parameter ? points.a[k] : points.at[k];
+            if (!std::isfinite(place)) continue;
+            measured.figures.push_back(
+                {.name = channel.name,
+                 .branch = of.name,
+                 .at = by_parameter ? place / compare::in_unit(compare::unit_of(of.unit)) : place,
+                 .over = by_parameter ? "" : outline.channels[*points.abscissa].name,
+                 .change = column.change});
+            measured.column.push_back(static_cast<int>(measured.columns.size()));
+            values.push_back(column.values[k]);
+            is_used = true;
+        }
+        if (is_used) measured.columns.push_back(channel);
+    }
+    if (values.empty()) fail_at(file, 0, "no point lies on a branch of the scene");
+    measured.value = Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+    return measured;
+}
+
+void check_may_write_scene(const std::string& output) { check_may_write(output, changed_scene); }
+
+void write_changed_scene(const std::string& scene, const std::string& output,
+                         const std::string& first_line, const Settings& settings,
+                         const Varied& varied, const VectorXd& p) {
+    Settings changes = without(settings, varied.numbers);
+    for (std::size_t k = 0; k < varied.numbers.size(); ++k)
+        if (const auto i = static_cast<Index>(k); p[i] != varied.start[i])
+            changes.push_back(elastocheck::setting(varied.numbers[k].path, p[i]));
+    std::string text = rewrite_scene(read_whole(scene), scene, changes);
+    // The line of an earlier change is replaced.
+    if (text.starts_with(changed_scene.beginning)) text.erase(0, text.find('\n') + 1);
+    write_whole(output, fmt::format("{}{}\n{}", changed_scene.beginning, first_line, text),
+                changed_scene);
+    (void)read_scene(output);
+}
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,275 @@
+#include "reports/tables/design_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "reports/tables/render.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Table;
+using Eigen::Index;
+using Eigen::VectorXd;
+using json = nlohmann::ordered_json;
+
+// ---- solve-for
+
+constexpr double least_share = 0.05;  // of a wish in a conflict
+
+const char* limit_of(int at_limit) {
+    return at_limit < 0 ? "at the lower" : at_limit > 0 ? "at the upper" : "";
+}
+
+Table numbers_table(const SolvedFor& solved) {
+    using enum Digits;
+    Table table{{{"number", "", "", true, words},
+                 {"unit", "", "", true, words},
+                 {"from", "", "", false, given},
+                 {"to", "", "", false, given},
+                 {"change", "", "", false, given},
+                 {"low", "", "lower limit", false, given},
+                 {"high", "", "upper limit", false, given},
+                 {"at limit", "", "the wishes would come nearer beyond this limit", true, words}},
+                {}};
+    const auto& [target, start, low, high] = solved.wishes;
+    const VectorXd& p = solved.solution.p;
+    for (std::size_t k = 0; k < solved.numbers.size(); ++k) {
+        const auto i = static_cast<Index>(k);
+        const auto& at_limit = solved.solution.at_limit;
+        table.rows.push_back({solved.numbers[k].path, solved.numbers[k].unit, start[i], p[i],
+                              p[i] - start[i], low[i], high[i],
+                              std::string(at_limit.empty() ? "" : limit_of(at_limit[k]))});
+    }
+    return table;
+}
+
+Table wishes_table(const SolvedFor& solved) {
+    using enum Digits;
+    Table table{
+        {{"output", "", "", true, words},
+         {"unit", "", "", true, words},
+         {"at", "", "", true, words},
+         {"wanted", "", "", false, given},
+         {"before", "", "", false, given},
+         {"after", "", "by the equilibrium leg", false, given},
+         {"by energy", "", "", false, given},
+         {"by series", "", "", false, given},
+         {"range", "", "movement over the ranges of the numbers, to first order", false, three},
+         {"conflict", "", "share in the conflict of the wishes", false, percent}},
+        {}};
+    for (std::size_t k = 0; k < solved.rows.size(); ++k) {
+        const WishRow& row = solved.rows[k];
+        const auto i = static_cast<Index>(k);
+        const auto& [p, before, after, gradient, still, movement, met, converged, iterations,
+                     conflict, at_limit] = solved.solution;
+        table.rows.push_back({row.output, row.unit, row.place, row.asked, row.before, row.after,
+                              row.energy, row.series, movement[i],
+                              met || conflict.size() == 0 ? compare::nan : conflict[i]});
+    }
+    return table;
+}
+
+// The wishes that conflict, and the limits.
+std::string conflict_text(const SolvedFor& solved) {
+    std::vector<std::string> wishes, limits;
+    for (std::size_t k = 0; k < solved.rows.size(); ++k)
+        if (solved.solution.conflict[static_cast<Index>(k)] > least_share)
+            wishes.push_back(solved.rows[k].output + " at " + solved.rows[k].place);
+    for (std::size_t k = 0; k < solved.numbers.size(); ++k)
+        if (const int at = solved.solution.at_limit[k]; at != 0)
+            limits.push_back(fmt::format(
+                "{} {} {:g}", solved.numbers[k].path, at < 0 ? "below" : "above",
+                (at < 0 ? solved.wishes.low : solved.wishes.high)[static_cast<Index>(k)]));
+    std::string text = wishes.size() > 1
+                           ? fmt::format(
+                                 "In conflict: {}. Within the limits the numbers move "
+                                 "them only together.\n",
+                                 fmt::join(wishes, "; "))
+                           : fmt::format("Out of reach: {}.\n", fmt::join(wishes, "; "));
+    text += limits.empty()
+                ? "No limit of a number causes this: more or other numbers are needed.\n"
+                : fmt::format("The wishes would come nearer with {}.\n", fmt::join(limits, "; "));
+    return text;
+}
+
+// ---- fit
+
+std::string combination(const FittedScene& fit, const VectorXd& v) {
+    std::vector<std::size_t> order(fit.numbers.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto size = [&](std::size_t k) { return std::abs(v[static_cast<Index>(k)]); };
+    std::ranges::sort(order, std::ranges::greater{}, size);
+    std::string text;
+    for (const std::size_t k : order) {
+        if (size(k) < 0.05) break;
+        const double change =
+            v[static_cast<Index>(k)] * fit.measured.step[static_cast<Index>(k)] / size(order[0]);
+        text += fmt::format("{}{} {:+.4g} {}", text.empty() ? "" : ", ", fit.numbers[k].path,
+                            change, fit.numbers[k].unit);
+    }
+    return text;
+}
+
+Table fitted_table(const FittedScene& fit) {
+    using enum Digits;
+    Table table{{{"number", "", "", true, words},
+                 {"unit", "", "", true, words},
+                 {"start", "", "", false, given},
+                 {"fitted", "", "", false, given},
+                 {"change", "", "", false, given},
+                 {"+-", "", "half of the 95 % interval", false, three},
+                 {"note", "", "", true, words}},
+                {}};
+    for (std::size_t k = 0; k < fit.numbers.size(); ++k) {
+        const auto i = static_cast<Index>(k);
+        const bool open = !std::isfinite(fit.fitted.interval[i]);
+        table.rows.push_back({fit.numbers[k].path, fit.numbers[k].unit, fit.measured.start[i],
+                              fit.fitted.p[i], fit.fitted.p[i] - fit.measured.start[i],
+                              fit.fitted.interval[i],
+                              std::string(fit.fitted.at_limit[k] ? "at its limit"
+                                          : open                 ? "not determined"
+                                                                 : "")});
+    }
+    return table;
+}
+
+Table columns_table(const FittedScene& fit) {
+    using enum Digits;
+    Table table{{{"output", "", "", true, words},
+                 {"unit", "", "", true, words},
+                 {"values", "", "", false, whole},
+                 {"rms before", "", "of calculated less measured values", false, three},
+                 {"noise", "", "estimated standard deviation of the measurements", false, three}},
+                {}};
+    for (std::size_t c = 0; c < fit.columns.size(); ++c)
+        table.rows.push_back(
+            {fit.columns[c].name, std::string(symbol(fit.columns[c].unit)),
+             static_cast<double>(std::ranges::count(fit.measured.column, static_cast<int>(c))),
+             fit.fitted.rms_before[c], fit.fitted.noise[c]});
+    return table;
+}
+
+double condition(const compare::Fitted& fitted) {
+    const auto& S = fitted.singular_values;
+    return S.size() > 0 && S[S.size() - 1] > 0 ? S[0] / S[S.size() - 1] : INFINITY;
+}
+
+// ---- tolerances
+
+Table scatter_table(const ToleratedScene& all) {
+    using enum Digits;
+    Table table{{{"output", "", "", true, words},
+                 {"unit", "", "", true, words},
+                 {"at", "", "", true, words},
+                 {"nominal", "", "", false, given},
+                 {"sd", "", "standard deviation", false, three},
+                 {"worst case", "", "", false, three},
+                 {"error of sd", "", "estimate, by the error of the rates", false, size}},
+                {}};
+    for (const auto& figure : all.figures)
+        table.rows.push_back({figure.output, figure.unit, figure.place, figure.nominal,
+                              figure.scatter.sd, figure.scatter.worst_case, figure.rate_error});
+    return table;
+}
+
+// The shares, largest first; `most` of each figure, 0: all.
+Table shares_table(const ToleratedScene& all, std::size_t most) {
+    using enum Digits;
+    Table table{{{"output", "", "", true, words},
+                 {"at", "", "", true, words},
+                 {"tolerance", "", "", true, words},
+                 {"share", "", "of the variance", false, percent}},
+                {}};
+    for (const auto& figure : all.figures) {
+        std::vector<std::size_t> order(all.numbers.size());
+        std::iota(order.begin(), order.end(), 0);
+        const auto share = [&](std::size_t k) {
+            return figure.scatter.share[static_cast<Index>(k)];
+        };
+        std::ranges::sort(order, std::ranges::greater{},
+                          [&](std::size_t k) { return std::abs(share(k)); });
+        if (most > 0) order.resize(std::min(order.size(), most));
+        for (const std::size_t k : order)
+            table.rows.push_back({figure.output, figure.place, all.numbers[k].path, share(k)});
+    }
+    return table;
+}
+
+}  // namespace
+
+std::string solve_for_text(const SolvedFor& solved) {
+    const compare::Solution& solution = solved.solution;
+    std::string text =
+        reports::text(numbers_table(solved)) + "\n" + reports::text(wishes_table(solved)) + "\n";
+    text += solution.met
+                ? "All wishes are met; of all such numbers within the limits, these "
+                  "change least, as shares of their ranges.\n"
+                : "The wishes cannot be met; these numbers come nearest.\n" + conflict_text(solved);
+    if (!solution.met && !solution.converged)
+        text += "The search has not converged: there may be nearer numbers.\n";
+    text += solved.confirmed ? "The energy leg and the series, as far as they apply, confirm the "
+                               "values.\n"
+                             : "Not confirmed: " + solved.not_confirmed + "\n";
+    return text;
+}
+
+json solve_for_json(const SolvedFor& solved) {
+    return {{"met", solved.solution.met},
+            {"confirmed", solved.confirmed},
+            {"not_confirmed", solved.not_confirmed},
+            {"converged", solved.solution.converged},
+            {"numbers", table_json(numbers_table(solved))},
+            {"wishes", table_json(wishes_table(solved))}};
+}
+
+std::string fit_text(const FittedScene& fit) {
+    const compare::Fitted& fitted = fit.fitted;
+    std::string text =
+        reports::text(fitted_table(fit)) + "\n" + reports::text(columns_table(fit)) + "\n";
+    const auto out = std::back_inserter(text);
+    if (!fitted.converged) fmt::format_to(out, "The fit has not converged.\n");
+    if (fitted.freedom < 1)
+        fmt::format_to(out, "Not more values than numbers: no interval can be given.\n");
+    for (Index k = 0; k < fitted.undetermined.cols(); ++k)
+        fmt::format_to(out, "The data do not determine this change: {}\n",
+                       combination(fit, fitted.undetermined.col(k)));
+    fmt::format_to(out, "Condition of the numbers, in steps of 1 mm or 1 %: {:.1e}\n",
+                   condition(fitted));
+    for (const auto& left : fit.left_out) fmt::format_to(out, "Left out: {}\n", left);
+    return text;
+}
+
+json fit_json(const FittedScene& fit) {
+    json undetermined = json::array();
+    for (Index k = 0; k < fit.fitted.undetermined.cols(); ++k) {
+        json change = json::object();
+        for (std::size_t n = 0; n < fit.numbers.size(); ++n)
+            change[fit.numbers[n].path] = fit.fitted.undetermined(static_cast<Index>(n), k) *
+                                          fit.measured.step[static_cast<Index>(n)];
+        undetermined.push_back(change);
+    }
+    return {{"converged", fit.fitted.converged},
+            {"freedom", fit.fitted.freedom},
+            {"condition", condition(fit.fitted)},
+            {"numbers", table_json(fitted_table(fit))},
+            {"outputs", table_json(columns_table(fit))},
+            {"undetermined", undetermined},
+            {"left_out", fit.left_out}};
+}
+
+std::string tolerances_text(const ToleratedScene& all, int most) {
+    return reports::text(scatter_table(all)) + "\n" +
+           reports::text(shares_table(all, static_cast<std::size_t>(most)));
+}
+
+json tolerances_json(const ToleratedScene& all) {
+    return {{"figures", table_json(scatter_table(all))},
+            {"shares", table_json(shares_table(all, 0))}};
+}
+
+}  // namespace elastocheck::reports

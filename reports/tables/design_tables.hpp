@@ -1,0 +1,68 @@
+// Results of solve-for, of a fit and of a tolerance analysis as terminal text and JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "compare/design/fit.hpp"
+#include "compare/design/solve_for.hpp"
+#include "compare/design/tolerances.hpp"
+#include "compare/tables/table.hpp"
+
+namespace elastocheck::reports {
+
+// Incremented when a field changes its meaning or is removed; new fields do not increment them.
+inline constexpr const char* solve_for_schema = "elastocheck/solve-for/1";
+inline constexpr const char* fit_schema = "elastocheck/fit/1";
+inline constexpr const char* tolerances_schema = "elastocheck/tolerances/1";
+
+// ---- solve-for
+
+// A figure with its wish, and its values at the result by the other legs; NaN where a leg does not
+// apply.
+struct WishRow {
+    std::string output, unit, place;
+    double asked = 0, before = 0, after = 0;
+    double energy = 0, series = 0;
+};
+struct SolvedFor {
+    std::vector<Number> numbers;
+    compare::Wishes wishes;
+    compare::Solution solution;
+    std::vector<WishRow> rows;
+    // the other legs have the figures of the equilibrium leg, within a millionth of their movement
+    bool confirmed = false;
+    std::string not_confirmed = {};  // reason
+};
+std::string solve_for_text(const SolvedFor& solved);
+nlohmann::ordered_json solve_for_json(const SolvedFor& solved);
+
+// ---- fit
+
+struct FittedScene {
+    std::vector<Number> numbers;
+    compare::Measured measured;
+    std::vector<compare::Channel> columns;
+    std::vector<std::string> left_out;
+    compare::Fitted fitted;
+};
+std::string fit_text(const FittedScene& fit);
+nlohmann::ordered_json fit_json(const FittedScene& fit);
+
+// ---- tolerances
+
+struct ToleratedFigure {
+    std::string output, unit, place;
+    double nominal = 0;
+    compare::Scatter scatter;
+    double rate_error = 0;  // estimate, of the standard deviation by the error of the rates
+};
+struct ToleratedScene {
+    std::vector<compare::Tolerated> numbers;
+    std::vector<ToleratedFigure> figures;
+};
+std::string tolerances_text(const ToleratedScene& all, int most);
+nlohmann::ordered_json tolerances_json(const ToleratedScene& all);
+
+}  // namespace elastocheck::reports

@@ -1,0 +1,189 @@
+// The commands solve-for, fit and tolerances.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/reports/command.hpp"
+
+namespace elastocheck {
+namespace {
+
+using nlohmann::json;
+
+const std::string springs = scenes + "/parallel_springs.yaml";
+const std::string strut = scenes + "/mcpherson.yaml";
+
+// ---- solve-for
+
+TEST(SolveForCommand, WritesTheSceneWithOnlyTheNumberChanged) {
+    const Folder folder;
+    const std::string file = (folder.path / "new.yaml").string();
+    expect_says("solve-for " + strut +
+                    " --vary points.tie_rod_inner.z=-0.05:0.02 --want bump_steer=0 -o " + file,
+                0, {.out = {"All wishes are met", "confirm the values"}, .err = {"Written: "}});
+    const auto before = parts_of(text_of(strut), '\n'), after = parts_of(text_of(file), '\n');
+    ASSERT_EQ(after.size(), before.size() + 1);
+    EXPECT_EQ(after[0], "# Changed by elastocheck solve-for: bump_steer=0");
+    int changed = 0;
+    for (std::size_t k = 0; k < before.size(); ++k) {
+        if (before[k] == after[k + 1]) continue;
+        ++changed;
+        EXPECT_TRUE(after[k + 1].starts_with("  tie_rod_inner: [-0.300, 0.445, -0.01"))
+            << after[k + 1];
+        EXPECT_TRUE(after[k + 1].ends_with("]  # points.tie_rod_inner.z was -0.015"))
+            << after[k + 1];
+    }
+    EXPECT_EQ(changed, 1);
+    // The result has no bump steer, so that nothing is left to change; its line at the head is
+    // replaced.
+    const Said again = expect_says(
+        "solve-for " + file +
+            " --vary points.tie_rod_inner.z=-0.05:0.02 --want bump_steer=0 --json -o " + file,
+        0);
+    const json said = json::parse(again.out);
+    EXPECT_EQ(said["schema"], "elastocheck/solve-for/1");
+    EXPECT_EQ(said["met"], true);
+    EXPECT_EQ(said["confirmed"], true);
+    EXPECT_LE(std::abs(said["numbers"]["rows"][0][4].get<double>()), 1e-8);
+    EXPECT_EQ(parts_of(text_of(file), '\n').size(), after.size());
+}
+
+TEST(SolveForCommand, WishesThatCannotBeMetAreExitCodeOneWithTheConflict) {
+    expect_says("solve-for " + springs +
+                    " --vary springs.first.rate=10:60 --want centre_z@up:3000=437.5 --want "
+                    "centre_z@up:1500=421.4",
+                1,
+                {.out = {"The wishes cannot be met; these numbers come nearest.",
+                         "In conflict: centre_z at up = 3000 N; centre_z at up = 1500 N.",
+                         "No limit of a number causes this"}});
+    expect_says(
+        "solve-for " + springs + " --vary springs.first.rate=20:32 --want centre_z@up:3000=437.5",
+        1,
+        {.out = {"Out of reach: centre_z at up = 3000 N.",
+                 "nearer with springs.first.rate above 32"}});
+}
+
+TEST(SolveForCommand, RefusesWhatItCannotUnderstand) {
+    const std::string vary = " --vary springs.first.rate=10:60 ",
+                      want = " --want centre_z@up:3000=437";
+    expect_says("solve-for " + springs + " --vary springs.frist.rate=10:60" + want, 2,
+                {.err = {"--vary: the scene has no number 'springs.frist.rate', did you mean "
+                         "'springs.first.rate'?"}});
+    expect_says("solve-for " + springs + vary + "--want center_z=1", 2,
+                {.err = {"--want: the scene has no output 'center_z', did you mean 'centre_z'?"}});
+    expect_says("solve-for " + springs + vary + "--want centre_z@upp:3=1", 2,
+                {.err = {"--want: the scene has no branch 'upp', did you mean 'up'?"}});
+    expect_says("solve-for " + springs + vary + "--want centre_z@up:4000=1", 2,
+                {.err = {"branch 'up' goes from 0 to 3000 N"}});
+    expect_says("solve-for " + springs + vary + "--want centre_z", 2,
+                {.err = {"allowed: OUTPUT=VALUE"}});
+    expect_says("solve-for " + springs + " --vary springs.first.rate" + want, 2,
+                {.err = {"needs limits, =LOW:HIGH"}});
+    expect_says("solve-for " + springs + " --vary springs.first.rate=60:10" + want, 2,
+                {.err = {"the lower limit is not below the upper one"}});
+    expect_says("solve-for " + springs + vary + "--want centre_x=3", 2,
+                {.err = {"--want centre_x=3: none of the numbers moves it",
+                         "springs.first.rate: no output moves with it"}});
+    expect_says("solve-for " + springs + vary + "--want centre_x@up:3000=3", 2,
+                {.err = {"springs.first.rate: it moves centre_z, for example, and not centre_x"}});
+}
+
+TEST(SolveForCommand, DoesNotOverwriteAFileOfAnother) {
+    const Folder folder;
+    const std::string mine = folder.write("mine.yaml", "elastocheck: 1\n");
+    const Said said = elastocheck_says(
+        "solve-for " + springs +
+        " --vary springs.first.rate=10:60 --want centre_z@up:3000=437.5 -o " + mine);
+    EXPECT_NE(said.code, 0);
+    EXPECT_EQ(text_of(mine), "elastocheck: 1\n");
+}
+
+// ---- fit
+
+TEST(FitCommand, FindsTheNumberBehindCurvesOfTheReferences) {
+    const Folder folder;
+    const std::string csv = (folder.path / "rig.csv").string(),
+                      fitted = (folder.path / "fitted.yaml").string();
+    expect_says("solve " + strut +
+                    " --steps 12 --set points.tie_rod_inner.z=-0.013 --channels "
+                    "toe,camber -o " +
+                    csv,
+                0);
+    const Said said = expect_says("fit " + strut + " --measured " + csv +
+                                      " --vary points.tie_rod_inner.z --json -o " + fitted,
+                                  0);
+    const json result = json::parse(said.out);
+    EXPECT_EQ(result["schema"], "elastocheck/fit/1");
+    EXPECT_NEAR(result["numbers"]["rows"][0][3].get<double>(), -0.013, 1e-9);
+    EXPECT_TRUE(contains(text_of(fitted), "# points.tie_rod_inner.z was -0.015"));
+}
+
+// Points at travel and as changes, as a rig has them.
+TEST(FitCommand, ReadsPointsOverTravel) {
+    const Folder folder;
+    const std::string csv = (folder.path / "rig.csv").string();
+    expect_says("solve " + strut +
+                    " --steps 12 --set points.tie_rod_inner.z=-0.013 --channels "
+                    "travel,toe > " +
+                    csv,
+                0);
+    std::string rig = "travel_mm,toe_change_deg\n";
+    for (const auto& row : cells_of(text_of(csv)))
+        if (row[0] == "jounce" || row[0] == "rebound")
+            if (row[2] != "0") rig += row[row.size() - 2] + "," + row[row.size() - 1] + "\n";
+    const Said said = expect_says("fit " + strut + " --measured " + folder.write("t.csv", rig) +
+                                      " --vary 'points.tie_rod_inner.z=-0.03:0' --json",
+                                  0);
+    EXPECT_NEAR(json::parse(said.out)["numbers"]["rows"][0][3].get<double>(), -0.013, 1e-6);
+}
+
+TEST(FitCommand, NamesWhatTheDataDoNotDetermineWithExitCodeThree) {
+    const Folder folder;
+    const std::string csv = (folder.path / "rig.csv").string();
+    expect_says("solve " + springs + " --steps 4 --channels centre_z -o " + csv, 0);
+    expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rate'", 3,
+                {.out = {"not determined",
+                         "The data do not determine this change: "
+                         "springs.first.rate"}});
+    expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rtae'", 2,
+                {.err = {"--vary: the scene has no number"}});
+}
+
+// ---- tolerances
+
+TEST(TolerancesCommand, HasTheClosedFormOfTwoSprings) {
+    const Folder folder;
+    const std::string file = folder.write("tol.yaml",
+                                          "springs.first.rate: {normal: {sd: 0.3}}\n"
+                                          "springs.second.rate: {uniform: {half_width: 0.9}}\n"
+                                          "correlations:\n"
+                                          "  - [springs.first.rate, springs.second.rate, 0.5]\n");
+    const Said said =
+        expect_says("tolerances " + springs + " " + file + " --of centre_z@up:3000 --json", 0);
+    const json result = json::parse(said.out);
+    const double rate = 3000 / 75.0 / 75, a = 0.3, b = 0.9 / std::sqrt(3.0);
+    const auto& row = result["figures"]["rows"][0];
+    EXPECT_NEAR(row[4].get<double>(), rate * std::sqrt(a * a + b * b + a * b), 1e-8);
+    EXPECT_NEAR(row[5].get<double>(), rate * (0.9 + 0.9), 1e-8);
+    expect_says("tolerances " + springs + " " + file + " --of centre_z@up:3000", 0,
+                {.out = {"springs.second.rate", "%"}});
+}
+
+TEST(TolerancesCommand, RefusesAMistakeWithItsLine) {
+    const Folder folder;
+    const auto complaint = [&](const std::string& text, const std::string& part) {
+        expect_says("tolerances " + springs + " " + folder.write("tol.yaml", text) +
+                        " --of centre_z@up:3000",
+                    2, {.err = {"tol.yaml:", part}});
+    };
+    complaint("springs.first.rte: {normal: {sd: 1}}\n", "did you mean 'springs.first.rate'");
+    complaint("springs.first.rate: {normal: {sd: 0}}\n", "more than zero");
+    complaint("springs.first.rate: {}\n", "one of {normal: {sd: ...}}");
+    complaint("springs.first.rate: {normal: {sd: 1}}\ncorrelations: [[springs.first.rate, x, 1]]\n",
+              "is not");
+    complaint("correlations: []\n", "no tolerance");
+}
+
+}  // namespace
+}  // namespace elastocheck
