@@ -30,6 +30,10 @@ using Eigen::VectorXd;
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
 
+// h of the differences, as a share of step_of(): 0.1 mm, 0.1 %. The error of D is of the order h²,
+// and the rounding of the figures, some 1e-13 of their size, is divided by h.
+constexpr double share_of_step = 0.1;
+
 // Model with its outputs, of which the required ones are evaluated.
 struct Solver {
     const Model& model;
@@ -186,7 +190,7 @@ Figures differenced_figures(SceneAt scene_at, std::vector<Figure> figures,
                 jobs.push_back({numbers[k].path, [&, k, s] {
                                     VectorXd changed = p;
                                     changed[static_cast<Index>(k)] +=
-                                        steps[s] * step_of(numbers[k]) / 2;
+                                        steps[s] * share_of_step * step_of(numbers[k]);
                                     f[k][s] = value(changed);
                                 }});
         run_jobs(jobs, threads, {});
@@ -194,7 +198,7 @@ Figures differenced_figures(SceneAt scene_at, std::vector<Figure> figures,
         FigureGradient result{MatrixXd(rows, p.size()), MatrixXd(rows, p.size())};
         for (Index k = 0; k < p.size(); ++k) {
             const auto& at = f[static_cast<std::size_t>(k)];
-            const double h = step_of(numbers[static_cast<std::size_t>(k)]) / 2;
+            const double h = share_of_step * step_of(numbers[static_cast<std::size_t>(k)]);
             const VectorXd coarse = (at[3] - at[0]) / (2 * h), fine = (at[2] - at[1]) / h;
             result.rate.col(k) = (4 * fine - coarse) / 3;
             result.error.col(k) = (fine - coarse).cwiseAbs() / 3;

@@ -63,7 +63,7 @@ FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, 
 // the value; one unit where that is zero.
 double step_of(const Number& number);
 
-// By the equilibrium leg, and by differences with h half of the step of each number.
+// By the equilibrium leg, and by differences with h a tenth of the step of each number.
 Figures differenced_figures(SceneAt scene_at, std::vector<Figure> figures,
                             std::vector<Number> numbers, int threads = 1);
 

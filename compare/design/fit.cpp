@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double least_singular = 1e-6;  // of the largest: below, a combination is not determined
 constexpr double least_part = 1e-3;      // of a number in an undetermined combination
 constexpr double least_noise = 1e-9;     // of the range of a column: exact data
@@ -29,7 +29,7 @@ std::vector<double> sums(const VectorXd& squares, const std::vector<int>& column
 }
 
 std::vector<double> ranges(const Measured& measured, const std::vector<double>& counts) {
-    std::vector<double> low(counts.size(), infinity), high(counts.size(), -infinity);
+    std::vector<double> low(counts.size(), unlimited), high(counts.size(), -unlimited);
     for (std::size_t k = 0; k < measured.column.size(); ++k) {
         const auto c = static_cast<std::size_t>(measured.column[k]);
         low[c] = std::min(low[c], measured.value[static_cast<Index>(k)]);
@@ -43,12 +43,12 @@ std::vector<double> ranges(const Measured& measured, const std::vector<double>& 
 }  // namespace
 
 double student_95(int freedom) {
-    if (freedom < 1) return infinity;
+    if (freedom < 1) return unlimited;
     // P(|T| ≤ t) by the substitution t = √ν tan θ:  ∝ ∫ cos^(ν-1) θ dθ from 0 to θ, by Simpson's
-    // rule; t by bisection.
-    const double nu = std::min(freedom, 10000);  // beyond, normal to four digits
+    // rule; t by bisection. Beyond ten standard deviations the density is zero.
+    const double nu = freedom, end = std::min(std::numbers::pi / 2, 10 / std::sqrt(nu));
     const auto integral = [nu](double to) {
-        constexpr int parts = 2000;
+        constexpr int parts = 400;
         double sum = 0;
         for (int k = 0; k <= parts; ++k)
             sum += std::pow(std::cos(to * k / parts), nu - 1) * (k == 0 || k == parts ? 1
@@ -56,12 +56,11 @@ double student_95(int freedom) {
                                                                                       : 2);
         return sum * to / (3 * parts);
     };
-    // For ν = 1 the density is uniform in θ; the end of the range is exact for all ν.
-    const double whole = integral(std::numbers::pi / 2);
-    double low = 0, high = std::numbers::pi / 2;
-    for (int k = 0; k < 60; ++k) {
+    const double inside = 0.95 * integral(end);
+    double low = 0, high = end;
+    for (int k = 0; k < 50; ++k) {
         const double middle = (low + high) / 2;
-        (integral(middle) < 0.95 * whole ? low : high) = middle;
+        (integral(middle) < inside ? low : high) = middle;
     }
     return std::sqrt(nu) * std::tan(low);
 }
@@ -147,7 +146,7 @@ Fitted fit(const Figures& figures, const Measured& measured) {
         for (Index k = 0; k < determined; ++k) variance += std::pow(V(i, k) / S[k], 2);
         const bool open = found.undetermined.cols() > 0 &&
                           found.undetermined.row(i).cwiseAbs().maxCoeff() > least_part;
-        found.interval[i] = open || found.freedom < 1 ? infinity
+        found.interval[i] = open || found.freedom < 1 ? unlimited
                                                       : student_95(found.freedom) *
                                                             std::sqrt(variance) * measured.step[i];
     }

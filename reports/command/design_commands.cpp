@@ -245,12 +245,16 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
             code = could_not_judge;
             continue;
         }
-        all.figures.push_back({.output = named[k].figure.name,
-                               .unit = symbol(named[k].output.unit),
-                               .place = named[k].place,
-                               .nominal = nominal[i],
-                               .scatter = scatter[k],
-                               .rate_error = unsure[k].sd});
+        // A figure that moves by rounding does not move.
+        const double rounding = 1e-10 * (1 + std::abs(nominal[i]));
+        const bool moves = scatter[k].sd > 3 * unsure[k].sd + rounding;
+        all.figures.push_back(
+            {.output = named[k].figure.name,
+             .unit = symbol(named[k].output.unit),
+             .place = named[k].place,
+             .nominal = nominal[i],
+             .scatter = moves ? scatter[k] : compare::Scatter{0, 0, 0 * scatter[k].share},
+             .rate_error = unsure[k].sd});
     }
     delivery.print_text(tolerances_text(all, request.most));
     print_result(delivery, tolerances_schema, tolerances_json(all));

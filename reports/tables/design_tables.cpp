@@ -194,6 +194,7 @@ Table shares_table(const ToleratedScene& all, std::size_t most) {
         std::ranges::sort(order, std::ranges::greater{},
                           [&](std::size_t k) { return std::abs(share(k)); });
         if (most > 0) order.resize(std::min(order.size(), most));
+        std::erase_if(order, [&](std::size_t k) { return share(k) == 0; });
         for (const std::size_t k : order)
             table.rows.push_back({figure.output, figure.place, all.numbers[k].path, share(k)});
     }

@@ -50,11 +50,44 @@ const Item& named(const std::vector<Item>& all, const std::string& name, const N
                                             reader::did_you_mean(name, names, label)));
 }
 
+// Names joined by commas are numbers that change together.
+std::vector<std::string> paths_in(const std::string& joined) {
+    std::vector<std::string> paths;
+    for (std::size_t from = 0; from <= joined.size();) {
+        const std::size_t end = std::min(joined.find(',', from), joined.size());
+        paths.push_back(joined.substr(from, end - from));
+        from = end + 1;
+    }
+    return paths;
+}
+
+void add(Settings& settings, const Number& number, double value) {
+    for (const std::string& path : paths_in(number.path))
+        settings.push_back(elastocheck::setting(path, value));
+}
+
 Settings without(Settings settings, const std::vector<Number>& numbers) {
-    std::erase_if(settings, [&](const Setting& setting) {
-        return std::ranges::find(numbers, setting.path, &Number::path) != numbers.end();
-    });
+    for (const Number& number : numbers)
+        for (const std::string& path : paths_in(number.path))
+            std::erase_if(settings, [&](const Setting& one) { return one.path == path; });
     return settings;
+}
+
+// The number of a name; of several joined by commas, which have the same value.
+Number number_of_path(const std::string& joined, const Scene& scene) {
+    Number number;
+    for (const std::string& path : paths_in(joined)) {
+        const Number& one = named(
+            scene.numbers, path, [](const Number& n) { return n.path; }, "--vary", "number",
+            "numbers");
+        if (number.path.empty()) number = one;
+        if (one.value != number.value || one.unit != number.unit)
+            throw std::invalid_argument(fmt::format(
+                "--vary '{}': {} and {} are not the same, so that they cannot change together",
+                joined, number.path, path));
+    }
+    number.path = joined;
+    return number;
 }
 
 }  // namespace
@@ -90,10 +123,7 @@ Varied parse_varied(const std::vector<std::string>& words, const Scene& scene) {
                                  [&](const Number& number) {
                                      return ::fnmatch(path.c_str(), number.path.c_str(), 0) == 0;
                                  });
-        if (matching.empty())
-            matching.push_back(named(
-                scene.numbers, path, [](const Number& number) { return number.path; }, "--vary",
-                "number", "numbers"));
+        if (matching.empty()) matching.push_back(number_of_path(path, scene));
         for (const Number& number : matching) {
             if (std::ranges::find(varied.numbers, number.path, &Number::path) !=
                 varied.numbers.end())
@@ -117,7 +147,7 @@ compare::SceneAt scene_at(const std::string& file, const Settings& settings,
     return [file, fixed = without(settings, numbers), numbers](const VectorXd& p) {
         Settings all = fixed;
         for (std::size_t k = 0; k < numbers.size(); ++k)
-            all.push_back(elastocheck::setting(numbers[k].path, p[static_cast<Index>(k)]));
+            add(all, numbers[k], p[static_cast<Index>(k)]);
         return read_scene(file, all);
     };
 }
@@ -283,7 +313,7 @@ void write_changed_scene(const std::string& scene, const std::string& output,
     Settings changes = without(settings, varied.numbers);
     for (std::size_t k = 0; k < varied.numbers.size(); ++k)
         if (const auto i = static_cast<Index>(k); p[i] != varied.start[i])
-            changes.push_back(elastocheck::setting(varied.numbers[k].path, p[i]));
+            add(changes, varied.numbers[k], p[i]);
     std::string text = rewrite_scene(read_whole(scene), scene, changes);
     // The line of an earlier change is replaced.
     if (text.starts_with(changed_scene.beginning)) text.erase(0, text.find('\n') + 1);

@@ -25,7 +25,8 @@ struct Varied {
 };
 
 // "points.tie_rod_inner.z=260:340"; without "=LOW:HIGH" the number has no limits, and the name may
-// be a pattern with *. Throws std::invalid_argument, for an unknown name with the nearest.
+// be a pattern with *. Names joined by commas are numbers that change together, as two equal rates
+// of a bushing must. Throws std::invalid_argument, for an unknown name with the nearest.
 Varied parse_varied(const std::vector<std::string>& words, const Scene& scene);
 
 // The scene of a file with these values of the numbers; `settings` apply to all others.
