@@ -4,10 +4,11 @@
 // solutions of the equilibrium leg at changed numbers, each from the reader on: settled start and
 // trim are part of the function.
 //
-//   D(h) = (f(p + h) - f(p - h)) / 2h      df/dp ≈ (4 D(h/2) - D(h)) / 3      (Richardson)
+//   D(h) = (f(p + h) - f(p - h)) / 2h      R(h) = (4 D(h/2) - D(h)) / 3      (Richardson)
+//   df/dp ≈ (16 R(h/2) - R(h)) / 15
 //
-// The estimate of its error is |D(h/2) - D(h)| / 3, that of D(h/2), which is larger. At a kink (a
-// stop that just touches) it has the size of the jump.
+// The estimate of its error is |R(h/2) - R(h)|, which is larger than the error of R(h/2). At a kink
+// (a stop that just touches) it has the size of the jump.
 #pragma once
 
 #include <Eigen/Core>
@@ -63,7 +64,7 @@ FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, 
 // the value; one unit where that is zero.
 double step_of(const Number& number);
 
-// By the equilibrium leg, and by differences with h a tenth of the step of each number.
+// By the equilibrium leg, and by differences with h = 0.4 of the step of each number.
 Figures differenced_figures(SceneAt scene_at, std::vector<Figure> figures,
                             std::vector<Number> numbers, int threads = 1);
 
