@@ -268,7 +268,8 @@ Command tolerances_command() {
     const auto request = std::make_shared<TolerancesRequest>();
     return {
         "tolerances",
-        "Scatter of the figures by the tolerances of the numbers of a scene, linearised",
+        "Scatter of the figures by the tolerances of the numbers of a scene; rates by Richardson "
+        "differences of the equilibrium leg, their error stated",
         {scene_option(request->scene),
          {"TOLERANCES", Text{&request->file, a_file("*.yaml")},
           "file with the tolerances, such as points.tie_rod_inner.z: {normal: {sd: 0.5}}", true},
@@ -290,7 +291,8 @@ Command solve_for_command() {
     const auto request = std::make_shared<SolveForRequest>();
     using enum TextList::Form;
     return {"solve-for",
-            "Change numbers of a scene as little as possible so that figures have wanted values",
+            "Change numbers of a scene as little as possible so that figures have wanted values; "
+            "gradients by differences of the equilibrium leg",
             {scene_option(request->scene),
              {"--vary", TextList{&request->vary, repeated},
               "number that may change, with its limits: points.tie_rod_inner.z=260:340; repeat it",
@@ -313,24 +315,26 @@ Command solve_for_command() {
 Command fit_command() {
     const auto request = std::make_shared<FitRequest>();
     using enum TextList::Form;
-    return {"fit",
-            "Fit numbers of a scene to measured curves, with 95 % intervals",
-            {scene_option(request->scene),
-             {"--measured", Text{&request->measured, a_file("*.csv")},
-              "measured points (CSV), as for report", true},
-             {"--vary", TextList{&request->vary, repeated},
-              "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it", true},
-             {"--map", Text{&request->map, a_file("*.yaml")},
-              "YAML file with the table's column names, units, signs and offsets"},
-             {"-o,--output", Text{&request->output, a_file("*.yaml")},
-              "write the scene with the fitted numbers; the old ones are in comments"},
-             set_option(request->settings),
-             jobs_option(request->running),
-             quiet_option(request->running),
-             json_option(request->as_json)},
-            [request](const std::string& line) {
-                return fit(*request, {.as_json = request->as_json, .command = line});
-            }};
+    return {
+        "fit",
+        "Fit numbers of a scene to measured curves, with 95 % intervals; gradients by differences "
+        "of the equilibrium leg",
+        {scene_option(request->scene),
+         {"--measured", Text{&request->measured, a_file("*.csv")},
+          "measured points (CSV), as for report", true},
+         {"--vary", TextList{&request->vary, repeated},
+          "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it", true},
+         {"--map", Text{&request->map, a_file("*.yaml")},
+          "YAML file with the table's column names, units, signs and offsets"},
+         {"-o,--output", Text{&request->output, a_file("*.yaml")},
+          "write the scene with the fitted numbers; the old ones are in comments"},
+         set_option(request->settings),
+         jobs_option(request->running),
+         quiet_option(request->running),
+         json_option(request->as_json)},
+        [request](const std::string& line) {
+            return fit(*request, {.as_json = request->as_json, .command = line});
+        }};
 }
 
 }  // namespace elastocheck::reports

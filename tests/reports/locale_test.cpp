@@ -89,6 +89,16 @@ const Line lines[] = {
     {"equilibria", "$E equilibria $SCENES/two_spring_arch.yaml --at -120.5 --turned 80.5"},
     {"sensitivity",
      "$E sensitivity $SCENES/pendulum.yaml --points 1 --most 0 --csv derivatives.csv --json"},
+    {"solve-for",
+     "$E solve-for $SCENES/parallel_springs.yaml --vary springs.first.rate=10.5:60.5 --want "
+     "centre_z@up:1500.5=419.5 -o new.yaml --quiet"},
+    {"fit",
+     "$E solve $SCENES/parallel_springs.yaml --steps 4 --channels centre_z -o rig.csv && $E fit "
+     "$SCENES/parallel_springs.yaml --measured rig.csv --vary springs.first.rate=10.5:60.5 --quiet "
+     "-o fitted.yaml"},
+    {"tolerances",
+     "echo 'springs.first.rate: {normal: {sd: 0.25}}' > t.yaml && $E tolerances "
+     "$SCENES/parallel_springs.yaml t.yaml --of centre_z@up:1500.5 --quiet"},
     {"completion", "$E completion bash; $E man"},
     // Errors are reported with line and number.
     {"inspect",
