@@ -45,7 +45,7 @@ bool matches(const std::string& pattern, const std::string& names) {
 
 // The positions of the names that match one of the patterns, in the order of the names. Throws
 // std::invalid_argument for a pattern without a match, with the nearest name.
-std::vector<std::size_t> matching(const char* option, const char* label,
+std::vector<std::size_t> matching(const char* option, const char* label, const char* labels,
                                   const std::vector<std::string>& names,
                                   const std::vector<std::string>& patterns) {
     std::vector<bool> chosen(names.size(), patterns.empty());
@@ -56,7 +56,7 @@ std::vector<std::size_t> matching(const char* option, const char* label,
         if (!fits)
             throw std::invalid_argument(fmt::format("{}: there is no {} {}{}", option, label,
                                                     reader::quote(pattern),
-                                                    reader::did_you_mean(pattern, names, label)));
+                                                    reader::did_you_mean(pattern, names, labels)));
     }
     std::vector<std::size_t> places;
     for (std::size_t k = 0; k < names.size(); ++k)
@@ -64,12 +64,14 @@ std::vector<std::size_t> matching(const char* option, const char* label,
     return places;
 }
 template <class Item, class Name>
-std::vector<Item> chosen(const char* option, const char* label, const std::vector<Item>& all,
-                         const std::vector<std::string>& patterns, const Name& name) {
+std::vector<Item> chosen(const char* option, const char* label, const char* labels,
+                         const std::vector<Item>& all, const std::vector<std::string>& patterns,
+                         const Name& name) {
     std::vector<std::string> names;
     for (const Item& item : all) names.push_back(name(item));
     std::vector<Item> list;
-    for (const std::size_t k : matching(option, label, names, patterns)) list.push_back(all[k]);
+    for (const std::size_t k : matching(option, label, labels, names, patterns))
+        list.push_back(all[k]);
     return list;
 }
 
@@ -82,12 +84,12 @@ int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
     auto outputs = compare::channels(model);
     if (request.of.empty())
         std::erase_if(outputs, [](const compare::Channel& c) { return !c.main; });
-    outputs = chosen("--of", "outputs", outputs, request.of,
+    outputs = chosen("--of", "output", "outputs", outputs, request.of,
                      [](const compare::Channel& c) { return c.name; });
     std::vector<ModelRate> rates = all_model_rates(request.scene, request.settings);
-    rates = chosen("--to", "numbers", std::move(rates), request.to,
+    rates = chosen("--to", "number", "numbers", std::move(rates), request.to,
                    [](const ModelRate& rate) { return rate.path; });
-    const auto branches = chosen("--branch", "branches", model.branches, request.branches,
+    const auto branches = chosen("--branch", "branch", "branches", model.branches, request.branches,
                                  [](const Branch& b) { return b.name; });
     std::vector<std::string> of_branches;
     std::vector<compare::VariedNumber> varied;

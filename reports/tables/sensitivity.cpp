@@ -18,6 +18,8 @@ using compare::Gradients;
 using compare::SideGradients;
 using Eigen::Index;
 
+constexpr double rounding = 1e-12;  // of the largest effect on an output
+
 double entry(const SideGradients& side, std::size_t station, std::size_t output,
              std::size_t number) {
     return side.legs.front().at[station](static_cast<Index>(output), static_cast<Index>(number));
@@ -123,9 +125,15 @@ std::string sensitivity_text(const Gradients& all, int most) {
                                                    symbol(side.unit), why));
                 if (size[k] == 0 && !std::isnan(start) && !std::isnan(end) && most > 0 && !first)
                     continue;
+                // a remainder of rounding is shown as zero
+                const double least = rounding * size[order.front()];
+                const auto shown = [&](double value) {
+                    return std::abs(value * number.step) <= least ? 0 : value;
+                };
                 table.rows.push_back(
-                    {first ? all.outputs[c].name : "", number.path, start, end,
-                     per(all.outputs[c], number), start * number.step, end * number.step,
+                    {first ? all.outputs[c].name : "", number.path, shown(start), shown(end),
+                     per(all.outputs[c], number), shown(start) * number.step,
+                     shown(end) * number.step,
                      fmt::format("{}, {}", number.step_name, symbol(all.outputs[c].unit))});
                 first = false;
             }
