@@ -172,8 +172,11 @@ VariedNumber varied_number(const ModelRate& rate, std::span<const Number> number
     const std::string first = rate.path.substr(0, rate.path.find(','));
     const auto found = std::ranges::find(numbers, first, &Number::path);
     const Number number = found == numbers.end() ? Number{} : *found;
-    VariedNumber varied{
-        .path = rate.path, .value = number.value, .unit = number.unit, .undefined = rate.undefined};
+    VariedNumber varied{.path = rate.path,
+                        .value = number.value,
+                        .unit = number.unit,
+                        .side = rate.side,
+                        .undefined = rate.undefined};
     const std::pair<const char*, double> millimetre[] = {
         {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};
     for (const auto& [unit, step] : millimetre)

@@ -27,6 +27,7 @@ struct VariedNumber {
     std::string unit = {};
     double step = 1;  // in its unit
     const char* step_name = "1 %";
+    int side = 0;  // 1, -1: at the end of its range; derivatives are those where it grows (falls)
     std::string undefined = {};  // reason why the model has no derivative by it
 };
 // Of the first where the rate is that of several numbers together.

@@ -269,6 +269,8 @@ inline ElementChange change_of(const Bushing& e, const Bushing& d, const Rest<do
 
 // ---- ∂/∂m of the right-hand side (-G, -Φ), G = f_elast + Φ_qᵀ λ - f_ext, at (q, λ) and a.
 
+inline constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
+
 struct NumberRates {
     Vector<double> upper, lower;
 };
@@ -339,8 +341,11 @@ inline NumberRates number_rates(const Model& model, const Branch& branch,
     }
     for_each_row_change(
         model, inputs, rate, input_rate, by,
-        [&](int k, std::size_t, const Row<double>& row, const Row<double>& change) {
-            sum.lower[k] = -change.Phi;
+        [&](int k, std::size_t c, const Row<double>& row, const Row<double>& change) {
+            // Points and lengths that change together keep a row closed: what is left is rounding.
+            const double size = change.s_i.norm() + change.s_j.norm() + change.u.norm() +
+                                std::abs(input_rate.offset[c]);
+            sum.lower[k] = std::abs(change.Phi) <= last_digits * size ? 0 : -change.Phi;
             const auto moment = [&](const Vector3<double>& s, const Vector3<double>& ds) {
                 return Vector3<double>(ds.cross(row.n) + s.cross(change.n) + change.u);
             };

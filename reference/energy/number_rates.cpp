@@ -362,10 +362,12 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
         const Vector12 y = end_motion(kind, d, chart);
         number.motion.push_back(y);
         Vector12& turned = number.turned.emplace_back(Vector12::Zero());
+        VectorXd size = VectorXd::Zero(rows(kind));
         if (!y.isZero(0)) {
             add_ends(part, mixed(part, y), number.b);
             add_ends(part, last_digits * (part.H.cwiseAbs() * y.cwiseAbs()), number.rounding);
             number.Phi_rate.segment(row, rows(kind)) += part.Phi_x.topRows(rows(kind)) * y;
+            size = part.Phi_x.topRows(rows(kind)).cwiseAbs() * y.cwiseAbs();
         }
         const double* value = driven_number(d);
         const double dvalue =
@@ -379,7 +381,12 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
             turned = transposed_times(rates.Phi_qa, at.lambda.segment(row, rows(kind)));
             add_ends(part, turned, number.b);
             number.Phi_rate.segment(row, rows(kind)) += rates.Phi_a;
+            size += rates.Phi_a.cwiseAbs();
         }
+        // Points and lengths that change together keep a row closed: what is left is rounding.
+        for (int n = 0; n < rows(kind); ++n)
+            if (std::abs(number.Phi_rate[row + n]) <= last_digits * size[n])
+                number.Phi_rate[row + n] = 0;
         row += rows(kind);
     }
     return number;

@@ -33,6 +33,12 @@ std::string missing(const SideGradients& side, std::size_t station, std::size_t 
     return std::isnan(value) ? "the output is undefined here" : "";
 }
 
+std::string named(const compare::VariedNumber& number) {
+    return number.path + (number.side > 0   ? " (increase only)"
+                          : number.side < 0 ? " (decrease only)"
+                                            : "");
+}
+
 std::string per(const compare::Channel& output, const compare::VariedNumber& number) {
     return fmt::format("{} per {}", symbol(output.unit), number.unit.empty() ? "1" : number.unit);
 }
@@ -131,7 +137,7 @@ std::string sensitivity_text(const Gradients& all, int most) {
                     return std::abs(value * number.step) <= least ? 0 : value;
                 };
                 table.rows.push_back(
-                    {first ? all.outputs[c].name : "", number.path, shown(start), shown(end),
+                    {first ? all.outputs[c].name : "", named(number), shown(start), shown(end),
                      per(all.outputs[c], number), shown(start) * number.step,
                      shown(end) * number.step,
                      fmt::format("{}, {}", number.step_name, symbol(all.outputs[c].unit))});
@@ -166,6 +172,7 @@ json sensitivity_json(const Gradients& all) {
                            {"value", number.value},
                            {"unit", number.unit},
                            {"step", number.step},
+                           {"side", number.side},
                            {"undefined", number.undefined}});
     for (const auto& side : all.sides) {
         json by = json::array();
