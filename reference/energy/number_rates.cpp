@@ -367,7 +367,7 @@ NumberRate number_rate(const Model& model, const Branch& branch, const Model& ra
             add_ends(part, mixed(part, y), number.b);
             add_ends(part, last_digits * (part.H.cwiseAbs() * y.cwiseAbs()), number.rounding);
             number.Phi_rate.segment(row, rows(kind)) += part.Phi_x.topRows(rows(kind)) * y;
-            size = part.Phi_x.topRows(rows(kind)).cwiseAbs() * y.cwiseAbs();
+            size = part.Phi_x.topRows(rows(kind)).rowwise().norm() * y.norm();
         }
         const double* value = driven_number(d);
         const double dvalue =
