@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "elastocheck/model.hpp"
@@ -45,7 +46,7 @@ void each_real_number(S& model, F&& f) {
                                   law);
                    }};
     for (auto& body : model.bodies) vector(body.design.r), quaternion(body.design.p);
-    if constexpr (requires { model.constraints; }) {
+    if constexpr (std::is_same_v<S, Model>) {
         for (auto& joint : model.joints) vector(joint.at.s_local);
         for (auto& constraint : model.constraints) each_member(constraint.kind, members);
     } else {
@@ -73,7 +74,7 @@ void each_real_number(S& model, F&& f) {
         Vehicle& v = *model.vehicle;
         f(v.wheelbase), f(v.cg_height), f(v.brake_share), f(v.drive_share);
     }
-    if constexpr (requires { model.trim; })
+    if constexpr (std::is_same_v<S, Scene>)
         if (model.trim) {
             for (auto& adjustment : model.trim->adjust) {
                 f(adjustment.per_unit);

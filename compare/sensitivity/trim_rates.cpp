@@ -9,6 +9,7 @@
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/rates.hpp"
 #include "models/branch.hpp"
+#include "models/kinds.hpp"
 #include "models/numbers.hpp"
 #include "models/overloaded.hpp"
 
@@ -45,9 +46,7 @@ Scene adjusted_rate(const Trim& trim, const Scene& rate, const VectorXd& x) {
     for (Index k = 0; k < x.size(); ++k) {
         const auto at = static_cast<std::size_t>(k);
         changes[k] = directions.adjust[at].per_unit * x[k];
-        turns[k] = std::holds_alternative<Preload>(trim.adjust[at].what)
-                       ? trim.adjust[at].per_unit * x[k]
-                       : 0;
+        turns[k] = preload(trim.adjust[at].what) != nullptr ? trim.adjust[at].per_unit * x[k] : 0;
     }
     return adding(adding(rate, trim, changes), directions, turns);
 }

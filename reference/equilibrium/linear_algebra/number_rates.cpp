@@ -236,25 +236,27 @@ NumberRate number_rate(const System& frozen, const Model& rate, double a, const 
 
     // The laws of bushings, and their undeformed state.
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
-        const auto* bushing = std::get_if<Bushing>(&model.elastics[e].kind);
-        if (bushing == nullptr) continue;
-        const auto& d = std::get<Bushing>(rate.elastics[e].kind);
-        ElementPath& path = system.elements[e];
-        path.rotational = path.rotational || resists_rotation(d.law);
-        const Vector6 at = deformations(system, e, 0., frame_of(system, x, bushing->i.body),
-                                        frame_of(system, x, bushing->j.body));
-        Vec6<Dual> moving_at = at.cast<Dual>();
-        for (int k = 0; k < 6; ++k) moving_at[k].v[0] = -d.undeformed[k];
-        const Vec6<Dual> answer = gradient(bushing->law, moving_at);
-        const Vector6 law = force_rate(bushing->law, d.law, at);
-        for (int k = 0; k < 6; ++k)
-            path.preload[static_cast<std::size_t>(k)].rate += answer[k].v[0] + law[k];
-        for (std::size_t k = 3; k < 6; ++k)
-            path.rotational = path.rotational || path.preload[k].rate != 0;
-        number.elements[e] =
-            number.elements[e] || std::ranges::any_of(path.preload, [](const Affine& preload) {
-                return preload.rate != 0;
-            });
+        const auto of_bushing = [&](const Bushing& bushing) {
+            const auto& d = std::get<Bushing>(rate.elastics[e].kind);
+            ElementPath& path = system.elements[e];
+            path.rotational = path.rotational || resists_rotation(d.law);
+            const Vector6 at = deformations(system, e, 0., frame_of(system, x, bushing.i.body),
+                                            frame_of(system, x, bushing.j.body));
+            Vec6<Dual> moving_at = at.cast<Dual>();
+            for (int k = 0; k < 6; ++k) moving_at[k].v[0] = -d.undeformed[k];
+            const Vec6<Dual> answer = gradient(bushing.law, moving_at);
+            const Vector6 law = force_rate(bushing.law, d.law, at);
+            for (int k = 0; k < 6; ++k)
+                path.preload[static_cast<std::size_t>(k)].rate += answer[k].v[0] + law[k];
+            for (std::size_t k = 3; k < 6; ++k)
+                path.rotational = path.rotational || path.preload[k].rate != 0;
+            number.elements[e] =
+                number.elements[e] || std::ranges::any_of(path.preload, [](const Affine& preload) {
+                    return preload.rate != 0;
+                });
+        };
+        // of springs: rate_of
+        std::visit(overloaded{of_bushing, [](const AxialSpring&) {}}, model.elastics[e].kind);
     }
     return number;
 }
@@ -322,26 +324,28 @@ VectorXd rate_of(const NumberRate& number, const VectorXd& x) {
     assemble<Dual>(system, a, Dual(0.), {}, Source{number, x, still}, sink);
     // The laws of springs.
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
-        const auto* spring = std::get_if<AxialSpring>(&model.elastics[e].kind);
-        if (spring == nullptr) continue;
-        const auto& d = std::get<AxialSpring>(number.rate->elastics[e].kind);
-        const Frame<double> i = frame_of(system, x, spring->i.body),
-                            j = frame_of(system, x, spring->j.body);
-        const double at = deformations(system, e, 0., i, j)[0];
-        AxialSpring without = *spring;
-        without.law = LinearRate{};
-        const auto on =
-            interaction(without, 0., force_rate(spring->law, d.law, at), by_itself, i, j);
-        const auto add = [&](BodyId body, const Frame<double>& frame,
-                             const Interaction<double>& action) {
-            if (body == ground) return;
-            const Vector3d moment =
-                action.moment + cross(Vector3d(action.at - frame.r), action.force);
-            sink.E_rate.segment<3>(6 * body) += action.force / system.force;
-            sink.E_rate.segment<3>(6 * body + 3) += moment / (system.force * system.length);
+        const auto of_spring = [&](const AxialSpring& spring) {
+            const auto& d = std::get<AxialSpring>(number.rate->elastics[e].kind);
+            const Frame<double> i = frame_of(system, x, spring.i.body),
+                                j = frame_of(system, x, spring.j.body);
+            const double at = deformations(system, e, 0., i, j)[0];
+            AxialSpring without = spring;
+            without.law = LinearRate{};
+            const auto on =
+                interaction(without, 0., force_rate(spring.law, d.law, at), by_itself, i, j);
+            const auto add = [&](BodyId body, const Frame<double>& frame,
+                                 const Interaction<double>& action) {
+                if (body == ground) return;
+                const Vector3d moment =
+                    action.moment + cross(Vector3d(action.at - frame.r), action.force);
+                sink.E_rate.segment<3>(6 * body) += action.force / system.force;
+                sink.E_rate.segment<3>(6 * body + 3) += moment / (system.force * system.length);
+            };
+            add(spring.i.body, i, on.i);
+            add(spring.j.body, j, on.j);
         };
-        add(spring->i.body, i, on.i);
-        add(spring->j.body, j, on.j);
+        // of bushings: their preload, number_rate()
+        std::visit(overloaded{of_spring, [](const Bushing&) {}}, model.elastics[e].kind);
     }
     return std::move(sink.E_rate);
 }
