@@ -238,11 +238,17 @@ Prescribed prescribed_rate(const Model& model, const Branch& branch, const Model
 void add_moved_loads(const Model& model, const Branch& branch, const Model& rate, double a,
                      const Chart& chart, VectorXd& b) {
     const auto add = [&](const LoadKind& load, const LoadKind& d, double factor) {
-        const auto* force = std::get_if<DeadForce>(&load);
-        if (force == nullptr || force->at.body == ground) return;
-        const BodyId body = force->at.body;
-        const Vector3d v = chart[body].A_c * std::get<DeadForce>(d).at.s_local;
-        b.segment<3>(6 * body + 3) -= v.cross(factor * force->f);
+        if (body_of(load) == ground) return;
+        std::visit(overloaded{[&](const DeadForce& force) {
+                                  const BodyId body = force.at.body;
+                                  const Vector3d v =
+                                      chart[body].A_c * std::get<DeadForce>(d).at.s_local;
+                                  b.segment<3>(6 * body + 3) -= v.cross(factor * force.f);
+                              },
+                              [](const DeadMoment&) {},
+                              // not conservative: not solved
+                              [](const FollowerForce&) {}, [](const FollowerMoment&) {}},
+                   load);
     };
     for (std::size_t k = 0; k < model.static_loads.size(); ++k)
         add(model.static_loads[k].kind, rate.static_loads[k].kind, 1);
