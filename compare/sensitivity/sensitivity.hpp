@@ -15,7 +15,7 @@
 #include "compare/sensitivity/trim_rates.hpp"
 #include "elastocheck/channels.hpp"
 #include "elastocheck/legs.hpp"
-#include "elastocheck/model_rates.hpp"
+#include "models/rates/model_rates.hpp"
 
 namespace elastocheck::compare {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "elastocheck/legs.hpp"
-#include "elastocheck/model_rates.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/rates/model_rates.hpp"
 #include "models/state_rate.hpp"
 
 namespace elastocheck::compare {

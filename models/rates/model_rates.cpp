@@ -1,4 +1,4 @@
-#include "elastocheck/model_rates.hpp"
+#include "models/rates/model_rates.hpp"
 
 #include <fmt/format.h>
 

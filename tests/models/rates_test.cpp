@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "elastocheck/compile.hpp"
-#include "elastocheck/model_rates.hpp"
 #include "models/rates/bridge.hpp"
 #include "models/rates/fields.hpp"
+#include "models/rates/model_rates.hpp"
 #include "tests/models/fixtures.hpp"
 
 namespace elastocheck {

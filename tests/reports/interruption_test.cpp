@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using support::says;
 
-const std::string scene = scenes + "/pinned_bar.yaml";
+const std::string pinned_bar = scenes + "/pinned_bar.yaml";
 const std::string command = "env -u CI -u GITHUB_STEP_SUMMARY " ELASTOCHECK_COMMAND " ";
 
 std::set<std::string> names_in(const fs::path& folder) {
@@ -95,7 +95,8 @@ TEST(Writers, RemoveTemporaryFilesOfEndedProcessesOnly) {
 TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
     const Folder made;
     ASSERT_EQ(
-        says(command + "compare " + scene + " --steps 10 -o " + (made.path / "c").string()).code,
+        says(command + "compare " + pinned_bar + " --steps 10 -o " + (made.path / "c").string())
+            .code,
         0);
     for (const std::string& what : std::vector<std::string>{
              "solve " + scenes + "/front_axle.yaml" + " --steps 200000 -o out.csv",
@@ -113,8 +114,9 @@ TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
 
 TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
     const Folder folder;
-    const Said said = says("cd " + folder.path.string() + " && env --default-signal " + command +
-                           "solve " + scene + " --steps 20000 --states states.jsonl | head -1");
+    const Said said =
+        says("cd " + folder.path.string() + " && env --default-signal " + command + "solve " +
+             pinned_bar + " --steps 20000 --states states.jsonl | head -1");
     EXPECT_TRUE(said.out.starts_with("branch,")) << said.out << said.err;
     EXPECT_TRUE(fs::is_empty(folder.path));
 }
@@ -123,7 +125,7 @@ TEST(Ended, ByAReaderThatHasReadEnoughLeavesNothingOfAFileThatIsBeingWritten) {
 
 TEST(Killed, AtAnyMomentTheGateLeavesTheOldBaselineOrTheNewOne) {
     const Folder folder;
-    const std::string plain = text_of(scene);
+    const std::string plain = text_of(pinned_bar);
     const std::string versions[] = {plain,
                                     std::regex_replace(plain, std::regex("to: [0-9.]+"), "to: 10")};
     ASSERT_NE(versions[0], versions[1]);
@@ -187,14 +189,15 @@ const std::vector<Writing> writings{
 // A folder with a scene, a result to draw, and the output of an earlier run.
 struct Place : Folder {
     Place() {
-        write("s.yaml", text_of(scene));
+        write("s.yaml", text_of(pinned_bar));
         EXPECT_EQ(says("cd " + path.string() + " && " + command +
                        "compare s.yaml -o c && mv c/result.json . && rm -r c")
                       .code,
                   0);
         for (const auto& w : writings) EXPECT_EQ(in(w.command).code & ~3, 0) << w.command;
         // The scene changes, so that the next output differs.
-        write("s.yaml", std::regex_replace(text_of(scene), std::regex("to: [0-9.]+"), "to: 10"));
+        write("s.yaml",
+              std::regex_replace(text_of(pinned_bar), std::regex("to: [0-9.]+"), "to: 10"));
     }
     // `before` is a shell command run first.
     Said in(const std::string& what, const std::string& before = "true") const {
@@ -224,8 +227,9 @@ TEST(FullDisk, OfAFileSystemToo) {
     const std::string mount = "mount -t tmpfs -o size=64k none " + folder.path.string();
     if (says("unshare -rm sh -c '" + mount + "'").code != 0)
         GTEST_SKIP() << "this user may not mount a file system of his own";
-    for (const std::string& what : std::vector<std::string>{
-             "compare " + scene + " -o out", "solve " + scene + " --steps 2000 -o out.csv"}) {
+    for (const std::string& what :
+         std::vector<std::string>{"compare " + pinned_bar + " -o out",
+                                  "solve " + pinned_bar + " --steps 2000 -o out.csv"}) {
         const Said said = says("unshare -rm sh -c '" + mount + " && cd " + folder.path.string() +
                                " && " + command + what + "; echo code $?; ls -A'");
         EXPECT_TRUE(said.out.ends_with("code 2\n")) << what << ": " << said.out << said.err;
@@ -235,9 +239,9 @@ TEST(FullDisk, OfAFileSystemToo) {
 
 TEST(ClosedFolder, IsSaidAndNothingIsLeftInIt) {
     for (const std::string& what :
-         std::vector<std::string>{"compare " + scene + " -o /proc/elastocheck",
-                                  "solve " + scene + " -o /proc/elastocheck.csv",
-                                  "gate " + scene + " --junit /proc/elastocheck.xml"})
+         std::vector<std::string>{"compare " + pinned_bar + " -o /proc/elastocheck",
+                                  "solve " + pinned_bar + " -o /proc/elastocheck.csv",
+                                  "gate " + pinned_bar + " --junit /proc/elastocheck.xml"})
         expect_said(says(command + what), 2, {.err = {"/proc/elastocheck"}});
     const Place place;
     // Root gives up the capability to bypass file permissions.

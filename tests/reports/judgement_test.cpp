@@ -99,7 +99,7 @@ TEST(Assessment, AnyOutputThatIsOffFailsThoughEveryPositionIsRight) {
 
 // Forces are judged by a tolerance in newtons or by a share of their extents, as given.
 TEST(Assessment, ForcesAreHeldToWhatIsAskedOfThem) {
-    using compare::Asks, compare::parse_tolerance;
+    using compare::parse_tolerance, compare::ToleranceParts;
     const auto verdict = [&](const char* text) {
         return compare::assess(mcpherson(), compared(),
                                parse_tolerance(text, ToleranceParts::with_forces))
