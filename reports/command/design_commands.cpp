@@ -19,7 +19,7 @@
 #include "reports/files/files.hpp"
 #include "reports/files/provenance.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/tables/design_tables.hpp"
+#include "reports/tables/studies/design_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {

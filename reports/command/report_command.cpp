@@ -39,8 +39,8 @@
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/stress_tables.hpp"
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/words.hpp"
 
 namespace elastocheck::reports {

@@ -17,7 +17,7 @@
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/sensitivity.hpp"
+#include "reports/tables/studies/sensitivity.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -21,7 +21,7 @@
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/stress_tables.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -35,7 +35,7 @@
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -12,7 +12,7 @@
 #include "reports/document/document.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace elastocheck::reports {

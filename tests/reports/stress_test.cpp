@@ -10,7 +10,7 @@
 #include "reports/extremes/extremes.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/report/report.hpp"
-#include "reports/tables/stress_tables.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
 

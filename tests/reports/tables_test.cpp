@@ -14,7 +14,7 @@
 #include "elastocheck/compile.hpp"
 #include "reports/page/common.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/numbers.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/support/scenes.hpp"

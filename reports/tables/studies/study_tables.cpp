@@ -1,4 +1,4 @@
-#include "reports/tables/study_tables.hpp"
+#include "reports/tables/studies/study_tables.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "reports/tables/sensitivity.hpp"
+#include "reports/tables/studies/sensitivity.hpp"
 
 #include <fmt/format.h>
 

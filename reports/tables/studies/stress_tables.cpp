@@ -1,4 +1,4 @@
-#include "reports/tables/stress_tables.hpp"
+#include "reports/tables/studies/stress_tables.hpp"
 
 #include <fmt/format.h>
 

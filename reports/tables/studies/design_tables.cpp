@@ -1,4 +1,4 @@
-#include "reports/tables/design_tables.hpp"
+#include "reports/tables/studies/design_tables.hpp"
 
 #include <fmt/format.h>
 
