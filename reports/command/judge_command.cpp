@@ -28,7 +28,8 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
     if (!request.candidate.wanted())
         throw std::invalid_argument(
             "judge: no candidate; give --candidate FILE or --candidate-command");
-    const auto tolerance = compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_forces);
+    const auto tolerance =
+        compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_forces);
     const bool given = request.tolerance != JudgeRequest{}.tolerance;
     check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);

@@ -168,9 +168,9 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     options.progress = progress;
     const int steps = options.recursion.steps;
     const bool given = !request.within.empty();
-    const auto tolerance = given
-                               ? compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces)
-                               : compare::default_tolerance;
+    const auto tolerance =
+        given ? compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces)
+              : compare::default_tolerance;
     check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded =
@@ -303,7 +303,8 @@ int trade(const TradeRequest& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Model& model = loaded.model;
     compare::TradeOptions options;
-    options.tolerance = compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
+    options.tolerance =
+        compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     options.threads = threads;
     options.progress = compare::part(progress, 0, 0.7);
     const compare::Trade trade = compare::trade(model, options);
