@@ -81,8 +81,8 @@ bool survey(const std::string& file) {
         apart = worse(apart, known.uncertainty);
         const auto published =
             walked(model, channels, branch, ways, recursive::Method{}, fine / points);
-        by_load = worse(by_load, distance(channels, known.truth, published));
-        by_travel = worse(by_travel, at_equal_travel(channels, known.truth, published));
+        by_load = worse(by_load, distance(channels, known.truth.curve, published));
+        by_travel = worse(by_travel, at_equal_travel(channels, known.truth.curve, published));
         for (auto& [name, error] : rungs) {
             const auto hundred =
                 sides_of(model, branch, coarse / 5 * static_cast<int>(ways.size()));
@@ -93,7 +93,7 @@ bool survey(const std::string& file) {
                                                  *recursive::find_method(name), 5))
                                      .mm);
         }
-        of_series = worse(of_series, distance(channels, known.truth,
+        of_series = worse(of_series, distance(channels, known.truth.curve,
                                               walked(model, channels, branch, ways, series, 1)));
         for (const auto& way : ways)
             expansions += recursive::series::follow(way.model, way.branch).expansions.size();
