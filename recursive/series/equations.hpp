@@ -119,7 +119,7 @@ struct BushingSeries {
     Vector4<Real> A_i_local = Vector4<Real>::Zero(),   // quaternions of the markers (x, y, z, w)
         A_j_local = Vector4<Real>::Zero();
     Driven<Vector6<Real>> preload;
-    bool rotational = true;  // whether there is a moment M' = ∂U/∂θ; else θ is not computed
+    bool rotational = false;  // whether there is a moment M' = ∂U/∂θ; else θ is not computed
     Arm<Real> i, j;
     Matrix3<Real> E_i;  // axes of marker i at τ = 0
     Eigen::Matrix<Real, 4, 4>
