@@ -9,6 +9,7 @@
 #include "compare/comparison/elements.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/readings.hpp"
+#include "compare/sensitivity/sensitivity.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
 #include "compare/studies/precision.hpp"
@@ -321,6 +322,29 @@ std::vector<TradeRow> trade_rows(const Trade& trade) {
                         count(p.work.evaluations), p.work.price, p.work.seconds, p.ratio, front,
                         p.not_ranked, trade.recommendation && trade.recommendation->point == k,
                         p.detail});
+    }
+    return rows;
+}
+
+std::vector<EffectRow> effect_rows(const Gradients& all) {
+    std::vector<EffectRow> rows;
+    for (std::size_t b = 0; b < all.sides.size(); ++b) {
+        const SideGradients& side = all.sides[b];
+        for (std::size_t s = 0; s < side.a.size(); ++s) {
+            if (b > 0 && side.a[s] == 0) continue;
+            for (std::size_t c = 0; c < all.outputs.size(); ++c)
+                for (std::size_t k = 0; k < all.numbers.size(); ++k) {
+                    const VariedNumber& number = all.numbers[k];
+                    const double rate = side.legs.front().at[s](static_cast<Eigen::Index>(c),
+                                                                static_cast<Eigen::Index>(k));
+                    const std::string& why =
+                        side.why_output[c].empty() ? side.why_number[s][k] : side.why_output[c];
+                    rows.push_back({side.branch, parameter_in(side.unit, side.a[s]),
+                                    symbol(side.unit), all.outputs[c].name,
+                                    symbol(all.outputs[c].unit), number.path, number.step_name,
+                                    why.empty() ? finite_or_nan(rate * number.step) : nan, why});
+                }
+        }
     }
     return rows;
 }

@@ -354,12 +354,33 @@ void describe(auto& field, Described<TradeRow> auto& r) {
     field("detail", r.detail, {"", "of the outcome"});
 }
 
+// Effect of a number of the scene on a figure, by the equilibrium leg.
+struct EffectRow {
+    std::string branch{};
+    double at = nan;
+    std::string parameter_unit{}, output{}, unit{}, number{}, step{};
+    double effect = nan;
+    std::string undefined{};
+};
+void describe(auto& field, Described<EffectRow> auto& r) {
+    field("branch", r.branch);
+    field("at", r.at, {"", "parameter of the branch"});
+    field("parameter unit", r.parameter_unit);
+    field("output", r.output);
+    field("unit", r.unit);
+    field("number", r.number, {"", "path in the scene file"});
+    field("step", r.step, {"", "1 mm of a length, else 1 % of the value"});
+    field("effect", r.effect, {"", "derivative of the output times the step"});
+    field("undefined", r.undefined, {"", "reason for a missing effect"});
+}
+
 struct BranchAttribution;
 struct BranchOrders;
 struct CertifyStudy;
 struct Channel;
 struct Comparison;
 struct FormulationStudy;
+struct Gradients;
 struct PrecisionStudy;
 struct Study;
 struct Trade;
@@ -381,6 +402,8 @@ std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders);
 std::vector<PrecisionRow> precision_rows(const PrecisionStudy& study);
 std::vector<FloorRow> floor_rows(const PrecisionStudy& study);
 std::vector<TradeRow> trade_rows(const Trade& trade);
+// Per side of a branch, station, output and number; the design position only of the first side.
+std::vector<EffectRow> effect_rows(const Gradients& all);
 Table certify_table(const CertifyStudy& study);  // per branch side and solver
 
 }  // namespace elastocheck::compare

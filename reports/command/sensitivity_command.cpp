@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 
 #include "compare/sensitivity/sensitivity.hpp"
@@ -12,6 +11,7 @@
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/gradients_of.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -92,22 +92,12 @@ int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
     const auto branches = chosen("--branch", "branch", "branches", model.branches, request.branches,
                                  [](const Branch& b) { return b.name; });
     std::vector<std::string> of_branches;
-    std::vector<compare::VariedNumber> varied;
-    for (const ModelRate& rate : rates)
-        varied.push_back(compare::varied_number(rate, loaded.scene.numbers));
     for (const Branch& branch : branches) of_branches.push_back(branch.name);
-    std::optional<compare::TrimRates> trim;
-    if (loaded.trim) {
-        trim = compare::trim_rates(read_scene(request.scene, request.settings),
-                                   {loaded.scene, loaded.trim}, rates);
-        rates = trim->numbers;
-    }
     const compare::Gradients all =
-        compare::gradients(model, outputs, varied, rates,
-                           {.points = request.points,
-                            .branches = of_branches,
-                            .trim = trim ? &*trim : nullptr,
-                            .progress = [](const std::string& what) { progress(what); }});
+        gradients_of(request.scene, request.settings, loaded, outputs, std::move(rates),
+                     {.points = request.points,
+                      .branches = of_branches,
+                      .progress = [](const std::string& what) { progress(what); }});
     progress("");
     if (!request.csv.empty()) write_whole(request.csv, csv(sensitivity_table(all)), gradients_file);
     delivery.print_text(sensitivity_text(all, request.most));

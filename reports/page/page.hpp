@@ -48,6 +48,7 @@ struct Series {
     // x, y; bars: x, y, x low, x high, y low, y high; face: corners of one area. An empty row is a
     // gap
     std::vector<std::vector<double>> rows{};
+    double opacity = 0.18;  // of a face
     // entries of the figure's legend that switch it; without a legend of the figure, its own title
     std::vector<std::size_t> keys{};
 };
@@ -98,7 +99,7 @@ struct FigureGroup {
 
 enum class Mark { none, pass, fail, open };  // verdict mark of a section
 
-enum class Part { first, behaviour, methods, evidence };  // of the page
+enum class Part { first, behaviour, methods, change, evidence };  // of the page
 
 struct Section {
     std::string id;  // also the name of its text template

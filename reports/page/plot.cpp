@@ -227,7 +227,7 @@ void draw_series(Svg& svg, const Series& series, At&& at, double top, double bot
     }
     flush();
     if (series.style == Style::face)
-        svg.area(lines, series.colour, 0.18);
+        svg.area(lines, series.colour, series.opacity);
     else if (series.style != Style::points && series.style != Style::rings)
         svg.stroke(lines, series.colour, line_width(series.style),
                    series.style == Style::dashed ? " stroke-dasharray=\"6,4\"" : "");

@@ -24,6 +24,7 @@ std::optional<Section> rates_section(const JsonCursor& scene);
 std::optional<Section> forces_section(const JsonCursor& scene);
 std::optional<Section> measured_section(const JsonCursor& scene);
 std::optional<Section> methods_section(const JsonCursor& scene);
+std::optional<Section> change_section(const JsonCursor& scene);
 std::optional<Section> deviation_section(const JsonCursor& scene);
 std::optional<Section> price_section(const JsonCursor& scene);
 std::optional<Section> convergence_section(const JsonCursor& scene);

@@ -341,17 +341,26 @@ void draw_suspension(Canvas& canvas, const Suspension& s) {
     for (const auto& symbol : s.symbols) draw_symbol(canvas, symbol);
     for (const auto& wheel : s.wheels)
         canvas.stroke(ring(canvas.on(s.points[wheel.patch].at), 2), Style::line, slate);
+    for (const auto& one : s.arrows) {
+        const PaperPoint from = canvas.on(one.at), to = canvas.on(one.to);
+        if (std::hypot(to.x - from.x, to.y - from.y) >= 4)
+            canvas.strokes(arrow(from, to), Style::line, purple);
+    }
 }
 
-// Names of the hardpoints, one for a place shared by several bodies.
+// Names of the arrows or, without any, of the hardpoints, one for a place shared by several bodies.
 void draw_names(Canvas& canvas, const Suspension& s) {
     std::vector<std::string> names;
     std::vector<Label> labels;
-    for (const auto& p : s.points) {
-        if (!p.hardpoint || std::ranges::find(names, p.name) != names.end()) continue;
-        names.push_back(p.name);
-        labels.push_back({canvas.on(p.at), text_width(as_words(p.name), letter), line_height});
-    }
+    const auto add = [&](const std::string& name, const Position& at) {
+        if (std::ranges::find(names, name) != names.end()) return;
+        names.push_back(name);
+        labels.push_back({canvas.on(at), text_width(as_words(name), letter), line_height});
+    };
+    for (const auto& one : s.arrows) add(one.name, one.to);
+    if (s.arrows.empty())
+        for (const auto& p : s.points)
+            if (p.hardpoint) add(p.name, p.at);
     const auto placed = place_labels(labels, canvas.paper);
     for (std::size_t k = 0; k < labels.size(); ++k) {
         if (!placed[k]) continue;

@@ -36,12 +36,17 @@ struct Suspension {
         std::vector<Position> points{};
         std::vector<std::vector<Position>> wheels{};  // rims
     };
+    struct Arrow {  // at a point, with a name at its end
+        Position at{}, to{};
+        std::string name{};
+    };
     std::vector<Point> points{};
     std::vector<Link> links{};
     std::vector<std::vector<std::size_t>> faces{};
     std::vector<Symbol> symbols{};
     std::vector<Wheel> wheels{};
     std::vector<Moved> moved{};
+    std::vector<Arrow> arrows{};  // where there are any, the points have no names
 };
 
 struct View {

@@ -9,9 +9,11 @@
 #include <regex>
 #include <set>
 
+#include "compare/tables/rows.hpp"
 #include "reports/files/templates.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
+#include "reports/tables/render.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
 
@@ -84,6 +86,66 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
                 EXPECT_FALSE(figure.series.empty()) << figure.id;
             }
         }
+}
+
+// Bars, arrows and map of handmade effects of two hardpoints and six rates on one figure.
+TEST(Sections, EffectsOfNumbersAreBarsArrowsAndAMap) {
+    json result = sample_result();
+    std::vector<std::string> names;
+    for (const auto& point : result["scenes"][0]["drawing"]["points"])
+        if (point["hardpoint"] == true && (names.empty() || names[0] != point["name"]))
+            if (names.size() < 2) names.push_back(point["name"]);
+    ASSERT_EQ(names.size(), 2u);
+    std::vector<compare::EffectRow> rows;
+    const auto add = [&](const std::string& number, const char* step, double effect) {
+        rows.push_back({"travel", 0, "mm", "left.bump_steer", "deg/m", number, step, effect, ""});
+    };
+    add("points." + names[0] + ".x", "1 mm", 0.3);
+    add("points." + names[0] + ".z", "1 mm", -0.4);
+    add("points." + names[1] + ".y", "1 mm", 0.05);
+    for (int k = 0; k < 6; ++k) add(fmt::format("springs.s{}.rate", k), "1 %", 0.01 * (k + 1));
+    rows.push_back({"travel", 0, "mm", "left.bump_steer", "deg/m", "springs.s7.rate", "1 %",
+                    compare::nan, "corner of a law"});
+    const auto section_with = [&](bool conclusive) {
+        result["scenes"][0]["sensitivity"] = {{"conclusive", conclusive},
+                                              {"compared", 10},
+                                              {"apart", 1e-12},
+                                              {"effects", table_json(rows)}};
+        result = json::parse(result.dump());
+        for (auto& section : sections(result))
+            if (section.id == "change") return section;
+        ADD_FAILURE() << "no section";
+        return Section{};
+    };
+    const Section section = section_with(true);
+    EXPECT_EQ(section.part, Part::change);
+    EXPECT_EQ(section.mark, Mark::none);
+
+    const Figure bars = figure(result, "change-left-bump-steer");
+    ASSERT_EQ(bars.series.size(), 1u);
+    ASSERT_EQ(bars.series[0].rows.size(), 5u);
+    EXPECT_EQ(bars.y_ticks[0].second, as_words(names[0]) + " z");
+    EXPECT_EQ(bars.y_ticks[2].second, "s5 rate (1 %)");
+    EXPECT_EQ(bars.series[0].rows[0][2], -0.4) << "a negative effect is a bar to the left";
+    EXPECT_EQ(bars.series[0].rows[0][3], 0);
+
+    // along the gradient (0.3, 0, -0.4), of size 0.5
+    const auto& arrows = section.figures[0].table;
+    EXPECT_EQ(arrows.rows[0],
+              (std::vector<std::string>{as_words(names[0]), "+0.300", "0", "−0.400", "0.500"}));
+    const auto words = figure(result, "change-view-front").words;
+    EXPECT_EQ(std::ranges::count(words, as_words(names[0]) + " 0.50", &Word::text), 1);
+    EXPECT_EQ(std::ranges::count(words, as_words(names[1]), &Word::text), 0)
+        << "the names of the points give way to those of the arrows";
+
+    const auto& map = section.figures.back();
+    EXPECT_EQ(map.table.columns[1].name, "left bump steer [deg/m]");
+    EXPECT_EQ(map.table.rows[0], (std::vector<std::string>{as_words(names[0]), "0.500"}));
+    EXPECT_EQ(map.figures[0].series.size(), 2u);
+    EXPECT_NEAR(map.figures[0].series[1].opacity, 0.1 * map.figures[0].series[0].opacity, 1e-12);
+
+    EXPECT_EQ(section_with(false).mark, Mark::open);
+    expect_parts(said(result, "change"), {"not confirmed"});
 }
 
 TEST(Sections, PartsThatWereNotComputedAreLeftOut) {

@@ -145,6 +145,7 @@ struct Page {
         constexpr Heading headings[] = {{Part::first, ""},
                                         {Part::behaviour, "Part 1: Kinematics and compliance"},
                                         {Part::methods, ""},
+                                        {Part::change, "What should I change?"},
                                         {Part::evidence, "Part 2: Evidence"}};
         json parts = json::array();
         std::size_t plot = 0;
@@ -161,7 +162,7 @@ struct Page {
             parts.push_back({{"title", title},
                              {"named", named},
                              {"id", named ? unique(part.id + "-" + slug(title)) : std::string()},
-                             {"folded", which == Part::evidence},
+                             {"folded", which == Part::change || which == Part::evidence},
                              {"sections", sections}});
         }
         return {{"id", part.id},
