@@ -9,6 +9,7 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/readings.hpp"
@@ -111,9 +112,11 @@ struct Requested {  // points of the candidate on one branch
     std::vector<double> load;  // load requested from the reference [SI]; NaN beyond its range
 };
 
-// Compares candidate and reference column by column.
+// Compares candidate and reference column by column. The reference's rows hold the columns, then
+// `defined` other definitions.
 CandidateReading compared(const Requested& requested, const std::vector<PointColumn>& columns,
-                          Reference& reference, const BranchComparison& branch) {
+                          std::size_t defined, Reference& reference,
+                          const BranchComparison& branch) {
     CandidateReading reading;
     std::vector<const std::vector<double>*> rows;
     std::vector<std::size_t> points;
@@ -146,13 +149,17 @@ CandidateReading compared(const Requested& requested, const std::vector<PointCol
         reading.candidate.push_back(std::move(all_mine));
         reading.truth.push_back(std::move(all_truth));
     }
+    for (std::size_t d = 0; d < defined; ++d) {
+        auto& values = reading.defined.emplace_back();
+        for (const auto* row : rows) values.push_back((*row)[columns.size() + d]);
+    }
     return reading;
 }
 
 CandidateReading at_equal_parameter(const std::vector<std::size_t>& points,
                                     const Candidate& candidate,
-                                    const std::vector<PointColumn>& columns, Reference& reference,
-                                    const BranchComparison& branch) {
+                                    const std::vector<PointColumn>& columns, std::size_t defined,
+                                    Reference& reference, const BranchComparison& branch) {
     CandidateReading none;
     if (candidate.points.a.empty()) {
         none.not_compared = fmt::format("it says no {}", parameter_word(symbol(branch.unit)));
@@ -164,7 +171,7 @@ CandidateReading at_equal_parameter(const std::vector<std::size_t>& points,
         requested.load.push_back(reference.placed(candidate.points.a[k] / in_unit(branch.unit)));
     }
     reference.visit(requested.load);
-    return compared(requested, columns, reference, branch);
+    return compared(requested, columns, defined, reference, branch);
 }
 
 // Abscissa values of the candidate's points, or null.
@@ -179,7 +186,7 @@ const std::vector<double>* abscissa_of(const Candidate& candidate,
 
 CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
                                    const Candidate& candidate,
-                                   const std::vector<PointColumn>& columns,
+                                   const std::vector<PointColumn>& columns, std::size_t defined,
                                    const std::vector<Channel>& channels, Reference& reference,
                                    const BranchComparison& branch) {
     CandidateReading reading;
@@ -249,7 +256,7 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
     for (std::size_t k = 0; k < points.size(); ++k)
         if (!(std::abs(travel(requested.load[k]) - requested.x[k]) <= rounding))
             requested.load[k] = nan;
-    return compared(requested, columns, reference, branch);
+    return compared(requested, columns, defined, reference, branch);
 }
 
 // ---- Missing parts.
@@ -411,6 +418,22 @@ Beside beside(const CandidateJudgement& judgement, const Comparison& comparison,
         b.others.push_back(std::move(values));
         b.other_channels.push_back(channel);
     }
+    for (std::size_t d = 0; d < judgement.defined.size(); ++d) {
+        if (definitions_of(std::span(&judgement.defined[d], 1), comparison.channels[b.channel].name)
+                .empty())
+            continue;
+        std::vector<double> values;
+        for (const auto& branch : judgement.branches) {
+            const auto& reading = branch.equal_parameter.columns.empty() ? branch.equal_abscissa
+                                                                         : branch.equal_parameter;
+            if (reading.columns.empty()) continue;
+            for (std::size_t k = 0; k < reading.at.size(); ++k)
+                if (std::isfinite(reading.candidate[c][k]) && std::isfinite(reading.truth[c][k]))
+                    values.push_back(reading.defined[d][k]);
+        }
+        b.definitions.push_back(std::move(values));
+        b.definition_names.push_back(judgement.defined[d].name);
+    }
     return b;
 }
 
@@ -434,6 +457,12 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                                 std::isfinite(limit_of(channel, 1, tolerance)));
         result.others += result.judged.back() && !is_motion(channel);
     }
+    for (const Channel& defined : definition_channels(model))
+        if (std::ranges::any_of(result.columns, [&](const PointColumn& column) {
+                return !definitions_of(std::span(&defined, 1), channels[column.channel].name)
+                            .empty();
+            }))
+            result.defined.push_back(defined);
     for (std::size_t c = 0; c < channels.size(); ++c)
         result.has_forces =
             result.has_forces || (!channels[c].joints().empty() &&
@@ -480,12 +509,13 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         }
         std::vector<Channel> outputs;
         for (const auto& column : result.columns) outputs.push_back(channels[column.channel]);
+        outputs.insert(outputs.end(), result.defined.begin(), result.defined.end());
         if (of.abscissa >= 0) outputs.push_back(channels[static_cast<std::size_t>(of.abscissa)]);
         Reference reference(model, model.branches[b], of.steps, outputs);
-        given.equal_parameter =
-            at_equal_parameter(points, candidate, result.columns, reference, of);
-        given.equal_abscissa =
-            at_equal_abscissa(points, candidate, result.columns, channels, reference, of);
+        given.equal_parameter = at_equal_parameter(points, candidate, result.columns,
+                                                   result.defined.size(), reference, of);
+        given.equal_abscissa = at_equal_abscissa(points, candidate, result.columns,
+                                                 result.defined.size(), channels, reference, of);
         add_missing_parts(model.branches[b], of, given, result, channels, result.not_given);
         result.outside += std::max(given.equal_parameter.outside, given.equal_abscissa.outside);
         result.branches.push_back(std::move(given));

@@ -36,6 +36,9 @@ struct Beside {
     // reference values of each other channel of the same unit
     std::vector<std::vector<double>> others;
     std::vector<std::size_t> other_channels;
+    // reference values of the column's figure by other definitions, and their names
+    std::vector<std::vector<double>> definitions;
+    std::vector<std::string> definition_names;
 };
 std::optional<Explanation> explain(const Beside& beside);
 

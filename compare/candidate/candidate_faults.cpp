@@ -5,12 +5,14 @@
 //
 //   v = -r     v = r + c     v = f r     v = r_0 + f (r - r_0)     v = -r + c     v = f r + c
 //   v = ± another output
+//   v = f d + c, d the figure by another definition, f a sign or a unit; all that apply
 //
 // with f a unit factor, or fitted; c the mean of the remaining difference; r_0 the value at the
 // start of the branch. Right means: at most a twentieth of the deviation remains, and at most the
 // tolerance or a thousandth of the range of the reference. If none applies, the column may be right
 // up to a point.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -33,6 +35,9 @@ constexpr double right_so_far = 1e-3;  // of the largest deviation beyond
 // of that, a tenth of the branch further on: a deviation that grows as a power up to the sixth is
 // below a hundredth there, and was never right
 constexpr double at_once = 0.03;
+// a definition takes the place of a simpler explanation where it leaves a hundredth of what that
+// leaves, and that is more than rounding
+constexpr double much_better = 0.01, rounding_of_range = 1e-6;
 
 struct Written {
     double factor;
@@ -130,6 +135,50 @@ std::optional<Explanation> wrong_from(const Beside& b) {
     return std::nullopt;
 }
 
+// All other definitions of the figure that make the column right, within `allowed`, each by the
+// simplest transformation that does.
+std::optional<Explanation> by_definitions(const Beside& b, double allowed) {
+    struct Fit {
+        std::string name;
+        double left = 0;
+    };
+    std::vector<Fit> fits;
+    const Values& v = b.candidate;
+    for (std::size_t d = 0; d < b.definitions.size(); ++d) {
+        const Values& r = b.definitions[d];
+        const std::string& name = b.definition_names[d];
+        if (r.size() != v.size() ||
+            !std::ranges::all_of(r, [](double x) { return std::isfinite(x); }))
+            continue;
+        std::optional<Fit> fit;
+        const auto try_it = [&](const std::string& as, const Values& reading) {
+            if (const double left = off(v, reading); !fit && left <= allowed) fit = Fit{as, left};
+        };
+        for (const bool with_offset : {false, true})
+            for (const double sign : {1., -1.})
+                for (std::size_t u = 0; u <= units.size(); ++u) {
+                    const double factor = sign * (u == 0 ? 1 : units[u - 1].factor);
+                    Values reading = times(factor, r);
+                    const double offset = with_offset ? mean(less(v, reading)) : 0;
+                    if (with_offset) reading = plus(std::move(reading), offset);
+                    try_it(name +
+                               (u > 0      ? fmt::format(" taken {:.6g} times ({})", factor,
+                                                         units[u - 1].word)
+                                : sign < 0 ? " with its sign turned"
+                                           : "") +
+                               (with_offset ? fmt::format(", {:.6g} taken off", offset) : ""),
+                           reading);
+                }
+        if (fit) fits.push_back(*fit);
+    }
+    if (fits.empty()) return std::nullopt;
+    std::ranges::stable_sort(fits, {}, &Fit::left);
+    Explanation found{
+        .kind = Kind::definition, .column = b.column, .definitions = {}, .left = fits.back().left};
+    for (const Fit& fit : fits) found.definitions.push_back(fit.name);
+    return found;
+}
+
 }  // namespace
 
 std::optional<Explanation> explain(const Beside& b) {
@@ -183,6 +232,9 @@ std::optional<Explanation> explain(const Beside& b) {
                          .factor = sign * unit.factor,
                          .unit_word = unit.word},
                         times(sign * unit.factor, r));
+    if (!found || found->left > rounding_of_range * movement)
+        if (const auto other = by_definitions(b, found ? much_better * found->left : allowed))
+            found = other;
     if (!found) found = wrong_from(b);
     return found;
 }
@@ -224,6 +276,9 @@ std::string describe(const Explanation& e, const Comparison& comparison, const P
                                e.left, unit, other,
                                e.kind == Kind::other_turned ? ", its sign turned" : "");
         }
+        case Kind::definition:
+            return fmt::format("{} by another definition: {}", agrees,
+                               fmt::join(e.definitions, ", or "));
         case Kind::from_there_on: {
             const auto& branch = comparison.branch(e.branch);
             return fmt::format(

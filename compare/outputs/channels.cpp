@@ -242,6 +242,11 @@ template <class S>
 S read(const Configuration<S>&, const Characteristic&, const Characteristic&) {
     return std::nan("");
 }
+template <class S>
+S read(const Configuration<S>& at, const Defined& c, const Defined&) {
+    if constexpr (std::is_same_v<S, double>) return c.value(at.model, c.wheel, at.state);
+    return std::nan("");
+}
 
 // ---- Units, in the order of Unit.
 
@@ -517,7 +522,7 @@ ChannelKind Channel::kind() const {
 
 bool Channel::may_be_undefined() const {
     return !undefined.empty() || std::holds_alternative<Steering>(reads) ||
-           std::holds_alternative<Ackermann>(reads);
+           std::holds_alternative<Ackermann>(reads) || std::holds_alternative<Defined>(reads);
 }
 
 std::vector<int> Channel::joints() const {

@@ -141,6 +141,32 @@ void describe(auto& field, Described<FormulationRow> auto& r) {
           {"", "of the recursion from the equilibrium leg at equal parameter, at most", three});
 }
 
+// A figure by another definition, beside the deviation of the recursion from the equilibrium leg.
+struct DefinitionRow {
+    std::string branch{}, output{}, unit{};
+    double difference = nan, at = nan;
+    std::string parameter_unit{};
+    double drawn = nan, deviation = nan;
+    std::string formula{};
+};
+void describe(auto& field, Described<DefinitionRow> auto& r) {
+    using enum Digits;
+    field("branch", r.branch, {"", "", words});
+    field("output", r.output, {"", "the figure, and its other definition after @", words});
+    field("unit", r.unit, {"", "", words});
+    field("difference", r.difference,
+          {"", "from the figure as defined here, by the equilibrium leg, largest over the branch",
+           three});
+    field("at", r.at, {"", "parameter there", given});
+    field("parameter unit", r.parameter_unit, {"", "", words, "unit"});
+    field("drawn", r.drawn, {"", "difference in the design position", three});
+    field(
+        "deviation", r.deviation,
+        {"", "of the recursion from the equilibrium leg in the figure, at equal parameter, at most",
+         three});
+    field("formula", r.formula, {"", "of the other definition"});
+}
+
 // A method and output over a side of a branch, by one reading.
 struct StudyRow {
     std::string branch{}, method{}, reading{}, output{}, unit{}, behaviour{};
@@ -394,6 +420,8 @@ std::vector<ForceRow> force_rows(const Model& model, const Comparison& compariso
 std::vector<LargestForceRow> largest_force_rows(const Comparison& comparison);
 std::vector<FormulationRow> formulation_rows(const FormulationStudy& study,
                                              const Comparison& comparison);
+// Solves the branches of the comparison again.
+std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison& comparison);
 std::vector<StudyRow> study_rows(const Study& study);
 std::vector<StepRow> step_rows(const Study& study);
 std::vector<GapRow> gap_rows(const std::vector<Channel>& main,

@@ -70,6 +70,7 @@ struct Explanation {
         factor_and_offset,
         other_output,   // v = the reference's other output
         other_turned,   // v = - the reference's other output
+        definition,     // v = f d + c, d the figure by another definition, f a sign or a unit
         from_there_on,  // right up to a point of a branch, wrong beyond
         still,          // constant where the reference moves
     } kind = Kind::offset;
@@ -77,10 +78,13 @@ struct Explanation {
     double factor = 1, offset = 0;  // offset in the channel's unit
     std::string unit_word = {};     // unit confusion that gives this factor: "radians for degrees"
     std::size_t other = 0;          // channel of the other output
-    std::string branch = {};        // from_there_on
-    double at = 0;                  // last right point on that branch, in its unit
-    double left = 0;                // largest deviation that remains, in the channel's unit
-    bool mutual = false;            // other_output: the two columns are exchanged
+    // definitions that make it right, the best first, with what is done to them: "camber@kingpin",
+    // "camber@lateral with its sign turned"
+    std::vector<std::string> definitions = {};
+    std::string branch = {};  // from_there_on
+    double at = 0;            // last right point on that branch, in its unit
+    double left = 0;          // largest deviation that remains, in the channel's unit
+    bool mutual = false;      // other_output: the two columns are exchanged
 };
 
 // ---- The judgement.
@@ -92,6 +96,8 @@ struct CandidateReading {
     std::vector<Deviation> columns;
     std::vector<double> at;                             // per compared point: parameter or travel
     std::vector<std::vector<double>> candidate, truth;  // [column][point]; NaN without a value
+    // [definition][point]: CandidateJudgement::defined of the reference
+    std::vector<std::vector<double>> defined;
 };
 
 struct CandidateBranch {
@@ -121,6 +127,7 @@ struct CandidateJudgement {
     std::vector<std::string> not_given;     // missing branches, parts of branches or of columns
     std::vector<PointColumn> columns;       // as absolute values, not changes
     std::vector<bool> judged;               // per column: it counts for the verdict
+    std::vector<Channel> defined;           // its columns' figures by other definitions
     std::vector<CandidateBranch> branches;  // those that it has points on
     // Worst judged deviation, one entry each as far as they exist: mm, deg, N and N·m where these
     // have a limit of their own, and one for all outputs whose limit is a share of their extent.

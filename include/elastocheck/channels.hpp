@@ -154,8 +154,14 @@ struct Characteristic {
     std::size_t entry = 0;  // position in the list of characteristics
     std::size_t of = 0;     // index of the wheel, spring or damper
 };
+// A figure of a wheel by another definition (compare/definitions); it has no derivatives.
+struct Defined {
+    static constexpr ChannelKind kind = ChannelKind::motion;
+    double (*value)(const Model& model, std::size_t wheel, const Equilibrium& state) = nullptr;
+    std::size_t wheel = 0;
+};
 using Reads = std::variant<Coordinate, Toe, Camber, Steering, Track, Ackermann, Compression, Effort,
-                           Reaction, Total, OfElement, AxialForce, Characteristic>;
+                           Reaction, Total, OfElement, AxialForce, Characteristic, Defined>;
 
 // Value of an output that is undefined, for example the length of an arm whose end is at infinity.
 // NaN means a failure.

@@ -10,6 +10,7 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
@@ -125,6 +126,7 @@ std::vector<Channel> requested_channels(const Model& model,
     if (patterns.empty()) return all;
     std::ranges::move(compare::characteristics(model), std::back_inserter(all));
     std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
     return chosen(all, patterns);
 }
 

@@ -52,6 +52,7 @@ struct CompareRequest : SceneRequest {
     std::string within;          // tolerance of the verdict; empty: the default
     CandidateRequest candidate;  // external solver, beside the legs
     bool formulations = false;   // adds the spread over bushing formulations
+    bool definitions = false;    // adds the figures by other definitions
 };
 struct ConvergeRequest : SceneRequest {
     std::vector<std::string> methods{"published"};
@@ -186,8 +187,11 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     if (request.formulations)
         study = compare::formulation_study(loaded.scene, steps, request.every, options.threads,
                                            progress);
+    const auto defined = request.definitions ? compare::definition_rows(model, comparison)
+                                             : std::vector<compare::DefinitionRow>{};
     progress("");
     delivery.print_text(tables(model, comparison));
+    if (request.definitions) delivery.print_text(definition_text(defined));
     if (study) delivery.print_text(formulation_text(*study, comparison));
     auto judgement = compare::assess(model, comparison, tolerance, given);
     judgement.requested = given || named;
@@ -208,6 +212,10 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
             files.push_back({"formulations.csv", csv(formulation_rows(*study, comparison))});
             for (const auto& reason : study->inconclusive)
                 reasons.push_back("formulations: " + reason);
+        }
+        if (request.definitions) {
+            part["definitions"] = table_json(defined);
+            files.push_back({"definitions.csv", csv(defined)});
         }
         add_verdict(part, comparison.compared, reasons);
         part["judgement"] = judgement_json(judgement);
@@ -353,6 +361,8 @@ Command compare_command() {
     options.push_back(keep_all_option(given->keep_all));
     options.push_back({"--formulations", Flag{&given->formulations},
                        "add the spread of the outputs over the bushing formulations of tools"});
+    options.push_back({"--definitions", Flag{&given->definitions},
+                       "add the figures by other definitions, of standards and tools"});
     options.push_back({"--within", Text{&given->within},
                        "give a verdict by this accuracy: mm, deg, N, Nm, and % of the extent of "
                        "forces, moments and rates (with --method: 0.01mm,0.001deg,1%)"});

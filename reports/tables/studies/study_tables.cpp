@@ -291,6 +291,16 @@ json precision_json(const compare::PrecisionStudy& study) {
             {"floors", table_json(floor_rows(study))}};
 }
 
+std::string definition_text(const std::vector<compare::DefinitionRow>& rows) {
+    if (rows.empty()) return "\nno figure of this scene has another definition\n";
+    std::string all;
+    for (const auto& branch : distinct(rows, &compare::DefinitionRow::branch))
+        all += fmt::format("\nbranch '{}': figures by other definitions less as defined here\n{}",
+                           branch, text(where(rows, &compare::DefinitionRow::branch, branch)));
+    return all +
+           "\nA correct tool with another definition differs from this one by the difference.\n";
+}
+
 // ---- Formulations of bushings
 
 std::string formulation_text(const compare::FormulationStudy& study,

@@ -34,6 +34,9 @@ nlohmann::ordered_json trade_json(const compare::Trade& trade);
 std::string precision_text(const compare::PrecisionStudy& study);
 nlohmann::ordered_json precision_json(const compare::PrecisionStudy& study);
 
+// Differences of the figures by other definitions.
+std::string definition_text(const std::vector<compare::DefinitionRow>& rows);
+
 // Spread of the outputs over the bushing formulations; `comparison` is of the same scene.
 std::string formulation_text(const compare::FormulationStudy& study,
                              const compare::Comparison& comparison);

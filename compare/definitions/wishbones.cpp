@@ -1,0 +1,87 @@
+#include "compare/definitions/wishbones.hpp"
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "compare/outputs/positions.hpp"
+#include "models/kinds.hpp"
+#include "models/overloaded.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+// Points at which a body is held to another, in ground axes.
+std::vector<Vector3d> points_between(const Model& model, BodyId body, BodyId other,
+                                     const std::vector<Pose>& poses) {
+    std::vector<Vector3d> points;
+    for (const Constraint& constraint : model.constraints)
+        std::visit(overloaded{[&](const CoincidentPoints& c) {
+                                  if ((c.i.body == body && c.j.body == other) ||
+                                      (c.i.body == other && c.j.body == body))
+                                      points.push_back(position(poses, c.i));
+                              },
+                              [](const auto&) {}},
+                   constraint.kind);
+    for (const auto& elastic : model.elastics)
+        std::visit(overloaded{[&](const Bushing& b) {
+                                  if ((b.i.body == body && b.j.body == other) ||
+                                      (b.i.body == other && b.j.body == body))
+                                      points.push_back(position(poses, b.i.body, b.i.s_local));
+                              },
+                              [](const auto&) {}},
+                   elastic.kind);
+    return points;
+}
+
+// The axis of a joint that two of its constraints keep perpendicular to two directions.
+std::optional<Vector3d> axis_between(const Model& model, BodyId body, BodyId other,
+                                     const std::vector<Pose>& poses) {
+    std::optional<Vector3d> axis;
+    std::optional<PerpendicularDirections> first;
+    int of_first = -1;
+    const auto in_ground = [&](const Direction& d) -> Vector3d {
+        return compare::pose(poses, d.body).p * d.u_local;
+    };
+    for (const Constraint& constraint : model.constraints)
+        std::visit(overloaded{[&](const PerpendicularDirections& c) {
+                                  if (!((c.i.body == body && c.j.body == other) ||
+                                        (c.i.body == other && c.j.body == body)))
+                                      return;
+                                  if (of_first == constraint.joint && first) {
+                                      if (c.i.u_local == first->i.u_local) axis = in_ground(c.i);
+                                      if (c.j.u_local == first->j.u_local) axis = in_ground(c.j);
+                                  }
+                                  first = c, of_first = constraint.joint;
+                              },
+                              [](const auto&) {}},
+                   constraint.kind);
+    return axis;
+}
+
+}  // namespace
+
+std::vector<Plane> wishbone_planes(const Model& model, BodyId wheel,
+                                   const std::vector<Pose>& poses) {
+    std::vector<Plane> planes;
+    for (BodyId arm = 0; arm < static_cast<BodyId>(model.bodies.size()); ++arm) {
+        if (arm == wheel) continue;
+        const auto outer = points_between(model, arm, wheel, poses),
+                   inner = points_between(model, arm, ground, poses);
+        if (outer.size() != 1 || inner.empty()) continue;
+        Vector3d line;
+        if (inner.size() == 2)
+            line = inner[1] - inner[0];
+        else if (const auto axis = axis_between(model, arm, ground, poses); axis)
+            line = *axis;
+        else
+            continue;
+        const Vector3d normal = line.cross(outer[0] - inner[0]);
+        if (!(normal.norm() > 1e-9 * line.norm())) continue;
+        planes.push_back({normal.normalized(), normal.normalized().dot(inner[0])});
+    }
+    return planes;
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,48 @@
+#include <cmath>
+
+#include "compare/comparison/legs.hpp"
+#include "compare/definitions/definitions.hpp"
+#include "compare/tables/rows.hpp"
+#include "elastocheck/compare.hpp"
+
+namespace elastocheck::compare {
+
+std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison& comparison) {
+    std::vector<DefinitionRow> rows;
+    const auto defined = definition_channels(model);
+    // outputs in pairs: the figure as defined here, and otherwise
+    std::vector<Channel> pairs;
+    for (const Channel& figure : comparison.channels)
+        for (const Channel& other : definitions_of(defined, figure.name))
+            pairs.push_back(figure), pairs.push_back(other);
+    if (pairs.empty()) return rows;
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+        const BranchComparison& of = comparison.branches[b];
+        const Branch& branch = model.branches[b];
+        const PathCurve path = walk(model, pairs, branch, sides_of(model, branch, of.steps),
+                                    {.leg = Leg::equilibrium});
+        for (std::size_t p = 0; p + 1 < pairs.size(); p += 2) {
+            const auto figure =
+                static_cast<std::size_t>(find_channel(comparison.channels, pairs[p].name));
+            DefinitionRow row{.branch = of.branch,
+                              .output = pairs[p + 1].name,
+                              .unit = symbol(pairs[p].unit),
+                              .parameter_unit = symbol(of.unit),
+                              .formula = pairs[p + 1].definition};
+            const auto &here = path.curve.channel(p), &otherwise = path.curve.channel(p + 1);
+            for (std::size_t k = 0; k < here.size(); ++k) {
+                const double difference = otherwise[k] - here[k];
+                if (!std::isfinite(difference)) continue;
+                if (k == path.curve.start) row.drawn = difference;
+                if (!(std::abs(difference) <= std::abs(row.difference)))
+                    row.difference = difference, row.at = path.curve.a[k];
+            }
+            const auto& deviations = of.deviation.equal_parameter.channels;
+            if (figure < deviations.size()) row.deviation = finite_or_nan(deviations[figure].max);
+            rows.push_back(std::move(row));
+        }
+    }
+    return rows;
+}
+
+}  // namespace elastocheck::compare
