@@ -52,569 +52,499 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr const char *report_schema = "elastocheck/report/1";
+constexpr const char* report_schema = "elastocheck/report/1";
 
 struct ReportRequest {
-  std::vector<std::string> scenes;
-  Settings settings;
-  std::string from; // a result.json instead of scenes
-  std::string folder;
-  std::string measured;                 // CSV
-  std::string branch_column = "branch"; // of it
-  std::vector<std::string> cases; // "THEIRS=OURS": name in that column = branch
-  CandidateRequest candidate;     // external solver, for one scene
-  std::string alarms;             // JSON, results of `./dev mutate`
-  std::string stress;             // JSON, results of `elastocheck stress`
-  std::string tolerance = "0.01mm,0.001deg,1%";
-  std::vector<std::string> branches; // the others are left out
-  std::string only;                  // kc, evidence; empty: both
-  bool quick = false;
-  Running running;
-  bool archive = false;
-  bool against = false; // compare the second of two scenes with the first
-  bool as_json = false; // write the answers as a document to standard output
-  bool open = false;    // open the finished page in a browser
+    std::vector<std::string> scenes;
+    Settings settings;
+    std::string from;  // a result.json instead of scenes
+    std::string folder;
+    std::string measured;                  // CSV
+    std::string branch_column = "branch";  // of it
+    std::vector<std::string> cases;        // "THEIRS=OURS": name in that column = branch
+    CandidateRequest candidate;            // external solver, for one scene
+    std::string alarms;                    // JSON, results of `./dev mutate`
+    std::string stress;                    // JSON, results of `elastocheck stress`
+    std::string tolerance = "0.01mm,0.001deg,1%";
+    std::vector<std::string> branches;  // the others are left out
+    std::string only;                   // kc, evidence; empty: both
+    bool quick = false;
+    Running running;
+    bool archive = false;
+    bool against = false;  // compare the second of two scenes with the first
+    bool as_json = false;  // write the answers as a document to standard output
+    bool open = false;     // open the finished page in a browser
 };
 
 // Error of the recommended configuration over the whole branch, for the figure
 // with the tolerance.
-json recommended(compare::Solves &solves, const compare::Trade &trade) {
-  if (!trade.recommendation)
-    return nullptr;
-  const auto &point = trade.points[trade.recommendation->point];
-  json branches = json::array();
-  for (std::size_t b = 0; b < solves.sides.size(); ++b) {
-    const auto profile = compare::profile(solves, b, point);
-    json mm = json::array(), deg = json::array();
-    for (const auto &apart : profile.apart)
-      mm.push_back(apart.mm), deg.push_back(apart.deg);
-    branches.push_back({{"name", solves.model.branches[b].name},
-                        {"a", profile.a},
-                        {"error_mm", mm},
-                        {"error_deg", deg}});
-  }
-  json result = {{"method", point.method}};
-  if (point.steps > 0)
-    result["steps"] = point.steps;
-  if (point.own_tolerance > 0)
-    result["own_tolerance_m"] = point.own_tolerance;
-  result["branches"] = branches;
-  return result;
+json recommended(compare::Solves& solves, const compare::Trade& trade) {
+    if (!trade.recommendation) return nullptr;
+    const auto& point = trade.points[trade.recommendation->point];
+    json branches = json::array();
+    for (std::size_t b = 0; b < solves.sides.size(); ++b) {
+        const auto profile = compare::profile(solves, b, point);
+        json mm = json::array(), deg = json::array();
+        for (const auto& apart : profile.apart) mm.push_back(apart.mm), deg.push_back(apart.deg);
+        branches.push_back({{"name", solves.model.branches[b].name},
+                            {"a", profile.a},
+                            {"error_mm", mm},
+                            {"error_deg", deg}});
+    }
+    json result = {{"method", point.method}};
+    if (point.steps > 0) result["steps"] = point.steps;
+    if (point.own_tolerance > 0) result["own_tolerance_m"] = point.own_tolerance;
+    result["branches"] = branches;
+    return result;
 }
 
 // Names of the measured file's columns and branches.
-ColumnMap map_of_measured(const ReportRequest &request) {
-  ColumnMap map = map_of(request.candidate);
-  if (request.branch_column != ReportRequest{}.branch_column)
-    map.columns.push_back(
-        {.theirs = request.branch_column, .output = "branch"});
-  for (const auto &text : request.cases)
-    map.branches.push_back(parse_load_case(text));
-  return map;
+ColumnMap map_of_measured(const ReportRequest& request) {
+    ColumnMap map = map_of(request.candidate);
+    if (request.branch_column != ReportRequest{}.branch_column)
+        map.columns.push_back({.theirs = request.branch_column, .output = "branch"});
+    for (const auto& text : request.cases) map.branches.push_back(parse_load_case(text));
+    return map;
 }
 
 // Returns why the measurement could not be compared; empty if it was.
-std::string add_measured(json &document, const ReportRequest &request) {
-  add_measurement(document, read_whole(request.measured, largest_measurement),
-                  request.measured, map_of_measured(request));
-  for (const auto &column : document["measured"]["left_out"])
-    print_error("{}: column left out: {}\n", request.measured,
-                column.get<std::string>());
-  return compared_with_measurement(document) > 0
-             ? ""
-             : fmt::format("no point of {} is within the range of the legs",
-                           request.measured);
+std::string add_measured(json& document, const ReportRequest& request) {
+    add_measurement(document, read_whole(request.measured, largest_measurement), request.measured,
+                    map_of_measured(request));
+    for (const auto& column : document["measured"]["left_out"])
+        print_error("{}: column left out: {}\n", request.measured, column.get<std::string>());
+    return compared_with_measurement(document) > 0
+               ? ""
+               : fmt::format("no point of {} is within the range of the legs", request.measured);
 }
 
 // Leaves only the branches of --branch, in the order of the scene.
-void select_branches(Scene &scene, Model &model,
-                     const std::vector<std::string> &names) {
-  if (names.empty())
-    return;
-  for (const auto &name : names)
-    (void)branch_named(model, name);
-  const auto left_out = [&](const Branch &branch) {
-    return std::ranges::find(names, branch.name) == names.end();
-  };
-  std::erase_if(scene.branches, left_out);
-  std::erase_if(model.branches, left_out);
+void select_branches(Scene& scene, Model& model, const std::vector<std::string>& names) {
+    if (names.empty()) return;
+    for (const auto& name : names) (void)branch_named(model, name);
+    const auto left_out = [&](const Branch& branch) {
+        return std::ranges::find(names, branch.name) == names.end();
+    };
+    std::erase_if(scene.branches, left_out);
+    std::erase_if(model.branches, left_out);
 }
 
 // Every so many points of a branch show the spread over formulations.
-int points_of_spread(const Model &model) {
-  constexpr int points = 10; // of a branch, at least
-  int every = std::numeric_limits<int>::max();
-  for (const auto &branch : model.branches)
-    every = std::min(every, branch.steps / points);
-  return std::max(1, every);
+int points_of_spread(const Model& model) {
+    constexpr int points = 10;  // of a branch, at least
+    int every = std::numeric_limits<int>::max();
+    for (const auto& branch : model.branches) every = std::min(every, branch.steps / points);
+    return std::max(1, every);
 }
 
 // What the studies find of the recursion's error, and what it costs. All of
 // them read the same solves; the numbers of steps are such that they can.
-void add_studies(json &document, const Model &model,
-                 const compare::Comparison &comparison,
-                 const compare::Tolerance &tolerance, int threads,
-                 const compare::Progress &progress_of_scene,
-                 std::vector<std::string> &reasons) {
-  constexpr int base = 10, finest = 4;
-  compare::Solves solves(model, base, finest);
-  const auto part = [&](double from, double to) {
-    return compare::part(progress_of_scene, from, to);
-  };
-  compare::StudyOptions study_options{.methods = {},
-                                      .steps = {40, 80, 160, 320, 640},
-                                      .threads = threads,
-                                      .progress = part(0, 0.35)};
-  for (const auto &method : recursive::methods)
-    if (recursive::has_steps(method))
-      study_options.methods.push_back(method);
-  const auto study = compare::study(solves, study_options);
-  add_gap(document, comparison, study);
-  document["convergence"] =
-      study_json(study, compare::attribute_gap(solves, {40, 80, 160, 320},
-                                               threads, part(0.35, 0.6)));
-  for (const auto &reason : study.inconclusive)
-    if (std::ranges::find(reasons, reason) == reasons.end())
-      reasons.push_back(reason);
-
-  // The price is counted, so that the report is the same in every run; `trade`
-  // measures times.
-  const auto trade = compare::trade(solves, {.tolerance = tolerance,
-                                             .points = base,
-                                             .rounds = 0,
-                                             .threads = threads,
-                                             .progress = part(0.6, 0.8)});
-  document["trade"] = trade_json(trade);
-  if (const json profile = recommended(solves, trade); !profile.is_null())
-    document["recommended"] = profile;
-  document["orders"] = table_json(
-      order_rows(compare::order_study(solves, {.orders = {4, 8, 12, 16, 20, 24},
-                                               .threads = threads,
-                                               .progress = part(0.8, 0.95)})));
-  // `elastocheck trade` uses a million steps, which shows more round-off but
-  // takes half a minute.
-  document["precision"] = precision_json(
-      compare::precision_study(solves, {.most_steps = 50'000,
-                                        .work_budget = 1.5e8,
+void add_studies(json& document, const Model& model, const compare::Comparison& comparison,
+                 const compare::Tolerance& tolerance, int threads,
+                 const compare::Progress& progress_of_scene, std::vector<std::string>& reasons) {
+    constexpr int base = 10, finest = 4;
+    compare::Solves solves(model, base, finest);
+    const auto part = [&](double from, double to) {
+        return compare::part(progress_of_scene, from, to);
+    };
+    compare::StudyOptions study_options{.methods = {},
+                                        .steps = {40, 80, 160, 320, 640},
                                         .threads = threads,
-                                        .progress = part(0.95, 1)}));
+                                        .progress = part(0, 0.35)};
+    for (const auto& method : recursive::methods)
+        if (recursive::has_steps(method)) study_options.methods.push_back(method);
+    const auto study = compare::study(solves, study_options);
+    add_gap(document, comparison, study);
+    document["convergence"] = study_json(
+        study, compare::attribute_gap(solves, {40, 80, 160, 320}, threads, part(0.35, 0.6)));
+    for (const auto& reason : study.inconclusive)
+        if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
+
+    // The price is counted, so that the report is the same in every run; `trade`
+    // measures times.
+    const auto trade = compare::trade(solves, {.tolerance = tolerance,
+                                               .points = base,
+                                               .rounds = 0,
+                                               .threads = threads,
+                                               .progress = part(0.6, 0.8)});
+    document["trade"] = trade_json(trade);
+    if (const json profile = recommended(solves, trade); !profile.is_null())
+        document["recommended"] = profile;
+    document["orders"] = table_json(order_rows(compare::order_study(
+        solves,
+        {.orders = {4, 8, 12, 16, 20, 24}, .threads = threads, .progress = part(0.8, 0.95)})));
+    // `elastocheck trade` uses a million steps, which shows more round-off but
+    // takes half a minute.
+    document["precision"] =
+        precision_json(compare::precision_study(solves, {.most_steps = 50'000,
+                                                         .work_budget = 1.5e8,
+                                                         .threads = threads,
+                                                         .progress = part(0.95, 1)}));
 }
 
 // Figures of which the effects are shown: rates of the first wheel at the
 // design position, its toe and camber at the ends of the leading branch;
 // without a wheel the first main outputs there.
 struct KeyOutputs {
-  std::vector<compare::Channel> at_design, at_ends;
+    std::vector<compare::Channel> at_design, at_ends;
 };
-KeyOutputs key_outputs(const Model &model) {
-  KeyOutputs key;
-  const auto all = compare::figure_outputs(model);
-  const std::string owner =
-      model.wheels.empty() || model.wheels.front().name.empty()
-          ? ""
-          : model.wheels.front().name + ".";
-  const auto add = [&](std::vector<compare::Channel> &list, const char *name) {
-    for (const std::string &whose : {owner + name, std::string(name)})
-      if (const int c = compare::find_channel(all, whose); c >= 0) {
-        list.push_back(all[static_cast<std::size_t>(c)]);
-        return;
-      }
-  };
-  if (!model.wheels.empty()) {
-    for (const char *name : {"bump_steer", "bump_camber", "roll_centre_height",
-                             "wheel_rate", "lateral_force_steer", "anti_dive"})
-      add(key.at_design, name);
-    for (const char *name : {"toe", "camber"})
-      add(key.at_ends, name);
-  }
-  constexpr std::size_t without_wheel = 3;
-  for (const auto &channel : all)
-    if (model.wheels.empty() && channel.main &&
-        key.at_ends.size() < without_wheel)
-      key.at_ends.push_back(channel);
-  return key;
+KeyOutputs key_outputs(const Model& model) {
+    KeyOutputs key;
+    const auto all = compare::figure_outputs(model);
+    const std::string owner = model.wheels.empty() || model.wheels.front().name.empty()
+                                  ? ""
+                                  : model.wheels.front().name + ".";
+    const auto add = [&](std::vector<compare::Channel>& list, const char* name) {
+        for (const std::string& whose : {owner + name, std::string(name)})
+            if (const int c = compare::find_channel(all, whose); c >= 0) {
+                list.push_back(all[static_cast<std::size_t>(c)]);
+                return;
+            }
+    };
+    if (!model.wheels.empty()) {
+        for (const char* name : {"bump_steer", "bump_camber", "roll_centre_height", "wheel_rate",
+                                 "lateral_force_steer", "anti_dive"})
+            add(key.at_design, name);
+        for (const char* name : {"toe", "camber"}) add(key.at_ends, name);
+    }
+    constexpr std::size_t without_wheel = 3;
+    for (const auto& channel : all)
+        if (model.wheels.empty() && channel.main && key.at_ends.size() < without_wheel)
+            key.at_ends.push_back(channel);
+    return key;
 }
 
 // "sensitivity": effects of the numbers of the scene on the key figures along
 // the leading sweep.
-void add_sensitivity(json &document, const LoadedScene &loaded,
-                     const std::string &file, const Settings &settings,
-                     std::vector<std::string> &reasons) {
-  const std::string source;
-  const auto sweep = leading_sweep({&document, "", &source});
-  if (!sweep)
-    return;
-  std::vector<std::string> branches;
-  for (const auto &branch : sweep->branches)
-    branches.push_back(branch["name"].text());
-  const KeyOutputs key = key_outputs(loaded.model);
-  auto outputs = key.at_design;
-  outputs.insert(outputs.end(), key.at_ends.begin(), key.at_ends.end());
-  if (outputs.empty())
-    return;
-  // numbers of the suspension, not of what acts on it
-  auto rates = all_model_rates(file, settings);
-  std::erase_if(rates, [](const ModelRate &rate) {
-    return std::ranges::any_of(
-        std::array{"loads.", "branches.", "trim.", "vehicle."},
-        [&](const char *group) { return rate.path.starts_with(group); });
-  });
-  const auto all =
-      gradients_of(file, settings, loaded, outputs, std::move(rates),
-                   {.points = 1, .branches = branches});
-  auto rows = compare::effect_rows(all);
-  std::erase_if(rows, [&](const compare::EffectRow &row) {
-    const bool of_design =
-        std::ranges::find(key.at_design, row.output, &compare::Channel::name) !=
-        key.at_design.end();
-    return (of_design != (row.at == 0) && !key.at_design.empty()) ||
-           (key.at_design.empty() && row.at == 0);
-  });
-  double apart = 0;
-  long compared = 0;
-  for (const auto &side : all.sides)
-    apart = std::max(apart, side.worst.share), compared += side.worst.compared;
-  document["sensitivity"] = {{"conclusive", all.conclusive()},
-                             {"compared", compared},
-                             {"apart", apart},
-                             {"effects", table_json(rows)}};
-  if (!all.conclusive())
-    reasons.emplace_back("the derivatives of the legs do not agree");
+void add_sensitivity(json& document, const LoadedScene& loaded, const std::string& file,
+                     const Settings& settings, std::vector<std::string>& reasons) {
+    const std::string source;
+    const auto sweep = leading_sweep({&document, "", &source});
+    if (!sweep) return;
+    std::vector<std::string> branches;
+    for (const auto& branch : sweep->branches) branches.push_back(branch["name"].text());
+    const KeyOutputs key = key_outputs(loaded.model);
+    auto outputs = key.at_design;
+    outputs.insert(outputs.end(), key.at_ends.begin(), key.at_ends.end());
+    if (outputs.empty()) return;
+    // numbers of the suspension, not of what acts on it
+    auto rates = all_model_rates(file, settings);
+    std::erase_if(rates, [](const ModelRate& rate) {
+        return std::ranges::any_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
+                                   [&](const char* group) { return rate.path.starts_with(group); });
+    });
+    const auto all = gradients_of(file, settings, loaded, outputs, std::move(rates),
+                                  {.points = 1, .branches = branches});
+    auto rows = compare::effect_rows(all);
+    std::erase_if(rows, [&](const compare::EffectRow& row) {
+        const bool of_design = std::ranges::find(key.at_design, row.output,
+                                                 &compare::Channel::name) != key.at_design.end();
+        return (of_design != (row.at == 0) && !key.at_design.empty()) ||
+               (key.at_design.empty() && row.at == 0);
+    });
+    double apart = 0;
+    long compared = 0;
+    for (const auto& side : all.sides)
+        apart = std::max(apart, side.worst.share), compared += side.worst.compared;
+    document["sensitivity"] = {{"conclusive", all.conclusive()},
+                               {"compared", compared},
+                               {"apart", apart},
+                               {"effects", table_json(rows)}};
+    if (!all.conclusive()) reasons.emplace_back("the derivatives of the legs do not agree");
 }
 
-json solve_scene(const std::string &file, const ReportRequest &request,
-                 int threads, const compare::Progress &progress_of_scene) {
-  LoadedScene loaded = load_scene(file, request.settings);
-  select_branches(loaded.scene, loaded.model, request.branches);
-  const Scene &scene = loaded.scene;
-  const Model &model = loaded.model;
-  json document = document_of(loaded, file);
-  if (!request.only.empty())
-    document["only"] = request.only;
-  if (request.quick)
-    document["proved"] = "ends";
-  const bool studies = !request.quick && request.only != "kc";
+json solve_scene(const std::string& file, const ReportRequest& request, int threads,
+                 const compare::Progress& progress_of_scene) {
+    LoadedScene loaded = load_scene(file, request.settings);
+    select_branches(loaded.scene, loaded.model, request.branches);
+    const Scene& scene = loaded.scene;
+    const Model& model = loaded.model;
+    json document = document_of(loaded, file);
+    if (!request.only.empty()) document["only"] = request.only;
+    if (request.quick) document["proved"] = "ends";
+    const bool studies = !request.quick && request.only != "kc";
 
-  const double after_legs = studies ? 0.25 : 1;
-  compare::Options options;
-  options.times = false;
-  options.threads = threads;
-  options.prove_ends_only = request.quick;
-  options.progress = compare::part(progress_of_scene, 0, after_legs);
-  const auto comparison = compare::compare(model, options);
-  add_comparison(document, scene, model, comparison);
-  auto reasons = reasons_of(comparison);
-  if (!request.measured.empty())
-    if (const std::string why = add_measured(document, request); !why.empty())
-      reasons.push_back(why);
-  if (!request.quick && request.only != "evidence")
-    add_sensitivity(document, loaded, file, request.settings, reasons);
-  const auto tolerance = compare::parse_tolerance(
-      request.tolerance, compare::ToleranceParts::with_shares);
-  if (studies) {
-    if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
-      add_formulations(document,
-                       compare::formulation_study(
-                           scene, 0, points_of_spread(model), threads,
-                           compare::part(progress_of_scene, after_legs, 0.35)),
-                       comparison);
-    add_studies(document, model, comparison, tolerance, threads,
-                compare::part(progress_of_scene, 0.35, 1), reasons);
-  }
-  if (request.candidate.wanted()) {
-    document["candidates"] = json::array();
-    for (const auto &output :
-         outputs_of(request.candidate, file, {steps_of(model)})) {
-      const auto judgement =
-          judged(output, request.candidate, loaded, comparison, tolerance,
-                 request.tolerance != ReportRequest{}.tolerance);
-      document["candidates"].push_back(candidate_json(
-          judgement, comparison, sentence(judgement, comparison)));
+    const double after_legs = studies ? 0.25 : 1;
+    compare::Options options;
+    options.times = false;
+    options.threads = threads;
+    options.prove_ends_only = request.quick;
+    options.progress = compare::part(progress_of_scene, 0, after_legs);
+    const auto comparison = compare::compare(model, options);
+    add_comparison(document, scene, model, comparison);
+    auto reasons = reasons_of(comparison);
+    if (!request.measured.empty())
+        if (const std::string why = add_measured(document, request); !why.empty())
+            reasons.push_back(why);
+    if (!request.quick && request.only != "evidence")
+        add_sensitivity(document, loaded, file, request.settings, reasons);
+    const auto tolerance =
+        compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
+    if (studies) {
+        if (std::ranges::any_of(scene.elastics, compare::is_reformulated))
+            add_formulations(
+                document,
+                compare::formulation_study(scene, 0, points_of_spread(model), threads,
+                                           compare::part(progress_of_scene, after_legs, 0.35)),
+                comparison);
+        add_studies(document, model, comparison, tolerance, threads,
+                    compare::part(progress_of_scene, 0.35, 1), reasons);
     }
-  }
-  add_verdict(document, comparison.compared, reasons);
-  auto judgement =
-      compare::assess(model, comparison, tolerance,
-                      request.tolerance != ReportRequest{}.tolerance);
-  if (!reasons.empty())
-    judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
-  document["judgement"] = judgement_json(judgement);
-  return document;
+    if (request.candidate.wanted()) {
+        document["candidates"] = json::array();
+        for (const auto& output : outputs_of(request.candidate, file, {steps_of(model)})) {
+            const auto judgement = judged(output, request.candidate, loaded, comparison, tolerance,
+                                          request.tolerance != ReportRequest{}.tolerance);
+            document["candidates"].push_back(
+                candidate_json(judgement, comparison, sentence(judgement, comparison)));
+        }
+    }
+    add_verdict(document, comparison.compared, reasons);
+    auto judgement = compare::assess(model, comparison, tolerance,
+                                     request.tolerance != ReportRequest{}.tolerance);
+    if (!reasons.empty())
+        judgement.verdict = compare::Grade::not_judged, judgement.reasons = reasons;
+    document["judgement"] = judgement_json(judgement);
+    return document;
 }
 
 // A measurement over the curves of a result that is not solved again.
-void overlay(json &result, const ReportRequest &request) {
-  if (result["scenes"].size() != 1)
-    throw std::invalid_argument(
-        "report: --measured: the result has several scenes");
-  json &scene = result["scenes"][0];
-  const std::string why = add_measured(scene, request);
-  if (!why.empty() && scene.contains("verdict")) {
-    scene["verdict"]["conclusive"] = false;
-    scene["verdict"]["reasons"].push_back(why);
-    if (scene.contains("judgement"))
-      scene["judgement"]["verdict"] = name(compare::Grade::not_judged);
-  }
-  result = json::parse(result.dump());
+void overlay(json& result, const ReportRequest& request) {
+    if (result["scenes"].size() != 1)
+        throw std::invalid_argument("report: --measured: the result has several scenes");
+    json& scene = result["scenes"][0];
+    const std::string why = add_measured(scene, request);
+    if (!why.empty() && scene.contains("verdict")) {
+        scene["verdict"]["conclusive"] = false;
+        scene["verdict"]["reasons"].push_back(why);
+        if (scene.contains("judgement"))
+            scene["judgement"]["verdict"] = name(compare::Grade::not_judged);
+    }
+    result = json::parse(result.dump());
 }
 
-json read_json(const std::string &file) {
-  try {
-    return parse_json(read_whole(file));
-  } catch (const JsonError &error) {
-    throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
-  }
+json read_json(const std::string& file) {
+    try {
+        return parse_json(read_whole(file));
+    } catch (const JsonError& error) {
+        throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
+    }
 }
 
-json read_alarms(const std::string &file) {
-  json alarms = read_json(file);
-  if (!alarms.is_array())
-    throw std::invalid_argument(
-        file + ": is not the results.json that ./dev mutate writes");
-  return alarms;
+json read_alarms(const std::string& file) {
+    json alarms = read_json(file);
+    if (!alarms.is_array())
+        throw std::invalid_argument(file + ": is not the results.json that ./dev mutate writes");
+    return alarms;
 }
 
 // Map and wrong results; without the cells.
-json read_stress(const std::string &file) {
-  json stress = read_json(file);
-  if (!stress.is_object() || stress.value("schema", json()) != stress_schema)
-    throw std::invalid_argument(fmt::format(
-        "{}: is not the stress.json that `elastocheck stress` writes ('{}')",
-        file, stress_schema));
-  for (const char *key : {"cells", "reproduce"})
-    stress.erase(key);
-  return stress;
+json read_stress(const std::string& file) {
+    json stress = read_json(file);
+    if (!stress.is_object() || stress.value("schema", json()) != stress_schema)
+        throw std::invalid_argument(
+            fmt::format("{}: is not the stress.json that `elastocheck stress` writes ('{}')", file,
+                        stress_schema));
+    for (const char* key : {"cells", "reproduce"}) stress.erase(key);
+    return stress;
 }
 
 // Answer of each scene, and whether it passes.
-json answer_document(const json &result, const std::vector<Answer> &answers,
-                     const std::string &page) {
-  json scenes = json::array();
-  for (const auto &answer : answers)
-    scenes.push_back({{"name", answer.name},
-                      {"source", answer.source},
-                      {"mark", answer.mark},
-                      {"answer", answer.sentence},
-                      {"verdict", result["scenes"][scenes.size()]["verdict"]}});
-  return {{"schema", report_schema},
-          {"provenance", result["provenance"]},
-          {"page", page},
-          {"scenes", scenes}};
+json answer_document(const json& result, const std::vector<Answer>& answers,
+                     const std::string& page) {
+    json scenes = json::array();
+    for (const auto& answer : answers)
+        scenes.push_back({{"name", answer.name},
+                          {"source", answer.source},
+                          {"mark", answer.mark},
+                          {"answer", answer.sentence},
+                          {"verdict", result["scenes"][scenes.size()]["verdict"]}});
+    return {{"schema", report_schema},
+            {"provenance", result["provenance"]},
+            {"page", page},
+            {"scenes", scenes}};
 }
 
-std::string answer_text(const std::vector<Answer> &answers,
-                        const std::string &page, double seconds) {
-  std::string text;
-  for (const auto &answer : answers)
-    if (!answer.sentence.empty())
-      text += fmt::format("{}: {}\n\n", answer.name, answer.sentence);
-  for (const auto &answer : answers)
-    text += fmt::format("{}: {}\n", answer.source, answer.mark);
-  return text + fmt::format("The page: {} ({}, {:.1f} s)\n", page,
-                            counted(answers.size(), "scene"), seconds);
+std::string answer_text(const std::vector<Answer>& answers, const std::string& page,
+                        double seconds) {
+    std::string text;
+    for (const auto& answer : answers)
+        if (!answer.sentence.empty())
+            text += fmt::format("{}: {}\n\n", answer.name, answer.sentence);
+    for (const auto& answer : answers) text += fmt::format("{}: {}\n", answer.source, answer.mark);
+    return text + fmt::format("The page: {} ({}, {:.1f} s)\n", page,
+                              counted(answers.size(), "scene"), seconds);
 }
 
 // Removes fields that differ from run to run.
-void remove_times(json &value) {
-  if (value.is_object()) {
-    value.erase("seconds");
-    value.erase("cpu");
-  }
-  if (value.is_structured())
-    for (auto &entry : value)
-      remove_times(entry);
+void remove_times(json& value) {
+    if (value.is_object()) {
+        value.erase("seconds");
+        value.erase("cpu");
+    }
+    if (value.is_structured())
+        for (auto& entry : value) remove_times(entry);
 }
 
 // Returns the exit code. `reproduce` is the command line as given.
-int report(const ReportRequest &request, const std::string &reproduce) {
-  if (request.from.empty() == request.scenes.empty())
-    throw std::invalid_argument(
-        "report: needs scene files or --from a result.json, one of the two");
-  if (!request.measured.empty() && request.from.empty() &&
-      request.scenes.size() != 1)
-    throw std::invalid_argument(
-        "report: --measured belongs to one scene; give one");
-  if (!request.measured.empty() && request.candidate.wanted() &&
-      !request.candidate.map.empty())
-    throw std::invalid_argument(
-        "report: --map: is of --candidate or of --measured; give one of them");
-  if (request.candidate.wanted() && request.scenes.size() != 1)
-    throw std::invalid_argument(
-        "report: --candidate belongs to one scene; give one");
-  if (request.against && request.from.empty() && request.scenes.size() != 2)
-    throw std::invalid_argument(
-        "report: --against: needs two scenes, the base first");
-  CandidateRequest candidate = request.candidate;
-  if (!request.measured.empty())
-    candidate.map.clear(); // it is of the measurement
-  check(candidate, request.settings);
-  const auto start = std::chrono::steady_clock::now();
-  const int threads = threads_of(request.running);
-  // Invalid requests are rejected before the work.
-  if (request.open && request.archive)
-    throw std::invalid_argument(
-        "--open: not with --archive, which has no page");
-  const std::string opener = request.open ? browser() : "";
-  Staging::check(request.folder);
-  (void)compare::parse_tolerance(request.tolerance,
-                                 compare::ToleranceParts::with_shares);
-  for (const auto &scene : request.scenes)
-    check_memory(
-        compile(read_scene(scene, request.settings)),
-        {.legs = static_cast<int>(compare::legs.size()), .written = true});
-  (void)map_of_measured(request);
-  if (request.measured.empty() &&
-      (request.branch_column != ReportRequest{}.branch_column ||
-       !request.cases.empty()))
-    throw std::invalid_argument(
-        "report: --branch-column and --case: only with --measured");
-  if (!request.measured.empty())
-    (void)read_whole(request.measured, largest_measurement);
-  if (!request.alarms.empty() && !request.from.empty())
-    throw std::invalid_argument("report: --alarms: not with --from");
-  if (!request.from.empty() &&
-      (request.quick || !request.only.empty() || !request.branches.empty()))
-    throw std::invalid_argument(
-        "report: --quick, --only and --branch: not with --from");
-  if (request.quick && request.only == "evidence")
-    throw std::invalid_argument(
-        "report: --quick leaves out what --only evidence shows");
-  if (!request.stress.empty() && !request.from.empty())
-    throw std::invalid_argument("report: --stress: not with --from");
-  const json stress =
-      request.stress.empty() ? json() : read_stress(request.stress);
-  const json alarms =
-      request.alarms.empty() ? json() : read_alarms(request.alarms);
-  std::string file = request.from;
-  json result;
-  if (!request.from.empty()) {
-    result = parse_result(read_whole(file), file);
-    if (!request.measured.empty())
-      overlay(result, request);
-  } else {
-    file = "result.json";
-    result = document(reproduce, provenance());
-    constexpr double solved = 0.95; // the rest: the page
-    for (std::size_t k = 0; k < request.scenes.size(); ++k) {
-      const double each = solved / static_cast<double>(request.scenes.size());
-      const auto of_scene =
-          [&, at = static_cast<double>(k)](std::string_view what, double done) {
-            progress(fmt::format("{}: {}", request.scenes[k], what),
-                     (at + done) * each);
-          };
-      result["scenes"].push_back(
-          solve_scene(request.scenes[k], request, threads, of_scene));
+int report(const ReportRequest& request, const std::string& reproduce) {
+    if (request.from.empty() == request.scenes.empty())
+        throw std::invalid_argument(
+            "report: needs scene files or --from a result.json, one of the two");
+    if (!request.measured.empty() && request.from.empty() && request.scenes.size() != 1)
+        throw std::invalid_argument("report: --measured belongs to one scene; give one");
+    if (!request.measured.empty() && request.candidate.wanted() && !request.candidate.map.empty())
+        throw std::invalid_argument(
+            "report: --map: is of --candidate or of --measured; give one of them");
+    if (request.candidate.wanted() && request.scenes.size() != 1)
+        throw std::invalid_argument("report: --candidate belongs to one scene; give one");
+    if (request.against && request.from.empty() && request.scenes.size() != 2)
+        throw std::invalid_argument("report: --against: needs two scenes, the base first");
+    CandidateRequest candidate = request.candidate;
+    if (!request.measured.empty()) candidate.map.clear();  // it is of the measurement
+    check(candidate, request.settings);
+    const auto start = std::chrono::steady_clock::now();
+    const int threads = threads_of(request.running);
+    // Invalid requests are rejected before the work.
+    if (request.open && request.archive)
+        throw std::invalid_argument("--open: not with --archive, which has no page");
+    const std::string opener = request.open ? browser() : "";
+    Staging::check(request.folder);
+    (void)compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
+    for (const auto& scene : request.scenes)
+        check_memory(compile(read_scene(scene, request.settings)),
+                     {.legs = static_cast<int>(compare::legs.size()), .written = true});
+    (void)map_of_measured(request);
+    if (request.measured.empty() &&
+        (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
+        throw std::invalid_argument("report: --branch-column and --case: only with --measured");
+    if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
+    if (!request.alarms.empty() && !request.from.empty())
+        throw std::invalid_argument("report: --alarms: not with --from");
+    if (!request.from.empty() &&
+        (request.quick || !request.only.empty() || !request.branches.empty()))
+        throw std::invalid_argument("report: --quick, --only and --branch: not with --from");
+    if (request.quick && request.only == "evidence")
+        throw std::invalid_argument("report: --quick leaves out what --only evidence shows");
+    if (!request.stress.empty() && !request.from.empty())
+        throw std::invalid_argument("report: --stress: not with --from");
+    const json stress = request.stress.empty() ? json() : read_stress(request.stress);
+    const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
+    std::string file = request.from;
+    json result;
+    if (!request.from.empty()) {
+        result = parse_result(read_whole(file), file);
+        if (!request.measured.empty()) overlay(result, request);
+    } else {
+        file = "result.json";
+        result = document(reproduce, provenance());
+        constexpr double solved = 0.95;  // the rest: the page
+        for (std::size_t k = 0; k < request.scenes.size(); ++k) {
+            const double each = solved / static_cast<double>(request.scenes.size());
+            const auto of_scene = [&, at = static_cast<double>(k)](std::string_view what,
+                                                                   double done) {
+                progress(fmt::format("{}: {}", request.scenes[k], what), (at + done) * each);
+            };
+            result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
+        }
+        if (!stress.is_null()) result["stress"] = stress;
+        if (!alarms.is_null()) result["alarms"] = alarms;
+        remove_times(result);
+        result = json::parse(result.dump());  // as read from the file: NaN is null
     }
-    if (!stress.is_null())
-      result["stress"] = stress;
-    if (!alarms.is_null())
-      result["alarms"] = alarms;
-    remove_times(result);
-    result = json::parse(result.dump()); // as read from the file: NaN is null
-  }
-  if (request.against) {
-    if (result["scenes"].size() != 2)
-      throw std::invalid_argument(
-          "report: --against: the result has not two scenes");
-    add_against(result["scenes"][0], result["scenes"][1]);
-    // a variant has no verdict on the fast method unless a tolerance is given
-    for (auto &scene : result["scenes"])
-      if (scene.contains("judgement") &&
-          !scene["judgement"]["tolerance"]["asked"])
-        scene.erase("judgement");
-    result = json::parse(result.dump());
-  }
-  const auto answers = write_report(
-      result, file, request.folder,
-      {.archive = request.archive,
-       .progress = [](std::string_view what) { progress(what, 0.95); }});
-  progress("");
-  int code = fine;
-  // the verdict of a candidate counts for the page, as in `judge`
-  for (const auto &scene : result["scenes"])
-    if (scene.contains("candidates"))
-      for (const auto &judged : scene["candidates"]) {
-        print_error("{}\n", judged["sentence"].get<std::string>());
-        if (judged["verdict"] == "fail")
-          code = limit_broken;
-        if (judged["verdict"] == "not judged" && code == fine)
-          code = could_not_judge;
-      }
-  for (const auto &answer : answers)
-    if (!answer.conclusive) {
-      code = could_not_judge;
-      for (const auto &reason : answer.reasons)
-        print_error("{}: inconclusive: {}\n", answer.source, reason);
+    if (request.against) {
+        if (result["scenes"].size() != 2)
+            throw std::invalid_argument("report: --against: the result has not two scenes");
+        add_against(result["scenes"][0], result["scenes"][1]);
+        // a variant has no verdict on the fast method unless a tolerance is given
+        for (auto& scene : result["scenes"])
+            if (scene.contains("judgement") && !scene["judgement"]["tolerance"]["asked"])
+                scene.erase("judgement");
+        result = json::parse(result.dump());
     }
-  const std::chrono::duration<double> elapsed =
-      std::chrono::steady_clock::now() - start;
-  const std::string page =
-      request.folder + (request.archive ? "/README.md" : "/report.html");
-  if (request.as_json)
-    print_document(answer_document(result, answers, page));
-  else if (request.against)
-    print("{}\nThe page: {}\n", against_sentence(result["scenes"][0]), page);
-  else
-    print(answer_text(answers, page, elapsed.count()));
-  if (request.open)
-    open_in(opener, page);
-  return code;
+    const auto answers =
+        write_report(result, file, request.folder,
+                     {.archive = request.archive,
+                      .progress = [](std::string_view what) { progress(what, 0.95); }});
+    progress("");
+    int code = fine;
+    // the verdict of a candidate counts for the page, as in `judge`
+    for (const auto& scene : result["scenes"])
+        if (scene.contains("candidates"))
+            for (const auto& judged : scene["candidates"]) {
+                print_error("{}\n", judged["sentence"].get<std::string>());
+                if (judged["verdict"] == "fail") code = limit_broken;
+                if (judged["verdict"] == "not judged" && code == fine) code = could_not_judge;
+            }
+    for (const auto& answer : answers)
+        if (!answer.conclusive) {
+            code = could_not_judge;
+            for (const auto& reason : answer.reasons)
+                print_error("{}: inconclusive: {}\n", answer.source, reason);
+        }
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const std::string page = request.folder + (request.archive ? "/README.md" : "/report.html");
+    if (request.as_json)
+        print_document(answer_document(result, answers, page));
+    else if (request.against)
+        print("{}\nThe page: {}\n", against_sentence(result["scenes"][0]), page);
+    else
+        print(answer_text(answers, page, elapsed.count()));
+    if (request.open) open_in(opener, page);
+    return code;
 }
 
-} // namespace
+}  // namespace
 
 Command report_command() {
-  const auto request = std::make_shared<ReportRequest>();
-  std::vector<Option> options{
-      {"SCENE",
-       TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
-       "scene files (YAML)"},
-      set_option(request->settings),
-      {"--from", Text{&request->from, a_file("*.json")},
-       "write the report from this result.json without solving"},
-      {"-o,--output", Text{&request->folder, a_folder()},
-       "folder for report.html, report.md, result.json, curves.csv, figures/",
-       true},
-      {"--tolerance", Text{&request->tolerance},
-       "required accuracy (default: 0.01mm,0.001deg,1%)"},
-      {"--alarms", Text{&request->alarms, a_file("*.json")},
-       "results.json of mutation tests (./dev mutate), shown as a section"},
-      {"--stress", Text{&request->stress, a_file("*.json")},
-       "stress.json of `elastocheck stress`, shown as a section"},
-      {"--measured", Text{&request->measured, a_file("*.csv")},
-       "CSV of measured curves, for comparison"},
-      {"--branch-column", Text{&request->branch_column},
-       "column of --measured with the branch of a point (default: branch)"},
-      {"--case", TextList{&request->cases, TextList::Form::separate},
-       "NAME=BRANCH: a name in that column and its branch of the scene; "
-       "repeatable"},
-      {"--branch", TextList{&request->branches, TextList::Form::separate},
-       "only these branches of the scene"},
-      {"--only", Text{&request->only, one_of({"kc", "evidence"})},
-       "one part of the page: kinematics and compliance (without studies), or "
-       "the evidence"},
-      {"--quick", Flag{&request->quick},
-       "without studies: the references, proved at the ends of the branches, "
-       "kinematics and "
-       "compliance"},
-      jobs_option(request->running),
-      quiet_option(request->running)};
-  add_candidate_options(options, request->candidate);
-  options.insert(options.end(), {{"--against", Flag{&request->against},
-                                  "of two scenes: what the second has "
-                                  "otherwise than the first, as a section"},
-                                 {"--archive", Flag{&request->archive},
-                                  "the form for version control: README.md, "
-                                  "numbers.csv, figures/*.svg, without times"},
-                                 json_option(request->as_json),
-                                 {"--open", Flag{&request->open},
-                                  "open the page with $BROWSER or xdg-open"}});
-  return {"report",
-          "Write a report of one or more scenes as an HTML page: verdict, "
-          "figures, tables",
-          std::move(options), [request](const std::string &line) {
-            return report(*request, line);
-          }};
+    const auto request = std::make_shared<ReportRequest>();
+    std::vector<Option> options{
+        {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+         "scene files (YAML)"},
+        set_option(request->settings),
+        {"--from", Text{&request->from, a_file("*.json")},
+         "write the report from this result.json without solving"},
+        {"-o,--output", Text{&request->folder, a_folder()},
+         "folder for report.html, report.md, result.json, curves.csv, figures/", true},
+        {"--tolerance", Text{&request->tolerance},
+         "required accuracy (default: 0.01mm,0.001deg,1%)"},
+        {"--alarms", Text{&request->alarms, a_file("*.json")},
+         "results.json of mutation tests (./dev mutate), shown as a section"},
+        {"--stress", Text{&request->stress, a_file("*.json")},
+         "stress.json of `elastocheck stress`, shown as a section"},
+        {"--measured", Text{&request->measured, a_file("*.csv")},
+         "CSV of measured curves, for comparison"},
+        {"--branch-column", Text{&request->branch_column},
+         "column of --measured with the branch of a point (default: branch)"},
+        {"--case", TextList{&request->cases, TextList::Form::separate},
+         "NAME=BRANCH: a name in that column and its branch of the scene; "
+         "repeatable"},
+        {"--branch", TextList{&request->branches, TextList::Form::separate},
+         "only these branches of the scene"},
+        {"--only", Text{&request->only, one_of({"kc", "evidence"})},
+         "one part of the page: kinematics and compliance (without studies), or "
+         "the evidence"},
+        {"--quick", Flag{&request->quick},
+         "without studies: the references, proved at the ends of the branches, "
+         "kinematics and "
+         "compliance"},
+        jobs_option(request->running),
+        quiet_option(request->running)};
+    add_candidate_options(options, request->candidate);
+    options.insert(options.end(),
+                   {{"--against", Flag{&request->against},
+                     "of two scenes: what the second has "
+                     "otherwise than the first, as a section"},
+                    {"--archive", Flag{&request->archive},
+                     "the form for version control: README.md, "
+                     "numbers.csv, figures/*.svg, without times"},
+                    json_option(request->as_json),
+                    {"--open", Flag{&request->open}, "open the page with $BROWSER or xdg-open"}});
+    return {"report",
+            "Write a report of one or more scenes as an HTML page: verdict, "
+            "figures, tables",
+            std::move(options),
+            [request](const std::string& line) { return report(*request, line); }};
 }
 
-} // namespace elastocheck::reports
+}  // namespace elastocheck::reports
