@@ -122,29 +122,6 @@ SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& 
                       law);
 }
 
-void each_number(ScalarLaw& law, const std::function<void(Real&)>& f) {
-    std::visit(overloaded{[&](LinearRate& u) { f(u.k); },
-                          [&](Curve& u) {
-                              for (Real& knot : u.knots) f(knot);
-                              for (auto& piece : u.pieces)
-                                  for (Real& c : piece) f(c);
-                          }},
-               law);
-}
-void each_number(SpatialLaw& law, const std::function<void(Real&)>& f) {
-    std::visit(overloaded{[&](LinearStiffness& u) {
-                              for (int i = 0; i < 6; ++i)
-                                  for (int j = 0; j <= i; ++j) {
-                                      f(u.K(i, j));
-                                      u.K(j, i) = u.K(i, j);
-                                  }
-                          },
-                          [&](PerAxis& u) {
-                              for (ScalarLaw& axis : u.axis) each_number(axis, f);
-                          }},
-               law);
-}
-
 Bushing markers_swapped(const Bushing& bushing) {
     Bushing result = bushing;
     std::swap(result.i, result.j);

@@ -1,8 +1,6 @@
 // Data of force laws: values, scaling, reversal, and the curves of an element.
 #pragma once
 
-#include <functional>
-
 #include "elastocheck/mechanism.hpp"
 
 namespace elastocheck {
@@ -26,10 +24,6 @@ SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
 // square roots of the factors of both axes.
 ScalarLaw scaled(const ScalarLaw& law, Real stretch, Real force);
 SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
-
-// Calls f for every number of a law; the entries of a symmetric matrix once each.
-void each_number(ScalarLaw& law, const std::function<void(Real&)>& f);
-void each_number(SpatialLaw& law, const std::function<void(Real&)>& f);
 
 // The same bushing with its markers i and j swapped; deformations, preload and undeformed offset
 // change sign. A frame on j becomes a frame on i and vice versa.

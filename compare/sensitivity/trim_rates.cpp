@@ -10,8 +10,8 @@
 #include "compare/outputs/rates.hpp"
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
-#include "models/numbers.hpp"
 #include "models/overloaded.hpp"
+#include "models/rates/fields.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -74,7 +74,7 @@ TrimRates trim_rates(const Scene& as_read, const Trimmed& trimmed, std::span<con
         of_trimmed.path = rate.path;
         if (!rate.undefined.empty()) of_trimmed.undefined = rate.undefined;
     }
-    const Scene still = without_numbers(trimmed.scene);
+    const Scene still = rates::without_numbers(trimmed.scene);
     for (Index k = 0; k < x.size(); ++k)
         result.adjustments.push_back(
             model_rate(trimmed.scene,

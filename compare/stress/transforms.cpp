@@ -7,6 +7,7 @@
 
 #include "models/kinds.hpp"
 #include "models/laws.hpp"
+#include "models/rates/fields.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -226,44 +227,15 @@ Scene scaled(const Scene& original, double length, double force) {
     return scene;
 }
 
-namespace {
-
-using Number = std::function<void(double&)>;
-
-template <class Dense>
-void visit_all(Dense&& numbers, const Number& visit) {
-    for (auto& x : numbers.reshaped()) visit(x);
-}
-}  // namespace
-
-void for_each_number(Scene& scene, const Number& visit) {
-    const auto all = [&](auto&& numbers) { visit_all(numbers, visit); };
-    for (auto& point : scene.hardpoints) all(point.position);
-    for (auto& body : scene.bodies) all(body.design.r), all(body.design.p.coeffs());
-    each_part(scene, [&](Point& p) { all(p.s_local); });
-    each_part(scene, [&](Direction& u) { all(u.u_local); });
-    each_part(scene, [&](Marker& m) { all(m.s_local), all(m.A_local.coeffs()); });
-    each_part(scene, overloaded{[&](Length<double> l) { visit(l.value); },
-                                [&](PlaneAngle<double> angle) { visit(angle.value); },
-                                [&](ScalarLaw& law) { each_number(law, visit); },
-                                [&](SpatialLaw& law) { each_number(law, visit); },
-                                [&](ForceAndMoment<Vector6> w) { all(w.value); },
-                                [&](Deformation<Vector6> e) { all(e.value); }});
-    each_load(scene, [&](LoadKind& load) {
-        each_member(load, [&](Point& p) { all(p.s_local); });
-        each_member(load, [&](LoadVector<Vector3d> v) { all(v.value); });
+void for_each_number(Scene& scene, const std::function<void(double&)>& visit) {
+    rates::each_number(scene, visit);
+    each_part(scene, [](SpatialLaw& law) {  // one number for both entries of a symmetric matrix
+        std::visit(overloaded{[](LinearStiffness& u) {
+                                  u.K = Matrix6(u.K.selfadjointView<Eigen::Lower>());
+                              },
+                              [](PerAxis&) {}},
+                   law);
     });
-    for (auto& branch : scene.branches) {
-        visit(branch.from), visit(branch.to);
-        for (auto& driver : branch.drivers) {
-            visit(driver.start), visit(driver.rate);
-            if (Vector6* direction = preload(driver.what)) all(*direction);
-        }
-    }
-    for (auto& wheel : scene.wheels) {
-        for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local}) all(*v);
-        visit(wheel.tyre_rate);
-    }
 }
 
 Scene an_ulp_off(const Scene& original) {

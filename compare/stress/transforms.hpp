@@ -27,7 +27,8 @@ Scene reversed(const Scene& scene);
 // their unit.
 Scene scaled(const Scene& scene, double length, double force);
 
-// Visits every number of a scene in a fixed order; the entries of a symmetric matrix once each.
+// Visits every number of a scene in a fixed order; of a symmetric matrix the entries above its
+// diagonal follow those below.
 void for_each_number(Scene& scene, const std::function<void(double&)>& visit);
 
 // Every nonzero number replaced by the next double above or below, in a reproducible way.

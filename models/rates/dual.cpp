@@ -34,21 +34,6 @@ void as_counted(const Number& number) {
 
 namespace {
 
-struct Write {
-    static constexpr bool writes = false;
-    Archive& to;
-    void text(const std::string& x) { to.texts.push_back(x); }
-    void whole(auto x) { to.wholes.push_back(static_cast<std::int64_t>(x)); }
-    void number(const Dual& x) { to.values.push_back(x.x), to.rates.push_back(x.dx); }
-};
-template <class T>
-Archive archive_of(const T& x) {
-    Archive result;
-    Write write{result};
-    rates::each_datum(write, x);
-    return result;
-}
-
 struct Read {
     static constexpr bool writes = true;
     const Archive& from;
@@ -93,8 +78,8 @@ Answer read(const File& file, bool everything, const std::vector<Together>& chan
     return in_a_pass(
         {.changes = changes, .count = changes.size(), .side = side}, [&](Answer& answer) {
             const Scene scene = reader::read_whole(file.text, file.name, settings, folder).scene;
-            answer.scene = archive_of(scene);
-            answer.model = archive_of(compile(scene, detail_if(everything)));
+            answer.scene = rates::archive_of(scene);
+            answer.model = rates::archive_of(compile(scene, detail_if(everything)));
         });
 }
 
@@ -103,7 +88,7 @@ Answer compile(const Archive& archive, bool everything, int side) {
         Scene scene;
         Read read{archive};
         rates::each_datum(read, scene);
-        answer.model = archive_of(compile(scene, detail_if(everything)));
+        answer.model = rates::archive_of(compile(scene, detail_if(everything)));
     });
 }
 

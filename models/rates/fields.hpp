@@ -1,10 +1,13 @@
 // Visits all data of a scene or a model in one fixed order, to write it to and read it from plain
-// lists. Compiled with numbers of both types.
+// lists, and to replace its numbers. Compiled with numbers of both types.
 #pragma once
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -170,6 +173,56 @@ void each_datum(Visitor& visit, X& x) {
     } else {
         fields(x, all);
     }
+}
+
+// ---- Lists of data.
+
+struct Write {
+    static constexpr bool writes = false;
+    elastocheck_dual::Archive& to;
+    void text(const std::string& x) { to.texts.push_back(x); }
+    void whole(auto x) { to.wholes.push_back(static_cast<std::int64_t>(x)); }
+    void number(const double& x) { to.values.push_back(x); }
+    void number(const auto& dual) { to.values.push_back(dual.x), to.rates.push_back(dual.dx); }
+};
+template <class T>
+elastocheck_dual::Archive archive_of(const T& x) {
+    elastocheck_dual::Archive result;
+    Write write{result};
+    each_datum(write, x);
+    return result;
+}
+
+template <class F>
+struct Numbers {
+    static constexpr bool writes = false;
+    F f;
+    void text(const std::string&) {}
+    void whole(auto) {}
+    void number(Real& x) { f(x); }
+};
+// Calls f(Real&) for every number of x.
+template <class T, class F>
+void each_number(T& x, F f) {
+    Numbers<F> numbers{f};
+    each_datum(numbers, x);
+}
+
+// x with these numbers in place of its own. Throws std::invalid_argument unless there are as many.
+template <class T>
+T with_numbers(T x, const std::vector<double>& numbers) {
+    std::size_t next = 0;
+    each_number(x, [&](Real& number) {
+        if (next < numbers.size()) number = numbers[next];
+        ++next;
+    });
+    if (next != numbers.size()) throw std::invalid_argument("models of different shapes");
+    return x;
+}
+template <class T>
+T without_numbers(T x) {  // all zero
+    each_number(x, [](Real& number) { number = 0; });
+    return x;
 }
 
 }  // namespace elastocheck::rates

@@ -21,39 +21,10 @@ using elastocheck_dual::Answer;
 using elastocheck_dual::Archive;
 using elastocheck_dual::directions;
 using elastocheck_dual::Together;
+using rates::archive_of;
+using rates::with_numbers;
 
 const std::string not_alone = "cannot be varied alone: ";  // + error of the reader
-
-struct Write {
-    static constexpr bool writes = false;
-    Archive& to;
-    void text(const std::string& x) { to.texts.push_back(x); }
-    void whole(auto x) { to.wholes.push_back(static_cast<std::int64_t>(x)); }
-    void number(double x) { to.values.push_back(x); }
-};
-template <class T>
-Archive archive_of(const T& x) {
-    Archive result;
-    Write write{result};
-    rates::each_datum(write, x);
-    return result;
-}
-
-// Replaces the numbers in order.
-struct Replace {
-    static constexpr bool writes = false;
-    const std::vector<double>& by;
-    std::size_t next = 0;
-    void text(const std::string&) {}
-    void whole(auto) {}
-    void number(double& x) { x = by[next++]; }
-};
-template <class T>
-T with_numbers(T x, const std::vector<double>& numbers) {
-    Replace replace{numbers};
-    rates::each_datum(replace, x);
-    return x;
-}
 
 bool same_structure(const Archive& a, const Archive& b) {
     return a.texts == b.texts && a.wholes == b.wholes && a.values.size() == b.values.size();

@@ -11,7 +11,7 @@
 #include "elastocheck/trim.hpp"
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
-#include "models/numbers.hpp"
+#include "models/rates/fields.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/sensitivity.hpp"
 #include "reference/energy/sensitivity.hpp"
@@ -128,10 +128,10 @@ struct Randomly {
 
 // model + h rate, with directions and quaternions of unit length.
 Model changed(const Model& model, const Model& rate, double h) {
-    auto numbers = numbers_of(model);
-    const auto by = numbers_of(rate);
+    auto numbers = rates::archive_of(model).values;
+    const auto by = rates::archive_of(rate).values;
     for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] += h * by[k];
-    Model result = with_numbers(model, numbers);
+    Model result = rates::with_numbers(model, numbers);
     const auto normalise = overloaded{[](Direction& u) { u.u_local.normalize(); },
                                       [](Marker& m) { m.A_local.normalize(); }};
     for (auto& constraint : result.constraints) {
