@@ -593,14 +593,10 @@ void judge_invariance(const Solver& solver, const Found& found, const SideRun& r
     }
 }
 
-// Distance from the answer of the unchanged scene, and the lost digits.
-void count_lost(const Solver& solver, const Found& found, const SideRun& run,
-                const Found& base_found, const SideRun& base, const Transform& how,
-                StressCell& cell) {
-    if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
-    StressCell drawn;
-    drawn.range = range_of(base);
-    judge_points(solver, base_found, base, drawn);
+// Distance from the answer of the unchanged scene, in its frame; NaN unless both converged.
+double apart(const Found& found, const SideRun& run, const Found& base_found, const SideRun& base,
+             const Transform& how) {
+    if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return nan;
     const Match both = match(run.places, base.places);
     double off = 0;
     for (std::size_t k = 0; k < std::min(found.placements.size(), base_found.placements.size());
@@ -609,9 +605,7 @@ void count_lost(const Solver& solver, const Found& found, const SideRun& run,
                                    transforms(only(base_found.placements[k], both.there), how));
         if (!(d.length <= off)) off = d.length;
     }
-    cell.apart = off / how.length;
-    cell.lost = off == 0 ? 0 : std::max(0.0, drawn.digits + std::log10(cell.apart / drawn.range));
-    if (!std::isfinite(drawn.digits) || !std::isfinite(off)) cell.lost = nan;
+    return off / how.length;
 }
 
 StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::size_t s,
@@ -629,7 +623,7 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     }
     judge_points(solvers[s], found, run, cell);
     if (base != nullptr)
-        count_lost(solvers[s], found, run, base->found[s], *base, *trial.variant.transforms, cell);
+        cell.apart = apart(found, run, base->found[s], *base, *trial.variant.transforms);
     if (cell.verdict == Verdict::wrong) return cell;
     if (is_reference(solvers[s]) && says_that_it_ends(found.outcome)) {
         if (base != nullptr && all_known(*base))

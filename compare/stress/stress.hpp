@@ -82,8 +82,6 @@ struct Trial {
 
 // the sweep that contains only the unchanged scene
 inline constexpr std::string_view as_it_is = "as it is";
-inline constexpr std::string_view other_arithmetic =
-    "arithmetic";                                       // the sweep behind the table of lost digits
 inline constexpr std::string_view extreme = "extreme";  // scenes that are extreme by construction
 std::vector<Trial> trials(const std::string& name, const Scene& scene,
                           std::span<const Sweep> sweeps);
@@ -131,12 +129,9 @@ struct StressCell {
     double error = std::numeric_limits<double>::quiet_NaN();  // largest of all places [m]
     int reactions = 0;                                        // number of judged joint reactions
     double claim = std::numeric_limits<double>::infinity();   // [m]
-    // For a transformed scene: distance of the answer from that of the unchanged scene, and the
-    // number of correct digits there that differ here: max(0, digits there + log10(apart / range)).
-    // NaN unless both converged.
-    // [m], in the frame of the unchanged scene
+    // For a transformed scene: distance of the answer from that of the unchanged scene, in the frame
+    // of that [m]; NaN unless both converged.
     double apart = std::numeric_limits<double>::quiet_NaN();
-    double lost = std::numeric_limits<double>::quiet_NaN();
     // largest displacement of any place, or the scene's size if nothing moves [m]
     double range = 0;
 };

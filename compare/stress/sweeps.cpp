@@ -172,7 +172,7 @@ const std::vector<Sweep>& sweeps() {
                                         {"load", loads},
                                         {"beyond", beyond},
                                         {"steps", steps},
-                                        {std::string(other_arithmetic), arithmetic}};
+                                        {"arithmetic", arithmetic}};
     return all;
 }
 

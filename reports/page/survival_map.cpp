@@ -34,25 +34,6 @@ json runs(const JsonCursor& field, std::size_t solvers) {
     return {{"signs", signs}, {"runs", list}};
 }
 
-std::string joined(const JsonCursor& texts, const char* between) {
-    return fmt::format("{}", fmt::join(texts.texts(), between));
-}
-
-// Digits lost to other arithmetic, by scene, arithmetic and solver group.
-json arithmetic(const JsonCursor& part) {
-    json data = *part.value, rows = json::array();
-    for (const auto& row : part["rows"].items()) {
-        json cells = json::array();
-        for (const auto& variant : row["lost"].items()) cells.push_back(joined(variant, " "));
-        if (cells.size() != part["variants"].items().size())
-            row["lost"].fail("expected what is lost of every variant");
-        rows.push_back({{"name", row["scene"].text()}, {"cells", cells}});
-    }
-    data["groups"] = joined(part["groups"], ", ");
-    data["lost"] = rows;
-    return data;
-}
-
 }  // namespace
 
 json survival(const JsonCursor& result) {
@@ -73,10 +54,7 @@ json survival(const JsonCursor& result) {
         data["extremes"][k]["cells"] = json::array({runs(extremes[k]["signs"], solvers)});
     int all = 0;
     for (const auto& [verdict, count] : part["counts"].entries()) all += count.whole();
-    const auto other = part.find("arithmetic");
-    const bool any = other && !(*other)["rows"].items().empty();
-    data["arithmetic"] = any ? arithmetic(*other) : json(nullptr);
-    data["solvers"] = joined(part["solvers"], ", ");
+    data["solvers"] = fmt::format("{}", fmt::join(part["solvers"].texts(), ", "));
     data["rows"] = rows;
     data["count"] = all;
     data["has_rows"] = !rows.empty();

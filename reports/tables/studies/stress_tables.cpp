@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "compare/stress/lost_digits.hpp"
 #include "reports/tables/render.hpp"
 
 namespace elastocheck::reports {
@@ -59,58 +58,6 @@ std::string where(const compare::StressCell& cell) {
     return fmt::format("{}, {}, {}: {}", cell.scene, cell.variant, cell.side, cell.solver);
 }
 
-std::string worst_of(const compare::LostDigits& lost) {
-    return lost.worst == nullptr
-               ? "none"
-               : fmt::format("{:.1f}: {}", digits_lost(*lost.worst), where(*lost.worst));
-}
-std::string worst_right_of(const compare::LostDigits& lost) {
-    return lost.worst_right == nullptr
-               ? "none"
-               : fmt::format("{:.1f}: {}", lost.worst_right->lost, where(*lost.worst_right));
-}
-
-// One row per scene, one column per arithmetic, one number per solver group; empty without solvers.
-std::string lost_text(const compare::LostDigits& lost) {
-    if (lost.rows.empty()) return {};
-    constexpr std::size_t number = 5;
-    std::string text;
-    const auto out = std::back_inserter(text);
-    std::size_t head = 0, column = number * lost.groups.size();
-    for (const auto& row : lost.rows) head = std::max(head, row.scene.size());
-    for (const auto& variant : lost.variants) column = std::max(column, variant.size());
-    fmt::format_to(out, "{:<{}}", "", head);
-    for (const auto& variant : lost.variants) fmt::format_to(out, "  {:>{}}", variant, column);
-    text += '\n';
-    for (const auto& row : lost.rows) {
-        fmt::format_to(out, "{:<{}}", row.scene, head);
-        for (const auto& variant : row.lost) {
-            std::string numbers;
-            for (const auto& group : variant) numbers += fmt::format("{:>{}}", group, number);
-            fmt::format_to(out, "  {:>{}}", numbers, column);
-        }
-        text += '\n';
-    }
-    text += "Digits of sixteen lost to other arithmetic, maximum over all branch sides, by";
-    for (const auto& group : lost.groups)
-        fmt::format_to(out, " {}", group == lost.groups.front() ? group : "· " + group);
-    fmt::format_to(out, "\nThe most, {}; of digits that were right, {}\n", worst_of(lost),
-                   worst_right_of(lost));
-    for (const auto* cell : lost.gave_up)
-        fmt::format_to(out, "gives up: {}: {}: {}\n", where(*cell), name(cell->outcome),
-                       cell->detail);
-    return text + '\n';
-}
-
-json lost_json(const compare::LostDigits& lost) {
-    json rows = json::array(), gave_up = json::array();
-    for (const auto& row : lost.rows) rows.push_back({{"scene", row.scene}, {"lost", row.lost}});
-    for (const auto* cell : lost.gave_up)
-        gave_up.push_back({{"where", where(*cell)}, {"why", cell->detail}});
-    return {{"groups", lost.groups},   {"variants", lost.variants},           {"rows", rows},
-            {"worst", worst_of(lost)}, {"worst_right", worst_right_of(lost)}, {"gave_up", gave_up}};
-}
-
 }  // namespace
 
 compare::Table cell_table(const Survival& survival) {
@@ -124,7 +71,6 @@ compare::Table cell_table(const Survival& survival) {
          words("verdict"),
          words("known by", "source of the true state"),
          {"digits", "", "-log10 of the error over the range"},
-         {"lost", "", "correct digits of the untransformed scene that are lost"},
          {"apart", "mm", "distance from the result of the untransformed scene"},
          {"error", "mm", "of any place, at most"},
          {"claim", "mm", "error bound reported by the solver; empty without one"},
@@ -135,7 +81,7 @@ compare::Table cell_table(const Survival& survival) {
         {}};
     for (const auto& c : survival.cells)
         table.rows.push_back({c.scene, c.sweep, c.variant, c.side, c.solver, name(c.outcome),
-                              name(c.verdict), name(c.knowledge), c.digits, c.lost, 1e3 * c.apart,
+                              name(c.verdict), name(c.knowledge), c.digits, 1e3 * c.apart,
                               1e3 * c.error, finite_or_nan(1e3 * c.claim), 1e3 * c.range, c.why,
                               c.detail});
     return table;
@@ -178,7 +124,7 @@ std::string stress_text(const Survival& survival) {
         "  0 ... 9  correct digits of the range of motion (9: nine or more)    !  reported as "
         "failed each time\n"
         "  ~  another proved equilibrium    ?  converged, not judged    X  WRONG    .  not run\n";
-    text += '\n' + lost_text(lost_digits(survival));
+    text += '\n';
     for (const auto verdict : verdicts)
         fmt::format_to(out, "{} {}{}", survival.count(verdict), name(verdict),
                        verdict == verdicts.back() ? "" : ", ");
@@ -221,7 +167,6 @@ json stress_json(const Survival& survival) {
             {"sweeps", rows.sweeps},
             {"map", map},
             {"extremes", extremes},
-            {"arithmetic", lost_json(lost_digits(survival))},
             {"counts", counts},
             {"wrong", wrong},
             {"skipped", skipped},
