@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -12,138 +13,115 @@ namespace {
 
 using reader::Value;
 
-class Parser {
-  public:
-    Parser(std::string_view text, const std::string& file)
-        : text_(text), file_(file), line_end_(text.find('\n') == text.npos ? '\r' : '\n') {}
+// How far a text was read.
+struct Position {
+    char line_end;  // LF, or CR where there is none
+    int line = 1;
+    char last = 0;  // character read
+};
 
-    Value whole() {
-        Value root = value(0);
-        skip();
-        if (!text_.empty()) fail("text after the end of the document");
-        return root;
+// Characters of a text, which move the position.
+struct Characters {
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = const char&;
+
+    const char* next;
+    Position* position;
+
+    const char& operator*() const { return *next; }
+    Characters& operator++() {
+        position->last = *next++;
+        position->line += position->last == position->line_end ? 1 : 0;
+        return *this;
+    }
+    bool operator==(const Characters& other) const { return next == other.next; }
+};
+
+// Collects the parser's events into a tree of values.
+class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
+  public:
+    TreeBuilder(const std::string& file, const Position& position)
+        : file_(file), position_(position) {}
+
+    Value root;
+
+    bool null() override { return add({.line = position_.line}); }
+    bool boolean(bool value) override { return add_scalar(value ? "true" : "false"); }
+    bool number_integer(number_integer_t value) override { return add_number(value); }
+    bool number_unsigned(number_unsigned_t value) override { return add_number(value); }
+    bool number_float(number_float_t, const string_t& text) override { return add_number(text); }
+    bool string(string_t& text) override { return add_scalar(text, true); }
+    bool binary(binary_t&) override { return false; }  // not in JSON text
+    bool start_object(std::size_t) override { return begin(Value::Kind::map); }
+    bool start_array(std::size_t) override { return begin(Value::Kind::list); }
+    bool end_object() override { return end(); }
+    bool end_array() override { return end(); }
+    bool key(string_t& name) override {
+        Open& map = open_.back();
+        if (std::ranges::find(map.value.keys, name) != map.value.keys.end())
+            fail(fmt::format("{} is given twice", reader::quote(name)));
+        if (map.value.keys.size() > 1000) fail("more than 1000 keys in one object");
+        map.value.keys.push_back(name);
+        map.key_line = position_.line;
+        return true;
+    }
+    bool parse_error(std::size_t, const std::string&,
+                     const nlohmann::detail::exception& error) override {
+        std::string_view what = error.what();  // "[...] parse error at line ...: what is wrong"
+        what.remove_prefix(what.find("] ") + 2);
+        if (what.starts_with("parse error")) what.remove_prefix(what.find(": ") + 2);
+        fail(fmt::format("invalid JSON: {}", what));
     }
 
   private:
-    [[noreturn]] void fail(const std::string& what) const { reader::fail(file_, line_, "", what); }
-    [[noreturn]] void expected(const char* what) const {
-        if (text_.empty()) fail(fmt::format("the file ends, expected {}", what));
-        fail(fmt::format(
-            "expected {}, found {}", what,
-            reader::quote(text_.substr(0, std::min<std::size_t>(text_.find('\n'), 20)))));
-    }
+    struct Open {
+        Value value;
+        int key_line = 0;  // of the last key
+    };
 
-    void advance(std::size_t n) {
-        line_ += static_cast<int>(
-            std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(n), line_end_));
-        text_.remove_prefix(n);
+    [[noreturn]] void fail(const std::string& what) const {
+        reader::fail(file_, position_.line, "", what);
     }
-
-    void skip() {
-        for (;;) {
-            const std::size_t n = std::min(text_.find_first_not_of(" \t\r\n"), text_.size());
-            advance(n);
-            if (text_.starts_with("//")) {
-                advance(std::min(text_.find(line_end_), text_.size()));
-            } else if (text_.starts_with("/*")) {
-                const std::size_t end = text_.find("*/", 2);
-                if (end == text_.npos) fail("a comment /* is not closed");
-                advance(end + 2);
-            } else {
-                return;
-            }
+    bool add(Value value) {
+        if (open_.empty()) {
+            root = std::move(value);
+        } else {
+            Open& parent = open_.back();
+            if (parent.value.kind == Value::Kind::map) value.line = parent.key_line;
+            parent.value.items.push_back(std::move(value));
         }
-    }
-
-    bool take(char c) {
-        skip();
-        if (text_.empty() || text_.front() != c) return false;
-        text_.remove_prefix(1);
         return true;
     }
-
-    // Decodes the simple escapes only; names and numbers of a suspension contain no others.
-    std::string string() {
-        if (!take('"')) expected("a string in double quotes");
-        std::string result;
-        for (;;) {
-            if (text_.empty() || text_.front() == '\n') fail("a string is not closed");
-            const char c = text_.front();
-            if (static_cast<unsigned char>(c) < 0x20) fail("a control character in a string");
-            text_.remove_prefix(1);
-            if (c == '"') return result;
-            if (c != '\\') {
-                result += c;
-                continue;
-            }
-            if (text_.empty()) fail("a string is not closed");
-            const char escaped = text_.front();
-            if (std::string_view("\"\\/bfnrtu").find(escaped) == std::string_view::npos)
-                fail("an unknown escape sequence in a string");
-            result += escaped == '"' || escaped == '\\' || escaped == '/' ? escaped : '?';
-            text_.remove_prefix(1);
-        }
+    bool add_scalar(std::string text, bool is_string = false, int line = 0) {
+        return add({.kind = Value::Kind::scalar,
+                    .text = std::move(text),
+                    .line = line > 0 ? line : position_.line,
+                    .is_string = is_string});
     }
-
-    Value value(int depth) {
-        if (depth > deepest_json)
+    // The parser has read the character behind the number as well.
+    bool add_number(const std::string& text) {
+        const bool is_beyond = position_.last == position_.line_end;
+        return add_scalar(text, false, position_.line - (is_beyond ? 1 : 0));
+    }
+    bool add_number(auto value) { return add_number(std::to_string(value)); }
+    bool begin(Value::Kind kind) {
+        if (open_.size() == deepest_json)
             fail(fmt::format("nested more than {} levels deep", deepest_json));
-        skip();
-        Value result{.kind = Value::Kind::scalar, .line = line_};
-        if (text_.empty()) expected("a value");
-        const char c = text_.front();
-        if (c == '{') {
-            text_.remove_prefix(1);
-            result.kind = Value::Kind::map;
-            if (take('}')) return result;
-            do {
-                skip();
-                const int line = line_;
-                std::string key = string();
-                if (!take(':')) expected("a colon");
-                if (std::ranges::find(result.keys, key) != result.keys.end())
-                    fail(fmt::format("{} is given twice", reader::quote(key)));
-                if (result.keys.size() > 1000) fail("more than 1000 keys in one object");
-                Value item = value(depth + 1);
-                item.line = line;
-                result.keys.push_back(std::move(key));
-                result.items.push_back(std::move(item));
-            } while (take(','));
-            if (!take('}')) expected("a comma or }");
-            return result;
-        }
-        if (c == '[') {
-            text_.remove_prefix(1);
-            result.kind = Value::Kind::list;
-            if (take(']')) return result;
-            do result.items.push_back(value(depth + 1));
-            while (take(','));
-            if (!take(']')) expected("a comma or ]");
-            return result;
-        }
-        if (c == '"') {
-            result.text = string();
-            result.is_string = true;
-            return result;
-        }
-        const std::size_t n = std::min(text_.find_first_of(" \t\r\n,]}/:"), text_.size());
-        result.text = text_.substr(0, n);
-        if (result.text == "null") {
-            result.kind = Value::Kind::nothing;
-            result.text.clear();
-        } else if (result.text != "true" && result.text != "false" &&
-                   (n == 0 || (c != '-' && (c < '0' || c > '9')) ||
-                    result.text.find_first_not_of("0123456789+-.eE") != std::string::npos)) {
-            expected("a value");
-        }
-        text_.remove_prefix(n);
-        return result;
+        open_.push_back({.value = {.kind = kind, .line = position_.line}});
+        return true;
+    }
+    bool end() {
+        Value complete = std::move(open_.back().value);
+        open_.pop_back();
+        return add(std::move(complete));
     }
 
-    std::string_view text_;
     const std::string& file_;
-    char line_end_;  // CR alone, LF, or CR LF
-    int line_ = 1;
+    const Position& position_;
+    std::vector<Open> open_;
 };
 
 }  // namespace
@@ -154,7 +132,13 @@ Value parse_json(std::string_view text, const std::string& file) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     if (text.find('\0') != text.npos || !reader::is_utf8(text))
         reader::fail(file, 0, "", "not plain text (UTF-8): this is not JSON");
-    return Parser(text, file).whole();
+    Position position{text.find('\n') == text.npos ? '\r' : '\n'};
+    TreeBuilder builder(file, position);
+    constexpr bool strict = true, ignore_comments = true;
+    nlohmann::json::sax_parse(Characters{text.data(), &position},
+                              Characters{text.data() + text.size(), &position}, &builder,
+                              nlohmann::json::input_format_t::json, strict, ignore_comments);
+    return std::move(builder.root);
 }
 
 }  // namespace elastocheck::importer::chrono
