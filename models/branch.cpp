@@ -41,9 +41,9 @@ ElasticKind without_force(ElasticKind kind) {
 std::vector<Branch> ways(const Branch& branch) {
     if (branch.from == 0) return {branch};
     if (branch.to == 0) {
-        Branch way = branch;
-        std::swap(way.from, way.to);
-        return {way};
+        Branch side = branch;
+        std::swap(side.from, side.to);
+        return {side};
     }
     const double share = std::abs(branch.from) / (std::abs(branch.from) + std::abs(branch.to));
     Branch back = branch, forth = branch;

@@ -162,7 +162,7 @@ CandidateReading at_equal_parameter(const std::vector<std::size_t>& points,
                                     Reference& reference, const BranchComparison& branch) {
     CandidateReading none;
     if (candidate.points.a.empty()) {
-        none.not_compared = fmt::format("it says no {}", parameter_word(symbol(branch.unit)));
+        none.not_compared = fmt::format("it gives no {}", parameter_word(symbol(branch.unit)));
         return none;
     }
     Requested requested{points, {}, {}};
@@ -198,7 +198,7 @@ CandidateReading at_equal_abscissa(const std::vector<std::size_t>& points,
     const auto c = static_cast<std::size_t>(branch.abscissa);
     const Curve& truth = truth_of(branch);
     if (placed == nullptr) {
-        reading.not_compared = fmt::format("it says no {}", channels[c].name);
+        reading.not_compared = fmt::format("it gives no {}", channels[c].name);
         return reading;
     }
     if (const Abscissa by = abscissa(channels, branch.abscissa, truth, truth);

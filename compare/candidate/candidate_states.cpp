@@ -82,7 +82,7 @@ Candidate candidate_of(const Model& model, const Comparison& comparison, std::st
                 left.truth.push_back(judge(Leg::equilibrium, side, found));
                 left.by_second.push_back(judge(second, side, found));
             } else {
-                left.why_not = "it does not say where every body is";
+                left.why_not = "it does not give the position of every body";
             }
             const bool broken =
                 !std::isfinite(state.load) || std::ranges::any_of(found.poses, is_broken);

@@ -51,9 +51,9 @@ Study study_candidate(const Model& model, const std::string& name,
         std::ranges::adjacent_find(result.steps, std::greater_equal<>{}) != result.steps.end())
         return refuse("at least three numbers of steps are needed, positive and increasing");
     for (const auto& level : levels) {
-        if (level.points.a.empty()) return refuse("it says no load or parameter");
+        if (level.points.a.empty()) return refuse("it gives no load or parameter");
         if (level.points.branch.empty() && model.branches.size() > 1)
-            return refuse("a column 'branch' has to say where a point belongs");
+            return refuse("a column 'branch' is needed, since the scene has several branches");
     }
     const auto all = motion(model);
     const Comparison by = outline(model);

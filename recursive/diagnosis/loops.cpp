@@ -34,15 +34,15 @@ std::vector<int> loops(const Model& model) {
     // Depth-first search (Hopcroft and Tarjan 1973): discovery time and low point of each body.
     std::vector<int> came(ends.size(), -1), earliest(ends.size(), 0);
     std::vector<std::size_t> open;  // constraints whose block is not complete
-    std::vector<Visit> way;
+    std::vector<Visit> stack;
     const auto come_to = [&](std::size_t body, std::size_t by) {
         came[body] = earliest[body] = time++;
-        way.push_back({body, by});
+        stack.push_back({body, by});
     };
     for (std::size_t root = 0; root < ends.size(); ++root) {
         if (came[root] < 0) come_to(root, nowhere);
-        while (!way.empty()) {
-            Visit& at = way.back();
+        while (!stack.empty()) {
+            Visit& at = stack.back();
             const std::size_t body = at.body;
             if (at.next < ends[body].size()) {
                 const End end = ends[body][at.next++];
@@ -57,9 +57,9 @@ std::vector<int> loops(const Model& model) {
                 continue;
             }
             const std::size_t by = at.by;
-            way.pop_back();
-            if (way.empty()) continue;
-            const std::size_t before = way.back().body;
+            stack.pop_back();
+            if (stack.empty()) continue;
+            const std::size_t before = stack.back().body;
             earliest[before] = std::min(earliest[before], earliest[body]);
             if (earliest[body] < came[before]) continue;
             for (std::size_t last = nowhere; last != by; open.pop_back())

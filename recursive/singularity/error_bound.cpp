@@ -94,7 +94,7 @@ struct ErrorEstimator {
             if (correct(q) != Outcome::converged) return none;
             lambda += s.x.tail(s.m());
         }
-        Size way, last, rounded;
+        Size moved, last, rounded;
         Real before = std::numeric_limits<Real>::infinity();
         bool arrived = false;
         for (int k = 0; k < corrections && !arrived; ++k) {
@@ -105,7 +105,7 @@ struct ErrorEstimator {
             s.dq = s.x.head(s.n());
             advance(q, s.dq);
             lambda += s.x.tail(s.m());
-            way = {way.length + last.length, way.angle + last.angle};
+            moved = {moved.length + last.length, moved.angle + last.angle};
             rounded = rounding(q);
             arrived = size <= rounded.length + static_cast<Real>(s.length) * rounded.angle;
             if (!arrived && !(size <= before / 2)) return none;
@@ -127,9 +127,9 @@ struct ErrorEstimator {
         // A pose is written down with the digits of a double.
         constexpr Real digits = std::numeric_limits<double>::epsilon();
         return {
-            static_cast<double>(way.length + last.length + 3 * rounded.length + open +
+            static_cast<double>(moved.length + last.length + 3 * rounded.length + open +
                                 digits * reach(q)),
-            static_cast<double>(way.angle + last.angle + 3 * rounded.angle + open + 4 * digits)};
+            static_cast<double>(moved.angle + last.angle + 3 * rounded.angle + open + 4 * digits)};
     }
 
     // Remaining stiffness over that at the first point; where forces have no energy, with the sign
@@ -153,8 +153,8 @@ struct ErrorEstimator {
         Vector<Real> curvature = Vector<Real>::Zero(s.n()),
                      lambda_curvature = Vector<Real>::Zero(s.m());
         Node<Real> here = *last_found, next = here;
-        const Real way = a - here.p;
-        for (Real h = way; here.p != a;) {
+        const Real interval = a - here.p;
+        for (Real h = interval; here.p != a;) {
             next.p = std::abs(h) < std::abs(a - here.p) ? here.p + h : a;
             const Real tried = next.p - here.p;
             if (try_step(s, settings(), here, curvature, lambda_curvature, next).verdict ==
@@ -164,7 +164,7 @@ struct ErrorEstimator {
                 lambda_curvature = (next.dlambda - here.dlambda) / tried;
                 std::swap(here, next);
                 h = 2 * tried;
-            } else if (h = tried / 4; !(std::abs(h) * shortest >= std::abs(way))) {
+            } else if (h = tried / 4; !(std::abs(h) * shortest >= std::abs(interval))) {
                 return false;
             }
         }

@@ -98,10 +98,11 @@ std::optional<double> stability_limit(const Model& model, const Branch& branch,
     constexpr int points = 64, passes = 24;
     constexpr double near = 1. / 32;
     if (!std::holds_alternative<Linear>(method.kind)) return std::nullopt;
-    Branch way = branch;
+    Branch searched = branch;
     for (int pass = 0; pass < passes; ++pass) {
-        const EquilibriumPath path = solve(
-            model, way, {.method = find_method("adaptive").value(), .steps = points}, analysis);
+        const EquilibriumPath path =
+            solve(model, searched, {.method = find_method("adaptive").value(), .steps = points},
+                  analysis);
         double before = 0, at = 0;
         const Equilibrium* beyond = nullptr;
         double now = 0;
@@ -118,7 +119,7 @@ std::optional<double> stability_limit(const Model& model, const Branch& branch,
             return beyond ? std::optional(0.) : std::nullopt;
         if (std::abs(beyond->load - at) <= near * std::abs(beyond->load))
             return at + (1 - before) / (now - before) * (beyond->load - at);
-        way.to = beyond->load;
+        searched.to = beyond->load;
     }
     return std::nullopt;
 }

@@ -78,11 +78,11 @@ Value Conversion::function(const std::string& text, double time, std::vector<dou
             return unknown;
         }
         open.push_back(id);
-        const Value value = evaluate(*function->second, context);
+        const Value value = static_value(*function->second, context);
         open.pop_back();
         return value;
     };
-    return evaluate(text, context);
+    return static_value(text, context);
 }
 
 // Evaluates the FUNCTION at every time. The smallest and largest values are refined by golden

@@ -458,7 +458,7 @@ class Parser {
 
 }  // namespace
 
-Value evaluate(std::string_view text, const Context& context) {
+Value static_value(std::string_view text, const Context& context) {
     if (text.size() > longest_function) return unknown("too long for a function");
     Parser parser(text, context);
     Value value = parser.whole();

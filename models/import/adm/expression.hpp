@@ -59,6 +59,6 @@ struct Context {
 };
 
 // Never throws: unreadable text gives an unknown value.
-Value evaluate(std::string_view text, const Context& context);
+Value static_value(std::string_view text, const Context& context);
 
 }  // namespace elastocheck::importer::adm

@@ -70,13 +70,13 @@ void double_wishbone(Suspension& s) {
 
 void double_wishbone_reduced(Suspension& s) {
     upright_body(s);
-    for (const std::string way : {"upper", "lower"}) {
+    for (const std::string level : {"upper", "lower"}) {
         const std::string part =
-            (way == "upper" ? "Upper" : "Lower") + std::string(" Control Arm/");
+            (level == "upper" ? "Upper" : "Lower") + std::string(" Control Arm/");
         const FilePoint outer = s.point(part + "Location Upright");
-        s.distance(way + "_front*", "ground", s.point(part + "Location Chassis Front"), "upright*",
-                   outer);
-        s.distance(way + "_rear*", "ground", s.point(part + "Location Chassis Back"), "upright*",
+        s.distance(level + "_front*", "ground", s.point(part + "Location Chassis Front"),
+                   "upright*", outer);
+        s.distance(level + "_rear*", "ground", s.point(part + "Location Chassis Back"), "upright*",
                    outer);
     }
     tierod_spring_and_wheel(s, "Location Upright", "upright*");
@@ -203,10 +203,10 @@ void solid_axle(Suspension& s) {
     axle_tube(s);
     both(s, [&] {
         knuckle(s);
-        for (const std::string way : {"upper", "lower"}) {
-            const std::string name = way + "_link",
-                              part = way == "upper" ? "Upper Link" : "Lower Link",
-                              beside = way == "upper" ? "Lower Link" : "Upper Link";
+        for (const std::string level : {"upper", "lower"}) {
+            const std::string name = level + "_link",
+                              part = level == "upper" ? "Upper Link" : "Lower Link",
+                              beside = level == "upper" ? "Lower Link" : "Upper Link";
             const FilePoint c = s.point(part + "/Location Chassis"),
                             a = s.point(part + "/Location Axle");
             s.body(name + "*", s.point(part + "/COM"), part);
@@ -303,10 +303,10 @@ void dedion(Suspension& s) {
     s.body("watt_centre", middle, "Watt Mechanism", "Center Link Mass");
     s.revolute("watt_centre.pivot", "watt_centre", "axle", {middle, "Watt Mechanism"},
                Vector3d::UnitX());
-    for (const std::string way : {"Left", "Right"}) {
-        const std::string name = way == "Left" ? "watt_link_left" : "watt_link_right";
-        const FilePoint centre = s.left(watt + way + " Link to Center"),
-                        chassis = s.left(watt + way + " Link to Chassis");
+    for (const std::string side : {"Left", "Right"}) {
+        const std::string name = side == "Left" ? "watt_link_left" : "watt_link_right";
+        const FilePoint centre = s.left(watt + side + " Link to Center"),
+                        chassis = s.left(watt + side + " Link to Chassis");
         s.body(name, 0.5 * (centre + chassis), "Watt Mechanism", "Side Link Mass");
         s.spherical(name + ".inner", name, "watt_centre", centre);
         s.spherical(name + ".outer", name, "ground", chassis);

@@ -45,9 +45,9 @@ void shift(const Cursor& at, const Unit& unit, std::vector<TablePoint>& points) 
 }
 
 Curve through(const Cursor& curve, const std::vector<TablePoint>& points) {
-    const auto way = curve.optional("interpolation");
+    const auto between = curve.optional("interpolation");
     const bool is_linear =
-        way && way->one_of("a kind of interpolation", {"monotone", "linear"}) == 1;
+        between && between->one_of("a kind of interpolation", {"monotone", "linear"}) == 1;
     return is_linear ? polygon(points) : interpolant(points);
 }
 
