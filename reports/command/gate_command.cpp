@@ -17,7 +17,6 @@
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
-#include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
@@ -25,7 +24,6 @@
 #include "reports/files/terminal.hpp"
 #include "reports/gate/baseline.hpp"
 #include "reports/gate/gate_report.hpp"
-#include "reports/tables/candidate_tables.hpp"
 #include "reports/text/escape.hpp"
 
 namespace elastocheck::reports {
@@ -37,7 +35,6 @@ using compare::ToleranceClass;
 struct GateOptions {
     std::vector<std::string> scenes;
     Settings settings;
-    CandidateRequest candidate;  // external solver, judged on every scene
     std::string folder, junit, summary, kind, from, reason;
     bool accept = false, as_json = false;
     Running running;
@@ -220,46 +217,6 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
                     is.input_hash, scene.changed.empty() ? "; none of its numbers changed" : ""));
 }
 
-// Judges by the default tolerance, independent of the baseline, since no accepted result applies to
-// a candidate.
-void judge_candidate(const Task& task, const GateOptions& options, GatedScene& scene) {
-    const LoadedScene loaded = load_scene(task.scene, options.settings);
-    compare::Options how;
-    how.prove = false;
-    how.times = false;
-    how.threads = threads_of(options.running);
-    how.progress = options.progress;
-    const auto comparison = compare::compare(loaded.model, how);
-    for (const auto& output : outputs_of(options.candidate, task.scene, {steps_of(loaded.model)})) {
-        const auto judgement = judged(output, options.candidate, loaded, comparison,
-                                      compare::default_tolerance, false);
-        scene.notes.push_back(sentence(judgement, comparison));
-        scene.verdict.compared += judgement.compared;
-        for (const auto& reason : judgement.reasons)
-            scene.verdict.reasons.push_back(
-                fmt::format("candidate '{}': {}", judgement.name, reason));
-        if (judgement.verdict != compare::Grade::fail) continue;
-        std::vector<compare::Offence> offences;
-        for (const auto& worst : judgement.worst)
-            if (!(worst.max <= worst.limit))
-                offences.push_back(
-                    {.branch = worst.branch,
-                     .quantity = worst.kind == compare::ReadingKind::equal_parameter
-                                     ? compare::Quantity::deviation_at_equal_parameter
-                                     : compare::Quantity::deviation_at_equal_abscissa,
-                     .channel = fmt::format("{} of '{}'", worst.channel, judgement.name),
-                     .unit = symbol(worst.unit),
-                     .of_limit = true,
-                     .was = worst.limit,
-                     .is = worst.max});
-        if (offences.empty())
-            scene.verdict.reasons.push_back(
-                fmt::format("candidate '{}': its states violate the constraints", judgement.name));
-        scene.verdict.offences.insert(scene.verdict.offences.begin(), offences.begin(),
-                                      offences.end());
-    }
-}
-
 // The options for the k-th of several scenes.
 GateOptions at_scene(GateOptions options, std::size_t k, std::size_t scenes) {
     const double each = 1 / static_cast<double>(scenes);
@@ -277,7 +234,6 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
     try {
         if (const auto was = accepted(task, scene)) {
             judge(*was, measured(task, options), options.kind, scene);
-            if (options.candidate.wanted()) judge_candidate(task, options, scene);
             // A baseline made in the same run would always agree.
             for (const auto& part : {task.baseline, curves_of(task.baseline)})
                 if (const std::string why = says_yes("CI") ? not_committed(part) : ""; !why.empty())
@@ -294,9 +250,6 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
         scene.bad_input = true;
         scene.verdict.reasons.push_back(fmt::format("{}: {}", task.scene.string(), error.what()));
     } catch (const SceneError& error) {
-        scene.bad_input = true;
-        scene.verdict.reasons.emplace_back(error.what());
-    } catch (const SheetError& error) {  // of --candidate
         scene.bad_input = true;
         scene.verdict.reasons.emplace_back(error.what());
     } catch (const BaselineError& error) {  // of --from
@@ -393,12 +346,6 @@ int accept(const GateOptions& options) {
 }
 
 int gate(const GateOptions& options) {
-    check(options.candidate, options.settings);
-    if (options.candidate.wanted() && options.accept)
-        throw std::invalid_argument("--candidate: not with --accept");
-    if (!options.candidate.files.empty() && options.scenes.size() != 1)
-        throw std::invalid_argument(
-            "--candidate: a file belongs to one scene; give the SCENE, or --candidate-command");
     if (options.accept) return accept(options);
     const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
@@ -447,7 +394,6 @@ Command gate_command() {
          "tolerances: same-build, cross-build or physical (default: by how the builds differ)"},
         {"--from", Text{&options->from, a_file("*.json")},
          "judge this measurement (a file like a baseline) without solving"}};
-    add_candidate_options(list, options->candidate);
     list.push_back(json_option(options->as_json));
     list.push_back(jobs_option(options->running));
     list.push_back(quiet_option(options->running));

@@ -59,12 +59,9 @@ struct ReportRequest {
     Settings settings;
     std::string from;  // a result.json instead of scenes
     std::string folder;
-    std::string measured;                  // CSV
-    std::string branch_column = "branch";  // of it
-    std::vector<std::string> cases;        // "THEIRS=OURS": name in that column = branch
-    CandidateRequest candidate;            // external solver, for one scene
-    std::string alarms;                    // JSON, results of `./dev mutate`
-    std::string stress;                    // JSON, results of `elastocheck stress`
+    std::string measured;        // CSV
+    CandidateRequest candidate;  // external solver, for one scene
+    std::string stress;          // JSON, results of `elastocheck stress`
     std::string tolerance = "0.01mm,0.001deg,1%";
     std::vector<std::string> branches;  // the others are left out
     std::string only;                   // kc, evidence; empty: both
@@ -98,19 +95,10 @@ json recommended(compare::Solves& solves, const compare::Trade& trade) {
     return result;
 }
 
-// Names of the measured file's columns and branches.
-ColumnMap map_of_measured(const ReportRequest& request) {
-    ColumnMap map = map_of(request.candidate);
-    if (request.branch_column != ReportRequest{}.branch_column)
-        map.columns.push_back({.theirs = request.branch_column, .output = "branch"});
-    for (const auto& text : request.cases) map.branches.push_back(parse_load_case(text));
-    return map;
-}
-
 // Returns why the measurement could not be compared; empty if it was.
 std::string add_measured(json& document, const ReportRequest& request) {
     add_measurement(document, read_whole(request.measured, largest_measurement), request.measured,
-                    map_of_measured(request));
+                    map_of(request.candidate));
     for (const auto& column : document["measured"]["left_out"])
         print_error("{}: column left out: {}\n", request.measured, column.get<std::string>());
     return compared_with_measurement(document) > 0
@@ -331,13 +319,6 @@ json read_json(const std::string& file) {
     }
 }
 
-json read_alarms(const std::string& file) {
-    json alarms = read_json(file);
-    if (!alarms.is_array())
-        throw std::invalid_argument(file + ": is not the results.json that ./dev mutate writes");
-    return alarms;
-}
-
 // Map and wrong results; without the cells.
 json read_stress(const std::string& file) {
     json stress = read_json(file);
@@ -414,13 +395,8 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     for (const auto& scene : request.scenes)
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
-    (void)map_of_measured(request);
-    if (request.measured.empty() &&
-        (request.branch_column != ReportRequest{}.branch_column || !request.cases.empty()))
-        throw std::invalid_argument("report: --branch-column and --case: only with --measured");
+    (void)map_of(request.candidate);
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
-    if (!request.alarms.empty() && !request.from.empty())
-        throw std::invalid_argument("report: --alarms: not with --from");
     if (!request.from.empty() &&
         (request.quick || !request.only.empty() || !request.branches.empty()))
         throw std::invalid_argument("report: --quick, --only and --branch: not with --from");
@@ -429,7 +405,6 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     if (!request.stress.empty() && !request.from.empty())
         throw std::invalid_argument("report: --stress: not with --from");
     const json stress = request.stress.empty() ? json() : read_stress(request.stress);
-    const json alarms = request.alarms.empty() ? json() : read_alarms(request.alarms);
     std::string file = request.from;
     json result;
     if (!request.from.empty()) {
@@ -448,7 +423,6 @@ int report(const ReportRequest& request, const std::string& reproduce) {
             result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
         }
         if (!stress.is_null()) result["stress"] = stress;
-        if (!alarms.is_null()) result["alarms"] = alarms;
         remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
@@ -508,17 +482,10 @@ Command report_command() {
          "folder for report.html, report.md, result.json, curves.csv, figures/", true},
         {"--tolerance", Text{&request->tolerance},
          "required accuracy (default: 0.01mm,0.001deg,1%)"},
-        {"--alarms", Text{&request->alarms, a_file("*.json")},
-         "results.json of mutation tests (./dev mutate), shown as a section"},
         {"--stress", Text{&request->stress, a_file("*.json")},
          "stress.json of `elastocheck stress`, shown as a section"},
         {"--measured", Text{&request->measured, a_file("*.csv")},
          "CSV of measured curves, for comparison"},
-        {"--branch-column", Text{&request->branch_column},
-         "column of --measured with the branch of a point (default: branch)"},
-        {"--case", TextList{&request->cases, TextList::Form::separate},
-         "NAME=BRANCH: a name in that column and its branch of the scene; "
-         "repeatable"},
         {"--branch", TextList{&request->branches, TextList::Form::separate},
          "only these branches of the scene"},
         {"--only", Text{&request->only, one_of({"kc", "evidence"})},

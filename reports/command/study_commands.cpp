@@ -25,13 +25,11 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/recursion_options.hpp"
 #include "reports/command/options/running.hpp"
-#include "reports/document/candidate.hpp"
 #include "reports/document/document.hpp"
 #include "reports/document/inspection.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
@@ -49,10 +47,9 @@ struct CompareRequest : SceneRequest {
     RecursionRequest recursion{.method = ""};  // without a method: published, and no verdict
     int every = 1;                             // compares every `every`-th step
     bool keep_all = false;
-    std::string within;          // tolerance of the verdict; empty: the default
-    CandidateRequest candidate;  // external solver, beside the legs
-    bool formulations = false;   // adds the spread over bushing formulations
-    bool definitions = false;    // adds the figures by other definitions
+    std::string within;         // tolerance of the verdict; empty: the default
+    bool formulations = false;  // adds the spread over bushing formulations
+    bool definitions = false;   // adds the figures by other definitions
 };
 struct ConvergeRequest : SceneRequest {
     std::vector<std::string> methods{"published"};
@@ -61,7 +58,6 @@ struct ConvergeRequest : SceneRequest {
 };
 struct TradeRequest : SceneRequest {
     std::string tolerance = "0.01mm,0.001deg,1%";
-    CandidateRequest candidate;
 };
 
 Detail detail(bool keep_all) { return keep_all ? Detail::everything : Detail::required; }
@@ -73,34 +69,6 @@ std::vector<recursive::Method> methods_named(const std::vector<std::string>& nam
             (names.front() == "all" || std::ranges::find(names, method.name) != names.end()))
             methods.push_back(method);
     return methods;
-}
-
-// Error and cost of a candidate's command at several numbers of steps. Where a run could not be
-// judged, its row states this and the reason is appended to `reasons`.
-compare::Table price_of(const CandidateRequest& request, const std::string& file,
-                        const LoadedScene& loaded, const compare::Tolerance& tolerance,
-                        std::vector<std::string>& reasons) {
-    std::vector<CandidateRun> runs;
-    compare::Comparison comparison;
-    for (const int steps : {10, 40, 160, 640}) {
-        compare::Options options;
-        options.recursion.steps = steps;
-        options.prove = false;
-        options.progress = progress;
-        comparison = compare::compare(loaded.model, options);
-        double leg = 0;
-        for (const auto& branch : comparison.branches)
-            leg += branch.runs[static_cast<std::size_t>(compare::Leg::equilibrium)].seconds;
-        for (const auto& output : outputs_of(request, file, {steps}))
-            runs.push_back({steps, output.seconds, output.cpu, leg,
-                            judged(output, request, loaded, comparison, tolerance, true)});
-    }
-    progress("");
-    for (const auto& run : runs)
-        if (run.judgement.verdict == compare::Grade::not_judged)
-            reasons.push_back(fmt::format("the candidate with {} steps could not be judged: {}",
-                                          run.steps, run.judgement.reasons.front()));
-    return candidate_trade_table(runs, comparison);
 }
 
 // Levels of a candidate: files with their numbers of steps, or a run of its command for each
@@ -172,7 +140,6 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     const auto tolerance =
         given ? compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces)
               : compare::default_tolerance;
-    check(request.candidate, request.settings);
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded =
         load_scene(request.scene, request.settings, detail(request.keep_all));
@@ -195,13 +162,6 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
     if (study) delivery.print_text(formulation_text(*study, comparison));
     auto judgement = compare::assess(model, comparison, tolerance, given);
     judgement.requested = given || named;
-    std::vector<compare::CandidateJudgement> candidates;
-    for (const auto& output :
-         outputs_of(request.candidate, request.scene, {steps > 0 ? steps : steps_of(model)})) {
-        candidates.push_back(
-            judged(output, request.candidate, loaded, comparison, tolerance, given));
-        delivery.print_text("\n" + candidate_text(candidates.back(), comparison));
-    }
     if (delivery.wants_document()) {
         json part = document_of(loaded, request.scene);
         add_comparison(part, loaded.scene, model, comparison);
@@ -219,21 +179,10 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
         }
         add_verdict(part, comparison.compared, reasons);
         part["judgement"] = judgement_json(judgement);
-        for (const auto& candidate : candidates)
-            part["candidates"].push_back(
-                candidate_json(candidate, comparison, sentence(candidate, comparison)));
         deliver(delivery, std::move(part), std::move(files));
     }
     delivery.print_text(sentence(judgement) + "\n");
-    // a difference is a result of `compare`, as for the recursion; `judge` makes it an exit code
-    bool judged_all = true;
-    for (const auto& candidate : candidates) {
-        delivery.print_text(sentence(candidate, comparison) + "\n");
-        judged_all = judged_all && candidate.verdict != compare::Grade::not_judged;
-    }
-    return judged_all && comparison.conclusive() && (!study || study->conclusive())
-               ? fine
-               : could_not_judge;
+    return comparison.conclusive() && (!study || study->conclusive()) ? fine : could_not_judge;
 }
 
 int converge(const ConvergeRequest& request, const Delivery& delivery) {
@@ -301,12 +250,7 @@ int converge(const ConvergeRequest& request, const Delivery& delivery) {
 }
 
 int trade(const TradeRequest& request, const Delivery& delivery) {
-    const CandidateRequest& candidate = request.candidate;
     const int threads = threads_of(request.running);
-    check(candidate, request.settings);
-    if (!candidate.files.empty())
-        throw std::invalid_argument(
-            "trade: a --candidate file has no time; give --candidate-command");
     if (!delivery.folder.empty()) Staging::check(delivery.folder);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Model& model = loaded.model;
@@ -320,24 +264,17 @@ int trade(const TradeRequest& request, const Delivery& delivery) {
         model, {.threads = threads, .progress = compare::part(progress, 0.7, 1)});
     progress("");
     delivery.print_text(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
-    std::optional<compare::Table> of_candidate;
-    auto reasons = trade.inconclusive;
-    if (candidate.wanted()) {
-        of_candidate = price_of(candidate, request.scene, loaded, options.tolerance, reasons);
-        delivery.print_text("\nthe candidate\n" + text(*of_candidate));
-    }
     if (delivery.wants_document()) {
         json part = document_of(loaded, request.scene);
         part["trade"] = trade_json(trade);
         part["precision"] = precision_json(precision);
-        if (of_candidate) part["candidate_trade"] = table_json(*of_candidate);
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
-                    reasons);
+                    trade.inconclusive);
         deliver(delivery, std::move(part),
                 {{"trade.csv", csv(trade_rows(trade))},
                  {"precision.csv", csv(precision_rows(precision))}});
     }
-    return trade.recommendation && reasons.empty() ? fine : could_not_judge;
+    return trade.recommendation && trade.inconclusive.empty() ? fine : could_not_judge;
 }
 
 }  // namespace
@@ -372,7 +309,6 @@ Command compare_command() {
                        "default), closed, balanced, tangent, chord, midpoint, adaptive or series"});
     options.push_back(every_option(given->every));
     options.push_back(output_option(given->folder, "folder for result.json and curves.csv"));
-    add_candidate_options(options, given->candidate);
     return {"compare", "Solve a scene with all three methods and show the deviations",
             std::move(options), [given](const std::string& line) {
                 return compare_legs(*given, given->delivery(line));
@@ -410,7 +346,6 @@ Command trade_command() {
                        "required accuracy (default: 0.01mm,0.001deg,1%)"});
     options.push_back(
         output_option(given->folder, "folder for result.json, trade.csv and precision.csv"));
-    add_candidate_options(options, given->candidate);
     return {"trade", "Cost of accuracy: every method against both references, and a recommendation",
             std::move(options),
             [given](const std::string& line) { return trade(*given, given->delivery(line)); }};

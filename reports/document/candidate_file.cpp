@@ -272,7 +272,7 @@ Table read_table(std::string_view csv, const std::string& file, const compare::C
                 table.columns.end())
                 fail_at(file, line,
                         fmt::format("there is no column {} ({})", reader::quote(entry.theirs),
-                                    map.file.empty() ? "--branch-column" : map.file));
+                                    map.file));
         table.values.resize(table.columns.size());
     };
     read_sheet(csv, file, most_measured, head, [&](const Cells& cells, int line) {

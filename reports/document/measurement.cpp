@@ -87,7 +87,7 @@ PointTable read(std::string_view csv, const std::string& file, const SolvedCurve
         const double drawn = solved.drawn[column.channel];
         if (!std::isfinite(drawn))
             fail_at(file, 1,
-                    fmt::format("{}: the result does not say its design position; solve again",
+                    fmt::format("{}: the result lacks the design position; solve again",
                                 channel(column).name));
         for (double& value : column.values) value += drawn;
         column.change = false;
@@ -156,16 +156,6 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
     if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
     if (measured.abscissa)
         scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
-}
-
-std::pair<std::string, std::string> parse_load_case(std::string_view text) {
-    const auto at = text.rfind('=');
-    if (at == text.npos || at == 0 || at + 1 == text.size())
-        throw std::invalid_argument(fmt::format(
-            "--case '{}': allowed: a name of the file's own, '=' and a branch of the scene, such "
-            "as 'Lat Force=lateral'",
-            text));
-    return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
 }
 
 int compared_with_measurement(const json& scene_document) {

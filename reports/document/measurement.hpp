@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "reports/document/candidate_file.hpp"
 #include "reports/files/csv_table.hpp"
@@ -12,9 +11,6 @@
 namespace elastocheck::reports {
 
 using MeasurementError = SheetError;
-
-// "Lat Force=lateral": a branch's name in the file and in the scene. Throws std::invalid_argument.
-std::pair<std::string, std::string> parse_load_case(std::string_view text);
 
 // Adds "measured" to the document of a solved scene: the points, and the deviation of every leg from
 // them.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -29,8 +28,7 @@ void keep_last_part(std::string& output_text) {
 }
 
 // Runs in the child between fork and exec: only async-signal-safe functions are allowed.
-[[noreturn]] void execute_child(char* const* arguments, const char* folder, int output_text,
-                                int failed) {
+[[noreturn]] void execute_child(char* const* arguments, int output_text, int failed) {
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int nothing = ::open("/dev/null", O_RDONLY);
@@ -38,7 +36,7 @@ void keep_last_part(std::string& output_text) {
     ::dup2(output_text, STDOUT_FILENO);
     ::dup2(output_text, STDERR_FILENO);
     std::signal(SIGXFSZ, SIG_DFL);
-    if (::chdir(folder) == 0) ::execvp(arguments[0], arguments);
+    ::execvp(arguments[0], arguments);
     const int why = errno;
     [[maybe_unused]] const auto ignored = ::write(failed, &why, sizeof why);
     ::_exit(127);
@@ -99,7 +97,7 @@ std::string describe(const ProcessResult& result, double limit) {
     return {};
 }
 
-ProcessResult run(const std::vector<std::string>& words, double limit, const std::string& folder) {
+ProcessResult run(const std::vector<std::string>& words, double limit) {
     using clock = std::chrono::steady_clock;
     std::vector<char*> arguments;
     for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -113,7 +111,7 @@ ProcessResult run(const std::vector<std::string>& words, double limit, const std
     auto lock = block_cleanup();
     const pid_t child = ::fork();
     if (child < 0) throw FileError(fmt::format("fork: {}", std::strerror(errno)));
-    if (child == 0) execute_child(arguments.data(), folder.c_str(), output_text[1], failed[1]);
+    if (child == 0) execute_child(arguments.data(), output_text[1], failed[1]);
     ::setpgid(child, child);  // here and in the child, as either may run first
     std::optional<CleanupOnSignal> cleanup(std::in_place,
                                            [child](int signal) { kill_group(child, signal); });
@@ -123,7 +121,6 @@ ProcessResult run(const std::vector<std::string>& words, double limit, const std
     ProcessResult result;
     const auto since = [&] { return std::chrono::duration<double>(clock::now() - start).count(); };
     int status = 0;
-    struct rusage used {};
     bool reaped = false, listening = true;
     while (!reaped) {
         if (listening) {
@@ -145,10 +142,9 @@ ProcessResult run(const std::vector<std::string>& words, double limit, const std
         const bool over = has_exited(child);
         if (!over && since() <= limit) continue;
         if (!over) result.how = ProcessResult::How::too_long;
-        result.seconds = since();
         ::kill(-child, SIGKILL);  // the rest of the process group
         cleanup.reset();          // before the process id can be reused
-        ::wait4(child, &status, 0, &used);
+        ::waitpid(child, &status, 0);
         reaped = true;
     }
     ::fcntl(output_text[0], F_SETFL, O_NONBLOCK);
@@ -162,10 +158,6 @@ ProcessResult run(const std::vector<std::string>& words, double limit, const std
     ::close(output_text[0]), ::close(failed[0]);
     if (result.output_text.size() > largest_output)
         result.output_text.erase(0, result.output_text.size() - largest_output);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    result.cpu = seconds(used.ru_utime) + seconds(used.ru_stime);
     if (not_started)
         result.how = ProcessResult::How::not_started, result.code = why;
     else if (result.how != ProcessResult::How::too_long && WIFSIGNALED(status))

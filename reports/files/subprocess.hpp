@@ -19,8 +19,6 @@ struct ProcessResult {
     enum class How { by_itself, by_signal, too_long, not_started } how = How::by_itself;
     int code = 0;             // exit code, signal, or errno
     std::string output_text;  // last part of its standard error and output
-    double seconds = 0;       // wall-clock time
-    double cpu = 0;           // of the program and the children it waited for
 
     bool succeeded() const { return how == How::by_itself && code == 0; }
 };
@@ -28,11 +26,10 @@ struct ProcessResult {
 // and was killed"
 std::string describe(const ProcessResult& result, double limit);
 
-// Runs the program in `folder` with empty standard input. When it ends, or after `limit` seconds,
+// Runs the program with empty standard input. When it ends, or after `limit` seconds,
 // the rest of its process group is killed. A signal that ends this program is passed to the group,
 // which is killed after one second.
-ProcessResult run(const std::vector<std::string>& words, double limit,
-                  const std::string& folder = ".");
+ProcessResult run(const std::vector<std::string>& words, double limit);
 
 // A new folder in $TMPDIR or in /tmp, removed by its destructor or when a signal ends the program.
 // Throws FileError.

@@ -151,40 +151,6 @@ std::string sentence(const CandidateJudgement& j, const compare::Comparison& com
     return {};
 }
 
-compare::Table candidate_trade_table(const std::vector<CandidateRun>& runs,
-                                     const compare::Comparison& comparison) {
-    using enum Digits;
-    compare::Table table{
-        {{"steps", "", "", false, whole},
-         {"error", "mm", "largest of the main outputs at equal load or parameter", false,
-          Digits::size},
-         {"angle error", "deg", "likewise", false, Digits::size},
-         {"verdict", "", "by the tolerance", true, words},
-         {"time", "s", "of the whole program", false, three},
-         {"CPU time", "s", "of the whole program", false, three},
-         {"time over the leg's", "", "the equilibrium leg at as many points, within this program",
-          false, three},
-         {"why", "", "it could not be judged", true, words}},
-        {}};
-    for (const auto& run : runs) {
-        compare::Accuracy worst{NAN, NAN};
-        for (const auto& branch : run.judgement.branches)
-            for (std::size_t c = 0; c < branch.equal_parameter.columns.size(); ++c) {
-                const auto& d = branch.equal_parameter.columns[c];
-                const auto& channel = comparison.channels[run.judgement.columns[c].channel];
-                if (!channel.main || d.compared == 0) continue;
-                double& side = channel.unit == Unit::deg ? worst.deg : worst.mm;
-                side = std::isnan(side) ? d.max : compare::worse(d.max, side);
-            }
-        table.rows.push_back(
-            {static_cast<double>(run.steps), worst.mm, worst.deg,
-             std::string(compare::name(run.judgement.verdict)), run.seconds, run.cpu,
-             run.seconds / run.leg_seconds,
-             run.judgement.reasons.empty() ? std::string() : run.judgement.reasons.front()});
-    }
-    return table;
-}
-
 std::string candidate_text(const CandidateJudgement& j, const compare::Comparison& comparison) {
     std::string text = fmt::format(
         "candidate '{}', compared with the equilibrium leg at its own points\n", j.name);

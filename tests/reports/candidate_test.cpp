@@ -249,22 +249,6 @@ TEST(CandidateCommand, AnUnusableTemporaryFolderIsNamedWithItsVariable) {
                          "directory); set TMPDIR to a folder that can be written"}});
 }
 
-TEST(CandidateCommand, TradeOfRunsThatCouldNotBeJudgedIsNoSuccess) {
-    const Folder folder;
-    const Said said = expect_says("trade " + folder.write("chain.yaml", chain_of(15)) +
-                                      " --candidate-command 'false {output}' -o " +
-                                      (folder.path / "out").string(),
-                                  3);
-    EXPECT_TRUE(contains(said.out, "tolerance [mm]")) << "tolerances are in mm\n" << said.out;
-    EXPECT_FALSE(contains(said.out, " m,") || contains(said.out, " m\n") ||
-                 contains(said.out, "[m]"))
-        << said.out;
-    const auto result = json::parse(text_of(folder.path / "out/result.json"));
-    expect_parts(
-        result["scenes"][0]["verdict"].dump(),
-        {"the candidate with 10 steps could not be judged: 'false' ended with exit code 1"});
-}
-
 // ---- Tables in other layouts.
 
 std::string rows(const std::string& csv, const std::vector<std::string>& columns,
@@ -470,13 +454,6 @@ TEST(CandidateCommand, ConvergeFindsOrderAndLimitOfTheRecursionRunFromOutside) {
     expect_says("converge " + strut + " --candidate 75=" +
                     solved(folder, "a.csv", "--method published --steps 75 -o"),
                 3, {.out = {"at least three numbers of steps"}});
-}
-
-TEST(CandidateCommand, CompareShowsItBesideTheLegs) {
-    const Folder folder;
-    expect_says(fmt::format("compare {} --steps 10 --candidate {}", strut,
-                            solved(folder, "mine.csv", "--method published --steps 10 -o")),
-                0, {.out = {"Fail: the candidate ‘mine’"}});
 }
 
 TEST(CandidateCommand, ThePageShowsItsVerdictFirst) {

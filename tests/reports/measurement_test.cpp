@@ -319,6 +319,7 @@ ColumnMap cases(std::vector<std::pair<std::string, std::string>> names) {
     ColumnMap map;
     map.columns = {{.theirs = "case", .output = "branch"}};
     map.branches = std::move(names);
+    map.file = "map.yaml";
     return map;
 }
 
@@ -345,9 +346,9 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
          {std::pair{"case,parameter_mm,toe_deg\nBunce,-20,1\n",
                     "kc.csv:2: case: the scene has no branch 'Bunce'"},
           std::pair{"branch,parameter_mm,toe_deg\ntravel,-20,1\n",
-                    "kc.csv:1: there is no column 'case' (--branch-column)"},
+                    "kc.csv:1: there is no column 'case' (map.yaml)"},
           std::pair{"parameter_mm,toe_deg\n-20,1\n",
-                    "kc.csv:1: there is no column 'case' (--branch-column)"},
+                    "kc.csv:1: there is no column 'case' (map.yaml)"},
           std::pair{"case,parameter_mm,load_N,toe_deg\nBounce,,500,1\n",
                     "kc.csv:2: load_N: 'N' is not a unit of the parameter of branch 'travel'"}})
         EXPECT_TRUE(rig().refusal(csv, map).starts_with(why)) << rig().refusal(csv, map);
@@ -359,10 +360,6 @@ TEST(Measurement, SeveralLoadCasesEachOverItsOwnDriveInTheFilesOwnNames) {
     EXPECT_TRUE(rig()
                     .refusal("parameter_mm,load_N,toe_deg\n-20,1,1\n", {})
                     .starts_with("kc.csv:2: load_N: 'N' is not a unit"));
-    EXPECT_EQ(parse_load_case("Lat Force=x=lateral"),
-              (std::pair<std::string, std::string>{"Lat Force=x", "lateral"}));
-    for (const char* wrong : {"lateral", "=lateral", "Lat="})
-        EXPECT_THROW((void)parse_load_case(wrong), std::invalid_argument) << wrong;
 }
 
 // A rig's file has a travel column for its ride case and a force for the others: a point is drawn

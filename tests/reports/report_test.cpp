@@ -141,26 +141,6 @@ TEST(Report, SeveralScenesBeginWithASummaryOfTheirMethods) {
     EXPECT_TRUE(contains(row("second"), "| not judged |")) << row("second");
 }
 
-TEST(Report, ShowsWhichAlarmsRangAndSaysWhenAFaultSurvived) {
-    const Folder folder;
-    auto result = small_result("x");
-    write_report(result, "result.json", folder.path / "without");
-    expect_parts(text_of(folder.path / "without" / "report.html"), {},
-                 {"Mutation tests: seeded faults"});
-    result["alarms"] = nlohmann::ordered_json::parse(
-        R"([{"fault": "sign", "in": "a.cpp", "simulates": "a <sign>", "first": "Some.Test", "margin": "3.2", "alarms": 2},
-            {"fault": "row", "in": "b.cpp", "simulates": "a row", "first": "", "margin": "", "alarms": 0}])");
-    write_report(result, "result.json", folder.path / "with");
-    const std::string html = text_of(folder.path / "with" / "report.html"),
-                      markdown = text_of(folder.path / "with" / "report.md");
-    expect_parts(html, {"Mutation tests: seeded faults", "2 faults", "1 survived", "a &lt;sign&gt;",
-                        "Some.Test"});
-    expect_parts(markdown,
-                 {"## Mutation tests: seeded faults", "2 faults", "Some.Test", "survived"});
-    result["alarms"][0].erase("first");
-    EXPECT_THROW(write_report(result, "result.json", folder.path / "broken"), ResultError);
-}
-
 TEST(Report, ReplacesAnOlderOneCompletely) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "r");

@@ -117,7 +117,7 @@ TEST(Running, ATerminalShowsABarUnlessQuiet) {
 
 TEST(Running, WithoutATerminalALineIsWrittenEveryTenSeconds) {
     const std::string call =
-        "compare " + scenes + "/pinned_bar.yaml --candidate-command \"sh -c 'sleep 12' {output}\"";
+        "judge " + scenes + "/pinned_bar.yaml --candidate-command \"sh -c 'sleep 12' {output}\"";
     const Said said = elastocheck_says(call);
     expect_parts(said.err, {"10 s: sh with "});
     EXPECT_EQ(std::ranges::count(said.err, '\r'), 0);

@@ -112,7 +112,6 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
         run_of.of_command = true;
         progress(run_of.file);
         const ProcessResult result = run(given, request.timeout);
-        run_of.seconds = result.seconds, run_of.cpu = result.cpu;
         if (!result.succeeded()) {
             run_of.failed =
                 fmt::format("'{}' {}", words.front(), describe(result, request.timeout));

@@ -36,7 +36,6 @@ struct CandidateOutput {
     std::string content;
     // reason for missing content: the command crashed, took too long, wrote nothing
     std::string failed;
-    double seconds = 0, cpu = 0;  // of the command
 };
 
 // Throws std::invalid_argument for a request that is invalid for any candidate; called before the

@@ -237,32 +237,6 @@ json provenance(const JsonCursor& result) {
     return table_json(table);
 }
 
-// Seeded faults (mutation tests), and the first failing check of each.
-json alarms(const JsonCursor& result) {
-    const auto found = result.find("alarms");
-    if (!found) return nullptr;
-    Table table{.caption = "Seeded faults and the first test that failed",
-                .columns = {{"fault", true},
-                            {"in", true},
-                            {"what it simulates", true},
-                            {"first failing test", true},
-                            {"margin"},
-                            {"alarms"}},
-                .rows = {},
-                .folded = true};
-    int survived = 0;
-    for (const auto& fault : found->items()) {
-        const std::string first = fault["first"].text(), margin = fault["margin"].text();
-        survived += first.empty();
-        table.rows.push_back({fault["fault"].text(), fault["in"].text(), fault["simulates"].text(),
-                              first.empty() ? "survived" : first, margin.empty() ? "–" : margin,
-                              whole_number(fault["alarms"].whole())});
-    }
-    return {{"count", table.rows.size()},
-            {"survived", survived == 0 ? json("none") : json(survived)},
-            {"table", table_json(table)}};
-}
-
 }  // namespace
 
 std::string numbers_csv(const json& result, const std::string& file) {
@@ -417,7 +391,6 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                        {"provenance", provenance(root)},
                        {"reproduce", for_terminal(root["reproduce"].text())},
                        {"stress", survival(root)},
-                       {"alarms", alarms(root)},
                        {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
