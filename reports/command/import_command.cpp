@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
@@ -28,12 +27,11 @@ namespace {
 constexpr const char* import_schema = "elastocheck/import/1";
 
 struct ImportRequest {
-    std::vector<std::string> files;
+    std::string file;
     std::string output;  // empty: standard output
     std::string wheel, axes;
     std::vector<std::string> drop;
     bool allow_missing = false;
-    bool table = false;  // table of the outcome of each file, instead of a scene
     bool as_json = false;
 };
 struct ExportRequest {
@@ -109,46 +107,6 @@ bool convert(Scene& scene, const std::string& target, importer::Notes& notes) {
     return study.conclusive();
 }
 
-std::string first_line(std::string text) { return text.substr(0, text.find('\n')); }
-
-// Outcome of each file, one row each, including rejected imports.
-int print_table(const ImportRequest& request) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    if (!request.as_json)
-        print("| file | bodies | joints | elements | outcome |\n|---|---|---|---|---|\n");
-    for (const std::string& file : request.files) {
-        const std::string name = std::filesystem::path(file).filename().string();
-        nlohmann::ordered_json row{{"file", name}};
-        std::string outcome;
-        try {
-            const importer::Imported result = importer::import_file(file, options(request));
-            outcome = result.notes.missing.empty()
-                          ? "imported"
-                          : fmt::format("imported, {} missing", result.notes.missing.size());
-            if (!result.notes.warnings.empty())
-                outcome += fmt::format(", {} warning{}", result.notes.warnings.size(),
-                                       result.notes.warnings.size() == 1 ? "" : "s");
-            row.update({{"bodies", result.bodies},
-                        {"joints", result.joints},
-                        {"elements", result.elements}});
-        } catch (const SceneError& error) {
-            outcome = first_line(error.what());
-            if (outcome.starts_with(file))
-                outcome = "refused: " + name + outcome.substr(file.size());
-        }
-        row["outcome"] = outcome;
-        const auto count = [&](const char* key) {
-            return row.contains(key) ? std::to_string(row[key].get<int>()) : "-";
-        };
-        if (!request.as_json)
-            print("| {} | {} | {} | {} | {} |\n", name, count("bodies"), count("joints"),
-                  count("elements"), outcome);
-        rows.push_back(row);
-    }
-    if (request.as_json) print_document({{"schema", import_schema}, {"files", rows}});
-    return fine;
-}
-
 constexpr std::size_t most_bodies_settled = 200;
 
 // Message whether the first branch can begin: whether an equilibrium is found at a = 0, and its
@@ -182,12 +140,8 @@ std::string settling(const std::string& yaml) {
 }
 
 int import(const ImportRequest& request) {
-    if (request.table) return print_table(request);
-    if (request.files.size() > 1)
-        throw std::invalid_argument(
-            "import: one FILE at a time makes a scene; several with --table");
     if (!request.output.empty()) check_may_write(request.output, scene_file);
-    importer::Imported result = importer::import_file(request.files.front(), options(request));
+    importer::Imported result = importer::import_file(request.file, options(request));
     auto lines = importer::described(result.notes);
     if (const std::string line = settling(result.yaml); !line.empty()) {
         lines.push_back(line);
@@ -197,7 +151,7 @@ int import(const ImportRequest& request) {
     if (request.as_json) {
         print_document({{"schema", import_schema},
                         {"files",
-                         {{{"file", request.files.front()},
+                         {{{"file", request.file},
                            {"bodies", result.bodies},
                            {"joints", result.joints},
                            {"elements", result.elements},
@@ -253,8 +207,7 @@ Command import_command() {
         "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
         "hardpoints "
         ".sub",
-        {{"FILE", TextList{&request->files, TextList::Form::separate, a_file("*")},
-          "the model (.adm, .json, .sub)", true},
+        {{"FILE", Text{&request->file, a_file("*")}, "the model (.adm, .json, .sub)", true},
          {"-o,--output", Text{&request->output, a_file("*.yaml")}, "write the scene to this file"},
          {"--wheel", Text{&request->wheel},
           "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
@@ -266,7 +219,6 @@ Command import_command() {
           "axes of a table of hardpoints (.sub), turned to ISO 8855: x-rearward,y-right (default)"},
          {"--allow-missing", Flag{&request->allow_missing},
           "warn about what a scene cannot represent instead of rejecting the file"},
-         {"--table", Flag{&request->table}, "print the outcome of each of several files only"},
          json_option(request->as_json)},
         [request](const std::string&) { return import(*request); }};
 }

@@ -621,8 +621,7 @@ TEST(Import, APipeIsRefusedAtOnce) {
     }
 }
 
-// models/import/README.md shows this table, made by
-// `elastocheck import --table tests/models/import/samples/*`.
+// A row that differs is printed as it should be recorded.
 TEST(Import, EverySampleIsImportedOrRefusedAsRecorded) {
     std::istringstream recorded(support::text_of(folder / "outcomes.md"));
     int rows = 0;
