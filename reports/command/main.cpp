@@ -15,8 +15,8 @@
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/registry.hpp"
 #include "reports/document/measurement.hpp"
-#include "reports/files/cleanup.hpp"
 #include "reports/files/files.hpp"
+#include "reports/files/subprocess.hpp"
 #include "reports/files/terminal.hpp"
 #include "reports/json/json_cursor.hpp"
 
@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
         print_error("elastocheck: {}{}\n", code == bug ? "internal error: " : "", what);
         return code;
     };
-    clean_up_on_signals();
+    end_child_on_signals();
     // A write beyond the file size limit then fails like one on a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     // After a reader has closed its pipe, the write fails instead of the process, so that files are

@@ -130,10 +130,8 @@ AtomicFile::AtomicFile(fs::path file, const FileKind& kind) : kind_(&kind), file
             fmt::format("{}: cannot make its folder: {}", file_.string(), failed.message()));
     check_may_write(file_, kind);
     temporary_ = temporary_beside(file_);
-    const auto lock = block_cleanup();
     out_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (out_ < 0) fail_access(file_, "written");
-    cleanup_.emplace([path = temporary_](int) { ::unlink(path.c_str()); });
 }
 
 AtomicFile::~AtomicFile() {
@@ -190,7 +188,6 @@ void append(const fs::path& file, std::string_view content) {
 }
 
 void fill(const fs::path& file, std::string_view content) {
-    const auto lock = block_cleanup();
     std::error_code failed;
     fs::create_directories(file.parent_path(), failed);
     if (failed)

@@ -3,12 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-#include "reports/files/cleanup.hpp"
 #include "reports/files/limits.hpp"
 
 namespace elastocheck::reports {
@@ -36,13 +34,13 @@ inline constexpr FileKind summary_file{"gate summary", "# elastocheck gate: "};
 void check_may_write(const std::filesystem::path& file, const FileKind& kind);
 
 // Temporary name ".NAME.elastocheck-PROCESS" beside a file or folder that is being written. Removes
-// those that killed runs left there.
+// those that interrupted runs left there.
 std::filesystem::path temporary_beside(const std::filesystem::path& path);
 
 // A file that is written in pieces under a temporary name beside its own, and renamed when it is
-// complete. An unfinished file is removed by its owner, also when a signal ends the program; if the
-// owner was killed, by the next run that writes this file. Throws FileError; an older file of that
-// name is then untouched.
+// complete. An unfinished file is removed by its owner; if a signal or a crash ended the owner, by
+// the next run that writes this file. Throws FileError; an older file of that name is then
+// untouched.
 class AtomicFile {
   public:
     // check_may_write; creates the folder when it is missing.
@@ -62,7 +60,6 @@ class AtomicFile {
     std::filesystem::path file_, temporary_;
     std::string buffer_;  // write buffer
     int out_ = -1;
-    std::optional<CleanupOnSignal> cleanup_;
 };
 
 // Writes a file at once.

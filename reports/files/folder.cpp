@@ -84,10 +84,8 @@ Staging::Staging(const fs::path& folder) : target_(resolved(folder)) {
     fs::create_directories(target_.parent_path(), failed);
     if (failed) fail(folder, fmt::format("cannot make its folder: {}", failed.message()));
     staging_ = temporary_beside(target_);
-    const auto no_cleanup = block_cleanup();
     if (!fs::create_directory(staging_, failed))
         fail(folder, fmt::format("cannot be written: {}", failed.message()));
-    cleanup_.emplace([staging = staging_](int) { fs::remove_all(staging); });
 }
 
 Staging::~Staging() {

@@ -17,7 +17,8 @@ inline constexpr const char* manifest = "files.txt";
 inline constexpr const char* manifest_head = "elastocheck files 1";
 
 // Staging folder: the new folder while it is written, beside the one that it replaces. It is
-// removed unless published, also when a signal ends the program.
+// removed unless published; if a signal or a crash ended the program, by the next run that writes
+// this folder.
 class Staging {
   public:
     // Throws FileError when `folder` is a file, or holds a file that is not on its manifest.
@@ -35,7 +36,6 @@ class Staging {
 
   private:
     std::filesystem::path target_, staging_;
-    std::optional<CleanupOnSignal> cleanup_;
 };
 
 // A whole folder in one step: names and contents of its files.

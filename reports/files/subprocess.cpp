@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -49,13 +51,21 @@ bool has_exited(pid_t child) {
            info.si_pid == child;
 }
 
-void kill_group(pid_t leader, int signal) {
-    ::kill(-leader, signal);
-    for (int k = 0; k < 100 && !has_exited(leader); ++k) ::usleep(10'000);
-    ::kill(-leader, SIGKILL);
+// Process group of the running program; 0: none.
+std::atomic<pid_t> running_group = 0;
+
+void end_with_child(int signal) {
+    if (const pid_t group = running_group; group > 0) ::kill(-group, SIGKILL);
+    std::signal(signal, SIG_DFL);
+    ::raise(signal);  // acts when this handler returns
 }
 
 }  // namespace
+
+void end_child_on_signals() {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT})
+        if (std::signal(signal, end_with_child) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
 
 std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
@@ -108,14 +118,11 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
     if (::pipe2(failed, O_CLOEXEC) != 0)
         throw FileError(fmt::format("pipe: {}", std::strerror(errno)));
     const auto start = clock::now();
-    auto lock = block_cleanup();
     const pid_t child = ::fork();
     if (child < 0) throw FileError(fmt::format("fork: {}", std::strerror(errno)));
     if (child == 0) execute_child(arguments.data(), output_text[1], failed[1]);
     ::setpgid(child, child);  // here and in the child, as either may run first
-    std::optional<CleanupOnSignal> cleanup(std::in_place,
-                                           [child](int signal) { kill_group(child, signal); });
-    lock.unlock();
+    running_group = child;
     ::close(output_text[1]), ::close(failed[1]);
 
     ProcessResult result;
@@ -143,7 +150,7 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
         if (!over && since() <= limit) continue;
         if (!over) result.how = ProcessResult::How::too_long;
         ::kill(-child, SIGKILL);  // the rest of the process group
-        cleanup.reset();          // before the process id can be reused
+        running_group = 0;        // before the process id can be reused
         ::waitpid(child, &status, 0);
         reaped = true;
     }
@@ -168,20 +175,14 @@ ProcessResult run(const std::vector<std::string>& words, double limit) {
 }
 
 TemporaryFolder::TemporaryFolder() {
-    const char* const output_text = std::getenv("TMPDIR");
-    const std::string parent =
-        output_text != nullptr && *output_text != '\0' ? output_text : "/tmp";
-    path_ = (std::filesystem::path(parent) / "elastocheck-XXXXXX").string();
-    const auto lock = block_cleanup();
-    if (::mkdtemp(path_.data()) == nullptr)
+    const char* const given = std::getenv("TMPDIR");
+    const std::string parent = given != nullptr && *given != '\0' ? given : "/tmp";
+    path_ = temporary_beside(std::filesystem::path(parent) / "candidate").string();
+    if (::mkdir(path_.c_str(), 0700) != 0)
         throw FileError(
             fmt::format("TMPDIR: no temporary folder can be made in {} ({}); set TMPDIR to a "
                         "folder that can be written",
                         parent, std::strerror(errno)));
-    cleanup_.emplace([path = path_](int) {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    });
 }
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;

@@ -1,12 +1,9 @@
 // Runs another program: without a shell, in its own process group, for a limited time.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "reports/files/cleanup.hpp"
 
 namespace elastocheck::reports {
 
@@ -26,13 +23,16 @@ struct ProcessResult {
 // and was killed"
 std::string describe(const ProcessResult& result, double limit);
 
-// Runs the program with empty standard input. When it ends, or after `limit` seconds,
-// the rest of its process group is killed. A signal that ends this program is passed to the group,
-// which is killed after one second.
+// Runs the program with empty standard input. When it ends, or after `limit` seconds, the rest of
+// its process group is killed. Not from several threads at once.
 ProcessResult run(const std::vector<std::string>& words, double limit);
 
-// A new folder in $TMPDIR or in /tmp, removed by its destructor or when a signal ends the program.
-// Throws FileError.
+// Installs a handler for SIGINT, SIGTERM, SIGHUP and SIGQUIT, unless ignored: kills the process
+// group of a running program and ends this one by the signal's default action.
+void end_child_on_signals();
+
+// A new folder in $TMPDIR or in /tmp, removed by its destructor; if a signal or a crash ended the
+// program, by the next one that makes such a folder. Throws FileError.
 class TemporaryFolder {
   public:
     TemporaryFolder();
@@ -43,7 +43,6 @@ class TemporaryFolder {
 
   private:
     std::string path_;
-    std::optional<CleanupOnSignal> cleanup_;
 };
 
 }  // namespace elastocheck::reports

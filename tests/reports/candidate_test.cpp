@@ -217,7 +217,7 @@ int ended_by(const Folder& folder, const std::string& file, int signal,
     return WIFSIGNALED(status) ? WTERMSIG(status) : -WEXITSTATUS(status);
 }
 
-TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndLeavesNoTemporaryFolder) {
+TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndTheNextRunClearsUp) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
         const Folder folder;
         const std::string numbers = (folder.path / "numbers").string(),
@@ -237,7 +237,11 @@ TEST(CandidateCommand, ASignalEndsAllThatTheProgramRunsAndLeavesNoTemporaryFolde
             EXPECT_FALSE(is_running(process)) << "signal " << signal;
         }
         EXPECT_EQ(processes, 3);
-        EXPECT_TRUE(std::filesystem::is_empty(folder.path / "tmp")) << "signal " << signal;
+        const std::string temporary = (folder.path / "tmp").string();
+        EXPECT_FALSE(std::filesystem::is_empty(temporary)) << "signal " << signal;
+        (void)support::says("env -u CI TMPDIR=" + temporary + " " ELASTOCHECK_COMMAND " judge " +
+                            scenes + "/pinned_bar.yaml --candidate-command 'false {output}'");
+        EXPECT_TRUE(std::filesystem::is_empty(temporary)) << "signal " << signal;
     }
 }
 

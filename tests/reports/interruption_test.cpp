@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <regex>
 #include <set>
+#include <tuple>
 #include <vector>
 
 #include "reports/files/files.hpp"
@@ -92,15 +93,19 @@ TEST(Writers, RemoveTemporaryFilesOfEndedProcessesOnly) {
 
 // ---- Ended by a signal, or by a reader that closes the pipe.
 
-TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
+// Nothing under the name of the output; the next run removes the temporary one.
+TEST(Ended, ByASignalLeavesNoPartOfAReportOrAFileAndTheNextRunClearsUp) {
     const Folder made;
     ASSERT_EQ(
         says(command + "compare " + pinned_bar + " --steps 10 -o " + (made.path / "c").string())
             .code,
         0);
-    for (const std::string& what : std::vector<std::string>{
-             "solve " + scenes + "/front_axle.yaml" + " --steps 200000 -o out.csv",
-             "report --from " + (made.path / "c/result.json").string() + " -o out"}) {
+    const std::string report =
+        "report --from " + (made.path / "c/result.json").string() + " -o out";
+    for (const auto& [what, next, target] :
+         {std::tuple{"solve " + scenes + "/front_axle.yaml --steps 200000 -o out.csv",
+                     "solve " + pinned_bar + " --steps 2 -o out.csv", "out.csv"},
+          {report, report, "out"}}) {
         const Folder folder;
         // The temporary name is there while it works.
         expect_said(
@@ -108,7 +113,9 @@ TEST(Ended, ByASignalLeavesNothingOfAReportOrAFileThatIsBeingWritten) {
                  " >/dev/null 2>&1 & } && for k in $(seq 3000); do ls -A | grep -q elastocheck- "
                  "&& break; sleep 0.01; done; ls -A; kill -TERM $!; wait $!"),
             128 + SIGTERM, {.out = {".elastocheck-"}});
-        EXPECT_TRUE(fs::is_empty(folder.path)) << what;
+        EXPECT_FALSE(fs::exists(folder.path / target)) << what;
+        EXPECT_EQ(says("cd " + folder.path.string() + " && " + command + next).code, 0);
+        EXPECT_EQ(names_in(folder.path), std::set<std::string>{target}) << what;
     }
 }
 
