@@ -43,7 +43,6 @@
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/judgement.hpp"
 #include "reports/tables/render.hpp"
-#include "reports/tables/studies/stress_tables.hpp"
 #include "reports/tables/studies/study_tables.hpp"
 #include "reports/text/words.hpp"
 
@@ -61,7 +60,6 @@ struct ReportRequest {
     std::string folder;
     std::string measured;        // CSV
     CandidateRequest candidate;  // external solver, for one scene
-    std::string stress;          // JSON, results of `elastocheck stress`
     std::string tolerance = "0.01mm,0.001deg,1%";
     std::vector<std::string> branches;  // the others are left out
     std::string only;                   // kc, evidence; empty: both
@@ -311,25 +309,6 @@ void overlay(json& result, const ReportRequest& request) {
     result = json::parse(result.dump());
 }
 
-json read_json(const std::string& file) {
-    try {
-        return parse_json(read_whole(file));
-    } catch (const JsonError& error) {
-        throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
-    }
-}
-
-// Map and wrong results; without the cells.
-json read_stress(const std::string& file) {
-    json stress = read_json(file);
-    if (!stress.is_object() || stress.value("schema", json()) != stress_schema)
-        throw std::invalid_argument(
-            fmt::format("{}: is not the stress.json that `elastocheck stress` writes ('{}')", file,
-                        stress_schema));
-    for (const char* key : {"cells", "reproduce"}) stress.erase(key);
-    return stress;
-}
-
 // Answer of each scene, and whether it passes.
 json answer_document(const json& result, const std::vector<Answer>& answers,
                      const std::string& page) {
@@ -402,9 +381,6 @@ int report(const ReportRequest& request, const std::string& reproduce) {
         throw std::invalid_argument("report: --quick, --only and --branch: not with --from");
     if (request.quick && request.only == "evidence")
         throw std::invalid_argument("report: --quick leaves out what --only evidence shows");
-    if (!request.stress.empty() && !request.from.empty())
-        throw std::invalid_argument("report: --stress: not with --from");
-    const json stress = request.stress.empty() ? json() : read_stress(request.stress);
     std::string file = request.from;
     json result;
     if (!request.from.empty()) {
@@ -422,7 +398,6 @@ int report(const ReportRequest& request, const std::string& reproduce) {
             };
             result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
         }
-        if (!stress.is_null()) result["stress"] = stress;
         remove_times(result);
         result = json::parse(result.dump());  // as read from the file: NaN is null
     }
@@ -482,8 +457,6 @@ Command report_command() {
          "folder for report.html, report.md, result.json, curves.csv, figures/", true},
         {"--tolerance", Text{&request->tolerance},
          "required accuracy (default: 0.01mm,0.001deg,1%)"},
-        {"--stress", Text{&request->stress, a_file("*.json")},
-         "stress.json of `elastocheck stress`, shown as a section"},
         {"--measured", Text{&request->measured, a_file("*.csv")},
          "CSV of measured curves, for comparison"},
         {"--branch", TextList{&request->branches, TextList::Form::separate},

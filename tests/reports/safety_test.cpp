@@ -193,7 +193,6 @@ TEST(Harm, WhatCannotBeNamedOrOpenedIsBadInput) {
              "report " + scene + " -o loop", std::string("report --from loop -o out"),
              std::string("gate --baseline loop"), "gate " + scene + " --junit loop/j.xml",
              "report " + scene + " --measured loop -o out",
-             "report " + scene + " --stress loop -o out",
              std::string("report --from /dev/zero -o out")})
         expect_said(in(folder, arguments), 2, {.not_err = {"internal error"}});
 }

@@ -1,59 +1,18 @@
-// Survival map in all output formats, and the extreme scenes.
+// The stress test as the command writes it, and the extreme scenes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <iostream>
-
 #include <nlohmann/json.hpp>
 
 #include "reports/extremes/extremes.hpp"
-#include "reports/json/json_cursor.hpp"
-#include "reports/page/report/report.hpp"
 #include "reports/tables/studies/stress_tables.hpp"
 #include "tests/reports/command.hpp"
-#include "tests/reports/result.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-const char* const map = R"({
-  "solvers": ["published", "series"], "sweeps": ["as it is", "far <away>"],
-  "map": [{"scene": "arch", "signs": ["39", "X!"]}],
-  "extremes": [{"scene": "column", "variant": "straight | so", "signs": "?~"}],
-  "counts": {"right": 3, "unpromised": 1, "honest": 1, "elsewhere": 1, "unjudged": 1, "wrong": 1},
-  "wrong": [{"scene": "arch", "variant": "far", "way": "down", "solver": "published", "why": "off by 2 mm"}],
-  "skipped": []})";
-
-TEST(Survival, TheMapIsOnThePageAndInItsTwin) {
-    const Folder folder;
-    auto result = small_result();
-    write_report(result, "result.json", folder.path / "without");
-    expect_parts(text_of(folder.path / "without" / "report.html"), {},
-                 {"Stress test: extreme scenes"});
-    result["stress"] = json::parse(map);
-    write_report(result, "result.json", folder.path / "with");
-    const std::string html = text_of(folder.path / "with" / "report.html"),
-                      markdown = text_of(folder.path / "with" / "report.md");
-    expect_parts(
-        html, {"<b class=\"some\">3</b><b class=\"many\">9</b>",
-               "<b class=\"wrong\">X</b><b class=\"failed\">!</b>",
-               "<b class=\"unknown\">?</b><b class=\"elsewhere\">~</b>", "Of 8 results 3 are right",
-               "1 are wrong", "far &lt;away&gt;", "off by 2 mm"});
-    expect_parts(markdown, {"| arch | `39` | `X!` |", "`?~`", "straight \\| so", "off by 2 mm"});
-}
-
-TEST(Survival, ASignThatIsNoneIsRefused) {
-    const Folder folder;
-    for (const char* signs : {"3", "39!", "3`", "3<"}) {
-        auto result = small_result();
-        result["stress"] = json::parse(map);
-        result["stress"]["map"][0]["signs"][1] = signs;
-        EXPECT_THROW(write_report(result, "result.json", folder.path / "r"), ResultError) << signs;
-    }
-}
 
 TEST(Survival, OfTheCommandIsWhatItWrites) {
     const Folder folder;
@@ -68,20 +27,12 @@ TEST(Survival, OfTheCommandIsWhatItWrites) {
     EXPECT_EQ(columns.size(), 15u);
     EXPECT_TRUE(text_of(out + "/cells.csv").starts_with("scene,sweep,variant,"));
     EXPECT_EQ(document["counts"]["wrong"], document["wrong"].size());
-    const auto report =
-        elastocheck_says("report " + scenes + "/single_bushing.yaml --stress " + out +
-                         "/stress.json -o " + (folder.path / "page").string());
-    expect_parts(text_of(folder.path / "page" / "report.html"), {"Survival map"});
 }
 
 TEST(Survival, WhatCannotBeAskedIsRefusedBeforeTheWork) {
     for (const auto& [arguments, says] :
          {std::pair<std::string, const char*>{"stress --set points.tip.x=1", "give one"},
-          {"stress there_is_none.yaml", "there_is_none.yaml"},
-          {"report " + scenes + "/single_bushing.yaml -o never --stress " + scenes +
-               "/single_bushing.yaml",
-           "single_bushing.yaml"},
-          {"report --from a.json -o never --stress b.json", "--stress: not with --from"}})
+          {"stress there_is_none.yaml", "there_is_none.yaml"}})
         expect_says(arguments, 2, {.err = {says}});
 }
 

@@ -19,7 +19,6 @@
 #include "reports/page/common.hpp"
 #include "reports/page/plot.hpp"
 #include "reports/page/sections.hpp"
-#include "reports/page/survival_map.hpp"
 #include "reports/page/svg.hpp"
 #include "reports/text/escape.hpp"
 #include "reports/text/numbers.hpp"
@@ -390,7 +389,6 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                        {"summary", table_json(summary(draft.parts))},
                        {"provenance", provenance(root)},
                        {"reproduce", for_terminal(root["reproduce"].text())},
-                       {"stress", survival(root)},
                        {"tints", tints}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
