@@ -21,8 +21,7 @@ constexpr double null_threshold = 1e-11;
 // reactions except for a part of about σ on bodies.
 constexpr double nothing = 1e-13, least_angle = 1e-9, largest_angle = 1e-3;
 
-// Below this condition number of the equilibrated matrix the null space is empty and is not
-// computed.
+// Below this condition number the null space is empty and is not computed.
 constexpr double surely_regular = 1e8;
 
 // Equilibration sweeps; each halves the logarithm of the ratio of sizes.
@@ -153,11 +152,9 @@ bool track(Linearisation& at) {
 
 // Rank is judged on the equilibrated matrix D_r J D_c, because a large ratio of stiffnesses is not
 // a singularity. Its null vectors v, u are mapped back: V ~ D_c v, U ~ D_r u.
-NullSpaces null_spaces(const Sparse& J, Factors* of_such) {
+NullSpaces null_spaces(const Sparse& J) {
     const auto [A, D_r, D_c] = equilibrated(J);
-    const Factors factors(A);
-    if (of_such != nullptr) *of_such = factors;
-    if (factors.condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
+    if (Factors(A).condition(A) < surely_regular) return {Sparse(J.rows(), 0), Sparse(J.rows(), 0)};
     const auto [near_right, near_left] = null_bases(A, null_threshold);
     const Sparse A_t = A.transpose();
     Sparse right = without_angles(A, near_right), left = without_angles(A_t, near_left);
@@ -182,10 +179,16 @@ Linearisation linearise(Sparse J, const Linearisation* before, Counts& counts) {
         if (!at.modes_are_new) return at;
         at.modes_are_soft = false;
     }
-    Factors of_such;
-    at.modes = null_spaces(at.J, &of_such);
-    at.bordered = Factors(bordered_matrix(at.J, at.modes), &of_such);
+    // Most matrices are regular by their own factors, without equilibration. The estimate of their
+    // condition counts as a factorisation.
+    at.bordered = Factors(at.J);
     counts.factorisations += 2;
+    if (at.bordered.condition(at.J) < surely_regular) {
+        at.modes = {Sparse(at.J.rows(), 0), Sparse(at.J.rows(), 0)};
+        return at;
+    }
+    at.modes = null_spaces(at.J);
+    if (at.modes.count() > 0) at.bordered = Factors(bordered_matrix(at.J, at.modes));
     return at;
 }
 

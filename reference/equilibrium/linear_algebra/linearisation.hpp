@@ -13,8 +13,7 @@ struct NullSpaces {
     Sparse right, left;
     Eigen::Index count() const { return right.cols(); }
 };
-// `of_such`: where given, receives the factors of J equilibrated, for their elimination order.
-NullSpaces null_spaces(const Sparse& J, Factors* of_such = nullptr);
+NullSpaces null_spaces(const Sparse& J);
 
 // J bordered by the null spaces,
 //
