@@ -9,8 +9,6 @@
 #include <numeric>
 #include <optional>
 
-#include "models/eigen/dense.hpp"
-
 namespace elastocheck::reference::equilibrium {
 namespace {
 
@@ -62,9 +60,10 @@ std::optional<Spectrum> formed(const System& system, const Sparse& J, Index idle
     if (n > few || d <= idle) return std::nullopt;
     const MatrixXd dense = J;
     MatrixXd Z = MatrixXd::Identity(n, n).rightCols(d);
-    if (m > 0)
-        Z = matrix_Q(Eigen::ColPivHouseholderQR<MatrixXd>(dense.bottomLeftCorner(m, n).transpose()))
-                .rightCols(d);
+    if (m > 0) {
+        const MatrixXd Phi_q_t = dense.bottomLeftCorner(m, n).transpose();
+        Z.applyOnTheLeft(Eigen::ColPivHouseholderQR<MatrixXd>(Phi_q_t).householderQ());
+    }
     const MatrixXd M = -Z.transpose() * (dense.topLeftCorner(n, n) * Z),
                    S = (M + M.transpose()) / 2;
     const double size = dense.topLeftCorner(n, n).cwiseAbs().maxCoeff();

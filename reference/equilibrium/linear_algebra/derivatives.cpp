@@ -11,59 +11,109 @@ namespace {
 using Eigen::VectorXd;
 
 // A term of the system depends on two bodies, at most three reactions and the parameter:
-// 6 + 6 + 3 + 1 derivatives.
-constexpr int first_reaction = 12, the_parameter = 15;
-using Jet = ceres::Jet<double, 16>;
+// 6 + 6 + 3 + 1 derivatives. An element between a body and the ground depends on the body and the
+// parameter: 6 + 1, and one more for an even number.
+constexpr int of_two = 16, of_one = 8, first_reaction = 12;
+template <int N>
+using JetOf = ceres::Jet<double, N>;
+using Jet = JetOf<of_two>;
 
-}  // namespace
+// The parameter is the last.
+template <int N>
+auto& by_parameter(JetOf<N>& term) {
+    return term.v[N - 1];
+}
+template <int N>
+double by_parameter(const JetOf<N>& term) {
+    return term.v[N - 1];
+}
+// The n-th of the derivatives of a term of two bodies.
+template <int N>
+double derivative(const JetOf<N>& term, int n) {
+    return term.v[N == of_two ? n : n % 6];
+}
 
-// Points and directions of a body in closed form, from the step (δr / L, δπ) that `Seeds` gives it:
-// δ(A u) = δπ × A u, and δr for a point.
-template <>
-Vec3<Jet> direction(const Frame<Jet>& body, const Eigen::Vector3d& u_local) {
+// A u from the step (δr / L, δπ) that `Seeds` gives the body: δ(A u) = δπ × A u.
+template <int N>
+Vec3<JetOf<N>> turning(const Frame<JetOf<N>>& body, const Eigen::Vector3d& u_local) {
     const auto& p = body.p;
     const Eigen::Vector3d u =
         turned(Eigen::Quaterniond(p.w().a, p.x().a, p.y().a, p.z().a), u_local);
-    Vec3<Jet> turning = u.cast<Jet>();
+    Vec3<JetOf<N>> result = u.cast<JetOf<N>>();
     const auto& moved = body.r[0].v;  // zero but for L where the body has its step
-    const int r = moved[0] != 0 ? 0 : moved[6] != 0 ? 6 : -1;
-    if (r < 0) return turning;
+    const int r = moved[0] != 0 ? 0 : N == of_two && moved[6] != 0 ? 6 : -1;
+    if (r < 0) return result;
     for (int k = 0; k < 3; ++k) {
-        turning[k].v[r + 3 + (k + 1) % 3] = u[(k + 2) % 3];
-        turning[k].v[r + 3 + (k + 2) % 3] = -u[(k + 1) % 3];
+        result[k].v[r + 3 + (k + 1) % 3] = u[(k + 2) % 3];
+        result[k].v[r + 3 + (k + 2) % 3] = -u[(k + 1) % 3];
     }
-    return turning;
+    return result;
+}
+
+}  // namespace
+
+// Points and directions of a body in closed form.
+template <>
+Vec3<JetOf<of_two>> direction(const Frame<JetOf<of_two>>& body, const Eigen::Vector3d& u_local) {
+    return turning(body, u_local);
 }
 template <>
-Vec3<Jet> position(const Frame<Jet>& body, const Eigen::Vector3d& s_local) {
-    return body.r + direction(body, s_local);
+Vec3<JetOf<of_one>> direction(const Frame<JetOf<of_one>>& body, const Eigen::Vector3d& u_local) {
+    return turning(body, u_local);
+}
+template <>
+Vec3<JetOf<of_two>> position(const Frame<JetOf<of_two>>& body, const Eigen::Vector3d& s_local) {
+    return body.r + turning(body, s_local);
+}
+template <>
+Vec3<JetOf<of_one>> position(const Frame<JetOf<of_one>>& body, const Eigen::Vector3d& s_local) {
+    return body.r + turning(body, s_local);
 }
 
 namespace {
 
 // Frame of a body after a step (δr / L, δπ). A rotation by δπ changes the quaternion by ½ (δπ, 0)
 // p: δ(x, y, z) = ½ (w δπ + δπ × v),  δw = -½ v · δπ.
+template <int N>
+Frame<JetOf<N>> stepping(const System& system, const VectorXd& x, BodyId body, int r) {
+    const Frame<double> at = frame_of(system, x, body);
+    Frame<JetOf<N>> frame{at.r.cast<JetOf<N>>(), at.p.cast<JetOf<N>>()};
+    if (body == ground) return frame;
+    const double hx = at.p.x() / 2, hy = at.p.y() / 2, hz = at.p.z() / 2, hw = at.p.w() / 2;
+    const int pi = r + 3;
+    for (int k = 0; k < 3; ++k) frame.r[k].v[r + k] = system.length;
+    frame.p.x().v.template segment<3>(pi) << hw, hz, -hy;
+    frame.p.y().v.template segment<3>(pi) << -hz, hw, hx;
+    frame.p.z().v.template segment<3>(pi) << hy, -hx, hw;
+    frame.p.w().v.template segment<3>(pi) << -hx, -hy, -hz;
+    return frame;
+}
+
+struct SeedsOfOne {
+    const System& system;
+    const VectorXd& x;
+
+    Frame<JetOf<of_one>> frame(const Part& part, int which) const {
+        return stepping<of_one>(system, x, which == 0 ? part.i : part.j, 0);
+    }
+    JetOf<of_one> narrowed(const Jet& a) const {
+        JetOf<of_one> narrow(a.a);
+        by_parameter(narrow) = by_parameter(a);
+        return narrow;
+    }
+};
+
 struct Seeds {
     const System& system;
     const VectorXd& x;
 
     Frame<Jet> frame(const Part& part, int which) const {
-        const BodyId body = which == 0 ? part.i : part.j;
-        const Frame<double> at = frame_of(system, x, body);
-        Frame<Jet> frame{at.r.cast<Jet>(), at.p.cast<Jet>()};
-        if (body == ground) return frame;
-        const double hx = at.p.x() / 2, hy = at.p.y() / 2, hz = at.p.z() / 2, hw = at.p.w() / 2;
-        const int r = 6 * which, pi = r + 3;
-        for (int k = 0; k < 3; ++k) frame.r[k].v[r + k] = system.length;
-        frame.p.x().v.segment<3>(pi) << hw, hz, -hy;
-        frame.p.y().v.segment<3>(pi) << -hz, hw, hx;
-        frame.p.z().v.segment<3>(pi) << hy, -hx, hw;
-        frame.p.w().v.segment<3>(pi) << -hx, -hy, -hz;
-        return frame;
+        return stepping<of_two>(system, x, which == 0 ? part.i : part.j, 6 * which);
     }
     Jet reaction(const Part& part, int k) const {
         return Jet(x[7 * system.bodies + part.row + k], first_reaction + k);
     }
+    SeedsOfOne of_one_body() const { return {system, x}; }
 };
 
 // Entries of J to which a term adds, in a fixed order: `entry(row, column, n)` receives the n-th
@@ -83,15 +133,17 @@ void for_each_entry(const System& system, const Part& part, int row, bool balanc
 
 // Rows of the terms in assembly order: balance of a body, without forces for a direction
 // constraint, then the constraint.
-template <class T, class Row>
+template <class Row>
 struct Rows {
     const System& system;
     const Row& row;
+    template <class T>
     void balance(const Part& part, BodyId body, const Vec3<T>& force, const Vec3<T>& moment) {
         if (!part.directions)
             for (int k = 0; k < 3; ++k) row(part, 6 * body + k, true, force[k]);
         for (int k = 0; k < 3; ++k) row(part, 6 * body + 3 + k, true, moment[k]);
     }
+    template <class T>
     void constraint(const Part& part, int k, const T& Phi) {
         row(part, 6 * system.bodies + part.row + k, false, Phi);
     }
@@ -108,9 +160,9 @@ struct Reacting : Seeds {
 template <class Source, class Row>
 void for_each_row(const System& system, const Loading& loading, const Source& source, Row row) {
     Jet a(loading.a), held(loading.held);
-    a.v[the_parameter] = loading.a_rate;
-    held.v[the_parameter] = loading.held_rate;
-    Rows<Jet, Row> rows{system, row};
+    by_parameter(a) = loading.a_rate;
+    by_parameter(held) = loading.held_rate;
+    Rows<Row> rows{system, row};
     assemble<Jet>(system, a, held, loading.pieces, source, rows);
 }
 
@@ -144,7 +196,7 @@ Pattern pattern_of(const System& system, const Loading& loading, const VectorXd&
                        [&](int i, int j, int) { entries.emplace_back(i, j, 0.); });
         if (part.rows == 0) of_others = entries.size();
     };
-    Rows<double, decltype(add)> rows{system, add};
+    Rows<decltype(add)> rows{system, add};
     assemble<double>(system, loading.a, loading.held, loading.pieces, Plain{system, x}, rows);
     Pattern pattern{Sparse(system.equations(), system.equations()), {}, of_others};
     pattern.J.setFromTriplets(entries.begin(), entries.end());
@@ -183,11 +235,12 @@ Derivatives derivatives(const System& system, const Loading& loading, const Vect
     double* values = by.J.valuePtr();
     const int* place = system.pattern->places.data();
     for_each_row(system, loading, Seeds{system, x},
-                 [&](const Part& part, int row, bool balance, const Jet& term) {
+                 [&](const Part& part, int row, bool balance, const auto& term) {
                      by.E[row] += term.a;
-                     by.E_rate[row] += term.v[the_parameter];
-                     for_each_entry(system, part, row, balance,
-                                    [&](int, int, int n) { values[*place++] += term.v[n]; });
+                     by.E_rate[row] += by_parameter(term);
+                     for_each_entry(system, part, row, balance, [&](int, int, int n) {
+                         values[*place++] += derivative(term, n);
+                     });
                  });
     by.E -= loading.held * system.at_design;
     by.E_rate -= loading.held_rate * system.at_design;
@@ -200,14 +253,14 @@ void add_reactions(const System& system, const Loading& loading, const VectorXd&
     double* values = by.J.valuePtr();
     const int* place = system.pattern->places.data() + system.pattern->constraints;
     for_each_row(system, loading, Reacting{{system, x}, R},
-                 [&](const Part& part, int row, bool balance, const Jet& term) {
+                 [&](const Part& part, int row, bool balance, const auto& term) {
                      if (balance) {
                          by.E[row] += term.a;
-                         by.E_rate[row] += term.v[the_parameter];
+                         by.E_rate[row] += by_parameter(term);
                      }
                      // neither Φ nor the directions of the reactions change
                      for_each_entry(system, part, row, balance, [&](int, int, int n) {
-                         if (balance && n < first_reaction) values[*place] += term.v[n];
+                         if (balance && n < first_reaction) values[*place] += derivative(term, n);
                          ++place;
                      });
                  });

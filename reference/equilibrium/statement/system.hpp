@@ -199,7 +199,9 @@ struct Part {
 // `source.frame(part, which)` gives the frames of the part's two bodies, `source.reaction(part, k)`
 // its scaled reactions; `sink.balance(part, body, force, moment)` and
 // `sink.constraint(part, k, Phi)` take the scaled terms, to be summed. A source may leave out terms:
-// `source.wants(term, k)`, k the position among its kind.
+// `source.wants(term, k)`, k the position among its kind. It may have another source for elements
+// between a body and the ground, in Jets of fewer derivatives: `source.of_one_body()`, with
+// `narrowed` for the parameters.
 template <class Source>
 concept LeavesOut = requires(const Source& source) {
     source.wants(Term::element, std::size_t{});
@@ -219,22 +221,32 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
     const double per_force = 1 / system.force, per_moment = per_force / system.length,
                  per_length = 1 / system.length;
 
-    const auto apply = [&](const Part& part, BodyId body, const Frame<T>& frame,
-                           const Interaction<T>& on, const T& factor) {
+    const auto apply = [&]<class S>(const Part& part, BodyId body, const Frame<S>& frame,
+                                    const Interaction<S>& on, const S& factor) {
         if (body == ground) return;
-        const Vec3<T> moment = on.moment + cross(Vec3<T>(on.at - frame.r), on.force);
-        sink.balance(part, body, Vec3<T>(on.force * T(factor * per_force)),
-                     Vec3<T>(moment * T(factor * per_moment)));
+        const Vec3<S> moment = on.moment + cross(Vec3<S>(on.at - frame.r), on.force);
+        sink.balance(part, body, Vec3<S>(on.force * S(factor * per_force)),
+                     Vec3<S>(moment * S(factor * per_moment)));
+    };
+    const auto add_element = [&]<class S>(const Part& part, const auto& frames, const S& at,
+                                          const S& at_held) {
+        const Frame<S> frame_i = frames.frame(part, 0), frame_j = frames.frame(part, 1);
+        const auto on = interaction(system, part.number, at, at_held, pieces, frame_i, frame_j);
+        apply(part, part.i, frame_i, on.i, S(+1.0));
+        apply(part, part.j, frame_j, on.j, S(+1.0));
     };
 
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         if (!wants(source, Term::element, e)) continue;
         const auto [i, j] = bodies_of(model.elastics[e].kind);
         const Part part{.i = i, .j = j, .term = Term::element, .number = e};
-        const Frame<T> frame_i = source.frame(part, 0), frame_j = source.frame(part, 1);
-        const auto on = interaction(system, e, a, held, pieces, frame_i, frame_j);
-        apply(part, i, frame_i, on.i, T(+1.0));
-        apply(part, j, frame_j, on.j, T(+1.0));
+        if constexpr (requires { source.of_one_body(); })
+            if (i == ground || j == ground) {
+                const auto one = source.of_one_body();
+                add_element(part, one, one.narrowed(a), one.narrowed(held));
+                continue;
+            }
+        add_element(part, source, a, held);
     }
     for (std::size_t k = 0; k < system.loads.size(); ++k) {
         const auto& load = system.loads[k];
