@@ -34,18 +34,17 @@ VectorXd Contraction::operator()(const VectorXd& r) const {
 Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J) {
     const Index n = inverse.rows();
     Contraction of;
-    of.M.resize(n, n);
-    of.R.resize(n, n);
+    of.M = of.R = MatrixXd::Zero(n, n);
     MatrixXd product = MatrixXd::Zero(n, n);  // fl(Y M), over the entries of M, most are zero
     Index most = 0;
     for (Index col = 0; col < n; ++col) {
         Index entries = 0;
         for (Index row = 0; row < n; ++row) {
             const Interval& entry = J[static_cast<std::size_t>(row * n + col)];
+            if (is_zero(entry)) continue;
             if (!bounded(entry)) return of;
             of.M(row, col) = mid(entry);
             of.R(row, col) = rad(entry);
-            if (is_zero(entry)) continue;
             ++entries;
             product.col(col) += inverse.col(row) * of.M(row, col);
         }
@@ -55,7 +54,7 @@ Contraction contraction(const MatrixXd& inverse, const std::vector<Interval>& J)
     of.Y = inverse.cwiseAbs();
     of.M = of.M.cwiseAbs();
     of.gamma = gamma(most + 2);
-    of.finite = of.rest.allFinite() && of.Y.allFinite() && of.R.allFinite();
+    of.finite = std::isfinite(of.rest.sum() + of.Y.sum() + of.R.sum());  // none is negative
     return of;
 }
 

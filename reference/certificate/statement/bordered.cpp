@@ -358,22 +358,39 @@ template Values<Along> evaluate_without_slopes(const Problem&, const std::vector
 template Values<Jet<1>> evaluate_without_slopes(const Problem&, const std::vector<Jet<1>>&,
                                                 const Jet<1>&);
 
-// By sparse factors: a tenth of the entries of J is not zero. NaN where a pivot is zero.
-MatrixXd inverse(const MatrixXd& J) {
+namespace {
+
+struct Inverted {
+    MatrixXd Y;        // NaN where a pivot is zero
+    double rcond = 0;  // of J equilibrated, in the 1-norm
+};
+// By sparse factors: a tenth of the entries of J is not zero.
+Inverted inverted(const MatrixXd& J) {
     const Index n = J.rows();
-    const MatrixXd none = MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN());
-    if (n == 0 || !J.allFinite()) return none;
+    const auto none = [n] {
+        return Inverted{MatrixXd::Constant(n, n, std::numeric_limits<double>::quiet_NaN())};
+    };
+    if (n == 0 || !J.allFinite()) return none();
     const auto [A, D_r, D_c] = equilibrated(J);
     const Eigen::SparseLU<Sparse> lu(A);
-    if (lu.info() != Eigen::Success) return none;
-    return D_c.asDiagonal() * lu.solve(MatrixXd::Identity(n, n)) * D_r.asDiagonal();
+    if (lu.info() != Eigen::Success) return none();
+    Inverted of{lu.solve(MatrixXd::Identity(n, n))};
+    double size = 0;
+    for (Index j = 0; j < n; ++j) size = std::max(size, A.col(j).cwiseAbs().sum());
+    of.rcond = 1 / (size * of.Y.cwiseAbs().colwise().sum().maxCoeff());
+    of.Y = D_c.asDiagonal() * of.Y * D_r.asDiagonal();
+    return of;
 }
+
+}  // namespace
+
+MatrixXd inverse(const MatrixXd& J) { return inverted(J).Y; }
 
 // Newton's method until its steps are rounding, near the state: a divergent one along an idle motion
 // also ends in small steps, at coordinates of 1e7 and more. The last two steps share an inverse, unless they do
 // not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
 // point this is rounding.
-Approximate newton(const Problem& problem, const VectorXd& from, double a) {
+Approximate newton(const Problem& problem, const VectorXd& from, double a, double least_rcond) {
     constexpr int most = 12, last = 2, most_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
@@ -392,11 +409,16 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     for (int step = 0, shared = 0, anew = 0; shared < last && (at.settled || step < most); ++step) {
         const Values<double> of =
             evaluate(problem, doubles(at.y), a, share ? Slopes::no : Slopes::yes);
-        if (!share) at.Y = inverse(square(of.J, problem.size()));
+        if (!share) {
+            Inverted inverse = inverted(square(of.J, problem.size()));
+            at.Y = std::move(inverse.Y), at.rcond = inverse.rcond, at.since = 0;
+            if (!(at.rcond > least_rcond)) return {at.y, at.Y, false};
+        }
         const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
         if (!dy.allFinite()) return {at.y, at.Y, false};
         at.y += dy;
         const double size = size_of(dy);
+        at.since += size;
         at.settled = at.settled || size < close;
         shared += share ? 1 : 0;
         const bool other_side =
@@ -418,20 +440,30 @@ Worth worth(const Problem& problem, const VectorXd& y, double a) {
 }
 
 Approach approach(const System& system, const VectorXd& z, double a) {
+    const double rounding = rounding_is_nothing(system);
     const auto from = [&](const VectorXd& start, double nothing) {
-        Problem problem{system, border_at(system, start, a, nothing), z, false, {}, {}};
-        VectorXd y = VectorXd::Zero(problem.size());
-        y.head(system.n()) = start;
-        Approximate found = newton(problem, y, a);
+        // Where the inverse in Newton's method shows that J is regular, there is no border.
+        const Border none{MatrixXd(system.n(), 0), MatrixXd(system.n(), 0)};
+        Problem problem{system, none, z, false, {}, {}};
+        Approximate found = newton(problem, start, a, surely_regular * nothing);
+        if (!(found.rcond > 0)) {
+            problem.border = border_at(system, start, a, nothing);
+            VectorXd y = VectorXd::Zero(problem.size());
+            y.head(system.n()) = start;
+            found = newton(problem, y, a);
+        }
         Worth there;
-        if (found.settled && found.y.allFinite()) there = worth(problem, found.y, a);
+        if (found.settled && found.y.allFinite())
+            there = problem.border.count() == 0 &&
+                            found.rcond > surely_regular * std::max(rounding, found.since)
+                        ? Worth{true}
+                        : worth(problem, found.y, a);
         return Approach{std::move(problem), std::move(found), there};
     };
     // Whether the border at the end is that of the start.
     const auto arrives = [](const Worth& there) {
         return there.sound || there.pushed || there.open;
     };
-    const double rounding = rounding_is_nothing(system);
     Approach first = from(z, rounding);
     if (arrives(first.there)) return first;
     // Away from an equilibrium an idle motion has some stiffness, and Newton's method would diverge

@@ -75,8 +75,12 @@ struct Approximate {
     Eigen::VectorXd y;
     Eigen::MatrixXd Y;
     bool settled = false;
+    double rcond = 0;  // of the equilibrated Jacobian that Y inverts; 0 where there is no solution
+    double since = 0;  // movement since, relative to the model's size
 };
-Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a);
+// Gives up where a reciprocal condition number is not above `least_rcond`.
+Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a,
+                   double least_rcond = 0);
 
 // Validity of a border at y. `sound`: all its motions and rows are structurally idle or redundant
 // there, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
