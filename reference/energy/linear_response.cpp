@@ -67,8 +67,8 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
         return Response{outcome, fmt::format("branch '{}': {}", branch.name, what), {}};
     };
     if (tangent.failure) return fail(tangent.failure->outcome, tangent.failure->what);
+    const Chart chart = chart_about(tangent.state.poses);
     const auto answered_to = [&](const Prescribed& rate) {
-        const Chart chart = chart_about(tangent.state.poses);
         VectorXd b = gradient_rate(model, tangent.prescribed, rate, chart);
         if (rate.offset.isZero(0)) return answer(tangent, b, {});
         const ConstraintRates rates = constraint_rates(model, tangent.prescribed, rate, chart);

@@ -41,8 +41,8 @@ std::vector<StateRate> sensitivity(const Model& model, const Branch& branch,
         }
         for (Eigen::Index b = 0; b < answered.x.size(); b += 6)
             result.increments.push_back({answered.x.segment<3>(b), answered.x.segment<3>(b + 3)});
-        result.reactions =
-            wrench_rates(model, rate, tangent, parts, number, answered.x, answered.lambda);
+        result.reactions = wrench_rates(model, rate, tangent, parts, number, answered.x,
+                                        multiplier_rates(tangent, answered));
     }
     return all;
 }

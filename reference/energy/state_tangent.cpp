@@ -83,7 +83,7 @@ Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_
     const double energy = at.scales.energy();
     const VectorXd b = at.S.cwiseProduct(b_SI) / energy;
 
-    VectorXd left = b + at.K * t;
+    VectorXd left = Phi_rate.size() > 0 ? VectorXd(b + at.K * t) : b;
     const double size = largest(b) + largest(left - b);
     const auto correct = [&] {
         if (at.Z.cols() == 0) return;
@@ -100,10 +100,13 @@ Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_
     const double noise = rounding.size() > 0 ? largest(at.S.cwiseProduct(rounding)) / energy : 0.0;
     if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size + noise))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
-    const VectorXd dlambda = at.lambda.size() > 0 && t.size() > 0
-                                 ? VectorXd(at.state.at.qr.solve(-left))
-                                 : VectorXd::Zero(at.lambda.size());
-    return {Outcome::converged, "", at.S.cwiseProduct(t), energy * at.D.cwiseProduct(dlambda)};
+    return {Outcome::converged, "", at.S.cwiseProduct(t), std::move(left)};
+}
+
+VectorXd multiplier_rates(const StateTangent& at, const Answer& answer) {
+    if (at.lambda.size() == 0 || answer.left.size() == 0) return VectorXd::Zero(at.lambda.size());
+    const VectorXd dlambda = at.state.at.qr.solve(-answer.left);
+    return at.scales.energy() * at.D.cwiseProduct(dlambda);
 }
 
 }  // namespace elastocheck::reference::energy

@@ -26,16 +26,19 @@ struct StateTangent {
 // Failures: not_conservative, too_large, not_finite, branch_lost.
 StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibrium& state);
 
-// The change (dx, dλ), SI, of the stationary point where its conditions change by
+// The change dx, SI, of the stationary point where its conditions change by
 //   b   of ∂V/∂x + Φ_qᵀ λ [6nb],   Phi_rate   of Φ [m]; empty: none
 // Idle motions are held. `rounding` of b [6nb] where that is more than its own last digits: a
 // smaller load on an idle motion does not count.
 struct Answer {
     Outcome outcome = Outcome::converged;
     std::string what;  // half a sentence on the failure
-    Eigen::VectorXd x, lambda;
+    Eigen::VectorXd x;
+    Eigen::VectorXd left;  // what the multipliers have to balance: of ∂V/∂ξ, units of F·L
 };
 Answer answer(const StateTangent& at, const Eigen::VectorXd& b, const Eigen::VectorXd& Phi_rate,
               const Eigen::VectorXd& rounding = {});
+// The change dλ, SI, that belongs to it.
+Eigen::VectorXd multiplier_rates(const StateTangent& at, const Answer& answer);
 
 }  // namespace elastocheck::reference::energy

@@ -120,27 +120,23 @@ void evaluate(Problem& p, const VectorXd& y) {
     move_to(p.chart, S.cwiseProduct(xi));
     const Potential V = potential(p.model, p.prescribed, p.chart);
     const ConstraintValues Phi = constraints(p.model, p.prescribed, p.chart);
-    const int n = coordinates(p.model), rank = static_cast<int>(p.at.independent.size());
     const double energy = p.scales.energy();
     const VectorXd DPhi = p.D.cwiseProduct(Phi.Phi);
     const Jacobian J = scaled(Phi.Phi_q, p.D, S);  // ∂DΦ/∂ξ [m × 6nb]
     const MatrixXd J_t = transposed(J);
     const VectorXd g = S.cwiseProduct(V.gradient) / energy + J_t * p.lambda;
 
-    MatrixXd selected(n, rank);
-    p.c.resize(rank);
-    for (int i = 0; i < rank; ++i) {
-        selected.col(i) = J_t.col(p.at.independent[static_cast<std::size_t>(i)]);
-        p.c[i] = p.row_scale[i] * DPhi[p.at.independent[static_cast<std::size_t>(i)]];
-    }
+    p.c = p.row_scale.cwiseProduct(DPhi(p.at.independent));
     const VectorXd idle = p.idle.transpose() * xi;
     p.f = V.change / energy + p.lambda.dot(p.D.cwiseProduct(Phi.dPhi)) +
           0.5 * holding * idle.squaredNorm();
     p.f_y = p.T_t * (g + holding * p.idle * idle);
     p.c_y_t = times_transposed(p.T_t, J)(Eigen::all, p.at.independent) * p.row_scale.asDiagonal();
 
-    ++p.best.evaluations;
-    const double e = measure(p, g, selected, DPhi);
+    // SLSQP begins at the centre, whose projected gradient is known.
+    const double e = p.best.evaluations++ == 0
+                         ? excess(p.at.left, DPhi, p.modes, p.scales, p.tolerance)
+                         : measure(p, g, J_t(Eigen::all, p.at.independent), DPhi);
     if (!std::isfinite(e) || !std::isfinite(p.f)) p.f = HUGE_VAL;  // SLSQP then shortens its step
     if (std::isfinite(e) && !(p.best.excess <= e)) {
         p.best.excess = e;
