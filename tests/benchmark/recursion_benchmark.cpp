@@ -4,6 +4,7 @@
 //             without
 //   sweep     2 × 300 steps, by every rung
 //   points    2 × 301 output points
+//   proofs    of every 50th of them
 //   branches  both, as polynomials
 //
 // The recursion has the analysis of the model given, which is a row of its own. Each job and its
@@ -22,6 +23,7 @@
 #include "elastocheck/recursive.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/sides.hpp"
+#include "reference/certificate/certificate.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace {
@@ -71,6 +73,24 @@ void equilibrium() {
     points([](const Branch& b, const auto& loads) {
         return reference::equilibrium::solve(mcpherson(), b, loads);
     });
+}
+constexpr int proof_every = 50, proofs = 14;
+void certify() {
+    struct Point {
+        const Branch& branch;
+        Equilibrium state;
+    };
+    static const std::vector<Point> known = [] {
+        std::vector<Point> list;
+        points([&](const Branch& b, const auto& loads) {
+            const auto path = reference::equilibrium::solve(mcpherson(), b, loads);
+            for (std::size_t k = 0; k < path.points.size(); k += proof_every)
+                list.push_back({b, path.points[k]});
+        });
+        return list;
+    }();
+    for (const auto& [branch, state] : known)
+        kept = reference::certificate::certify(mcpherson(), branch, state).error.length;
 }
 void energy() {
     points([](const Branch& b, const auto& loads) {
@@ -134,6 +154,7 @@ int main() {
         "analysis of the model / LU", [] { recursive::analyse(mcpherson()); }, bare, 600);
     row("a point by the equilibrium leg / LU", equilibrium, bare, 600. / 602);
     row("a point by the energy leg / LU", energy, bare, 600. / 602);
+    row("a point by `certify` / by the equilibrium leg", certify, equilibrium, 602. / proofs);
     row("points by the equilibrium leg / by `adaptive`", equilibrium, adaptive);
     row("points by the equilibrium leg / by `series`", equilibrium, series);
 }
