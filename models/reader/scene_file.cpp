@@ -18,6 +18,7 @@
 #include "models/reader/document/yaml.hpp"
 #include "models/reader/elements/driven.hpp"
 #include "models/reader/elements/sections.hpp"
+#include "models/reader/parsed_scene.hpp"
 #include "models/reader/plausibility.hpp"
 #include "models/reader/settings.hpp"
 #include "models/real.hpp"
@@ -257,15 +258,22 @@ SceneAndWarnings read_tree(const Cursor& scene, const Folder& folder) {
 
 }  // namespace
 
-SceneAndWarnings read_whole(std::string_view text, const std::string& name,
-                            std::span<const Setting> settings, const Folder& folder) {
-    Value tree = parse_yaml(text, name);
-    apply(settings, tree, name);
+ParsedScene::ParsedScene(std::string_view text, std::string name, Folder folder)
+    : tree_(parse_yaml(text, name)), name_(std::move(name)), folder_(std::move(folder)) {}
+
+SceneAndWarnings ParsedScene::read(std::span<const Setting> settings) const {
+    Value tree = tree_;
+    apply(settings, tree, name_);
     std::vector<Number> numbers;
-    SceneAndWarnings read = read_tree({&tree, "", &name, &numbers}, folder);
+    SceneAndWarnings read = read_tree({&tree, "", &name_, &numbers}, folder_);
     keep_each_once(numbers);
     read.scene.numbers = std::move(numbers);
     return read;
+}
+
+SceneAndWarnings read_whole(std::string_view text, const std::string& name,
+                            std::span<const Setting> settings, const Folder& folder) {
+    return ParsedScene(text, name, folder).read(settings);
 }
 
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,

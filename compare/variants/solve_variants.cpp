@@ -1,0 +1,257 @@
+#include "compare/variants/solve_variants.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/design/figures.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "compare/outputs/not_a_number.hpp"
+#include "elastocheck/recursive.hpp"
+#include "models/branch.hpp"
+
+namespace elastocheck::compare::variants {
+namespace {
+
+constexpr int points_for_extremes = 20, most_points = 1000;
+
+// Whether the station is a recorded point of a way with so many increments: which one, or -1.
+int point_at(double at, double to, int increments) {
+    const double k = at / to * increments;
+    const double nearest = std::round(k);
+    return std::abs(k - nearest) <= 1e-9 * increments ? static_cast<int>(nearest) : -1;
+}
+
+bool is_extreme(const StudyFigure& figure) { return figure.over != Over::station; }
+
+}  // namespace
+
+const char* name(VariantOutcome outcome) {
+    switch (outcome) {
+        case VariantOutcome::solved: return "solved";
+        case VariantOutcome::no_scene: return "no scene";
+        case VariantOutcome::not_trimmed: return "not trimmed";
+        case VariantOutcome::ended_early: return "ended early";
+        case VariantOutcome::no_value: return "no value";
+    }
+    return "";
+}
+
+VariantSolver::VariantSolver(const Model& design, std::vector<StudyFigure> figures)
+    : figures_(std::move(figures)) {
+    const auto all = figure_outputs(design);
+    for (const StudyFigure& figure : figures_) {
+        const int c = find_channel(all, figure.output);
+        if (c < 0)
+            throw std::invalid_argument(
+                fmt::format("{}: the scene has no output '{}'", figure.name, figure.output));
+        channel_.push_back(static_cast<std::size_t>(c));
+        only_motion_ = only_motion_ && all[channel_.back()].kinematic();
+    }
+    place(design);
+    for (Group& group : groups_) {
+        group.design = followed(design, group.ways);
+        group.analysis = recursive::analyse(group.design);
+    }
+}
+
+// The ways that the figures read, the number of points, and the groups.
+void VariantSolver::place(const Model& design) {
+    std::vector<Way> all;
+    const auto way_of = [&](std::size_t branch, std::size_t side) -> Way& {
+        for (Way& way : all)
+            if (way.branch == branch && way.side == side) return way;
+        return all.emplace_back(Way{branch, side});
+    };
+    struct Station {
+        std::size_t figure, branch, side;
+        double to;
+    };
+    std::vector<Station> stations;
+    for (std::size_t k = 0; k < figures_.size(); ++k) {
+        const StudyFigure& figure = figures_[k];
+        const auto branch = std::ranges::find(design.branches, figure.branch, &Branch::name);
+        if (branch == design.branches.end())
+            throw std::invalid_argument(
+                fmt::format("{}: the scene has no branch '{}'", figure.name, figure.branch));
+        const auto b = static_cast<std::size_t>(branch - design.branches.begin());
+        const auto sides = ways(*branch);
+        if (is_extreme(figure)) {
+            for (std::size_t side = 0; side < sides.size(); ++side)
+                way_of(b, side).readings.push_back({k});
+            points_ = std::max(points_, points_for_extremes);
+            continue;
+        }
+        std::size_t side = 0;
+        while (side + 1 < sides.size() && figure.at * sides[side].to < 0) ++side;
+        stations.push_back({k, b, side, sides[side].to});
+    }
+    const auto all_placed = [&] {
+        return std::ranges::all_of(stations, [&](const Station& s) {
+            return point_at(figures_[s.figure].at, s.to, points_) >= 0;
+        });
+    };
+    while (points_ <= most_points && !all_placed()) ++points_;
+    if (points_ > most_points)
+        throw std::invalid_argument(fmt::format(
+            "the stations are not among {} equal increments of their branches, however many; move "
+            "them to common fractions of a branch",
+            most_points));
+    for (const Station& s : stations)
+        way_of(s.branch, s.side)
+            .readings.push_back({s.figure, point_at(figures_[s.figure].at, s.to, points_)});
+    std::ranges::sort(all, {}, [](const Way& way) { return std::pair(way.branch, way.side); });
+    for (Way& way : all) std::ranges::stable_sort(way.readings, {}, &Reading::point);
+
+    for (const Way& way : all)
+        together_ = together_ && stands_on(design, ways(design.branches[way.branch])[way.side]);
+    for (Way& way : all)
+        if (!groups_.empty() && (together_ || groups_.back().ways.front().branch == way.branch))
+            groups_.back().ways.push_back(std::move(way));
+        else
+            groups_.push_back({{std::move(way)}});
+}
+
+// The model with these ways as its branches.
+Model VariantSolver::followed(const Model& model, const std::vector<Way>& of) const {
+    Model result = together_ ? model : on_branch(model, model.branches[of.front().branch]);
+    result.branches.clear();
+    for (const Way& way : of) result.branches.push_back(ways(model.branches[way.branch])[way.side]);
+    return result;
+}
+
+std::vector<Channel> VariantSolver::outputs(const Model& model) const {
+    return only_motion_ ? channels(model) : figure_outputs(model);
+}
+
+bool VariantSolver::fits(const std::vector<Channel>& outputs) const {
+    for (std::size_t k = 0; k < figures_.size(); ++k)
+        if (channel_[k] >= outputs.size() || outputs[channel_[k]].name != figures_[k].output)
+            return false;
+    return true;
+}
+
+void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs, const Way& way,
+                         Leg leg, const EquilibriumPath& path, VariantFigures& into) const {
+    const Branch& branch = model.branches[way.branch];
+    const Branch side = ways(branch)[way.side];
+    std::string ended;
+    std::size_t reached = 0;
+    for (; reached < path.points.size() && ended.empty(); ++reached)
+        ended = ends_at_table(model, side, path.points[reached]);
+    if (!ended.empty()) --reached;
+    if (reached <= static_cast<std::size_t>(points_) && into.reason.empty()) {
+        into.outcome = VariantOutcome::ended_early;
+        into.reason = !ended.empty() ? ended
+                                     : fmt::format("branch '{}': {}: {}", branch.name,
+                                                   elastocheck::name(path.outcome), path.detail);
+    }
+
+    // The figures of one point at a time, so that a response is computed once.
+    std::optional<BranchSide> whole;
+    Analyses analyses;
+    std::vector<std::size_t> here;
+    std::vector<Channel> wanted;
+    for (std::size_t p = 0; p < reached; ++p) {
+        here.clear(), wanted.clear();
+        bool responds = false;
+        for (const Reading& reading : way.readings) {
+            if (reading.point >= 0 && reading.point != static_cast<int>(p)) continue;
+            here.push_back(reading.figure);
+            wanted.push_back(outputs[channel_[reading.figure]]);
+            responds = responds || wanted.back().kind() == ChannelKind::characteristic;
+        }
+        if (here.empty()) continue;
+        std::vector<double> values;
+        if (responds) {
+            if (!whole) {
+                Branch steps = side;
+                steps.steps = points_;
+                whole = BranchSide{branch.name, on_branch(model, steps), steps};
+            }
+            values = row_of(model, wanted, *whole, {.leg = leg}, path.points[p], analyses).values;
+        } else {
+            values = evaluate(model, side, wanted, path.points[p]);
+        }
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            const Over over = figures_[here[i]].over;
+            double& value = into.values[here[i]];
+            if (over == Over::station || std::isnan(value) ||
+                (over == Over::least ? values[i] < value : values[i] > value))
+                value = values[i];
+        }
+    }
+    // The extreme of a part of a branch is not that of the branch.
+    if (reached <= static_cast<std::size_t>(points_))
+        for (const Reading& reading : way.readings)
+            if (reading.point < 0) into.values[reading.figure] = nan;
+}
+
+// A figure without a value, of a branch that is complete.
+void VariantSolver::finish(const std::vector<Channel>& outputs, VariantFigures& figures) const {
+    if (figures.outcome != VariantOutcome::solved) return;
+    for (std::size_t k = 0; k < figures_.size(); ++k) {
+        if (!std::isnan(figures.values[k])) continue;
+        figures.outcome = VariantOutcome::no_value;
+        figures.reason = fmt::format("{}: {} could not be computed", figures_[k].name,
+                                     outputs[channel_[k]].name);
+        return;
+    }
+}
+
+std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants) const {
+    std::vector<VariantFigures> results(variants.size(),
+                                        {.values = std::vector<double>(figures_.size(), nan)});
+    std::vector<std::vector<Channel>> all_outputs;
+    std::vector<std::size_t> which;  // have these outputs
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        all_outputs.push_back(outputs(variants[v]));
+        if (fits(all_outputs.back())) {
+            which.push_back(v);
+        } else {
+            results[v].outcome = VariantOutcome::no_value;
+            results[v].reason = "the variant has other outputs than the scene";
+        }
+    }
+    for (const Group& group : groups_) {
+        std::vector<Model> models;
+        for (const std::size_t v : which) models.push_back(followed(variants[v], group.ways));
+        recursive::solve_batch(group.design, group.analysis, models,
+                               {.points = points_, .wrenches = !only_motion_},
+                               [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
+                                   read(variants[which[v]], all_outputs[which[v]], group.ways[w],
+                                        Leg::series, path, results[which[v]]);
+                               });
+    }
+    for (const std::size_t v : which) finish(all_outputs[v], results[v]);
+    return results;
+}
+
+VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
+    VariantFigures result{.values = std::vector<double>(figures_.size(), nan)};
+    const auto all = outputs(variant);
+    if (!fits(all)) {
+        result.outcome = VariantOutcome::no_value;
+        result.reason = "the variant has other outputs than the scene";
+        return result;
+    }
+    for (const Group& group : groups_)
+        for (const Way& way : group.ways) {
+            Branch side = ways(variant.branches[way.branch])[way.side];
+            side.steps = points_;
+            const EquilibriumPath path =
+                walk(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
+            read(variant, all, way, leg, path, result);
+        }
+    finish(all, result);
+    return result;
+}
+
+}  // namespace elastocheck::compare::variants

@@ -1,0 +1,81 @@
+// The figures of many variants of a scene by `series` in lockstep, and of a variant by the
+// equilibrium leg.
+//
+// All branches that the figures read are followed together where every part of the model is active
+// on each of them, else one after the other. States are recorded in equal increments of the
+// parameter, as few as have all stations among them; extremes are those of at least 21 points.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/variants/study.hpp"
+#include "elastocheck/legs.hpp"
+#include "elastocheck/model.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+
+namespace elastocheck::compare::variants {
+
+// The numbers are those in a ledger.
+enum class VariantOutcome {
+    solved = 0,
+    no_scene = 1,     // the drawn numbers make the scene invalid, such as a negative rate
+    not_trimmed = 2,  // its trim was not reached
+    ended_early = 3,  // a branch ends before a station
+    no_value = 4,     // a figure could not be computed
+};
+inline constexpr int variant_outcomes = 5;
+const char* name(VariantOutcome outcome);
+
+struct VariantFigures {
+    VariantOutcome outcome = VariantOutcome::solved;
+    std::string reason = {};     // empty if solved
+    std::vector<double> values;  // per figure; NaN where there is none, infinite: undefined
+};
+
+class VariantSolver {
+  public:
+    // Throws std::invalid_argument for an output or a branch that the model has not, and for stations
+    // that no 1000 equal increments have among them.
+    VariantSolver(const Model& design, std::vector<StudyFigure> figures);
+
+    // Compiled models of the variants. Thread-safe; a result does not depend on the other variants.
+    std::vector<VariantFigures> solve(std::span<const Model> variants) const;
+    // By one leg, alone, at the same stations.
+    VariantFigures solve_alone(const Model& variant, Leg leg) const;
+
+    int points() const { return points_; }  // increments of a branch side
+
+  private:
+    struct Reading {
+        std::size_t figure = 0;
+        int point = -1;  // recorded point; -1: every one
+    };
+    struct Way {
+        std::size_t branch = 0, side = 0;  // position in Model::branches, in ways() of it
+        std::vector<Reading> readings = {};
+    };
+    struct Group {  // of ways that are followed together
+        std::vector<Way> ways;
+        Model design = {};
+        recursive::Analysis analysis = {};
+    };
+
+    void place(const Model& design);
+    Model followed(const Model& model, const std::vector<Way>& ways) const;
+    std::vector<Channel> outputs(const Model& model) const;
+    bool fits(const std::vector<Channel>& outputs) const;
+    void read(const Model& model, const std::vector<Channel>& outputs, const Way& way, Leg leg,
+              const EquilibriumPath& path, VariantFigures& into) const;
+    void finish(const std::vector<Channel>& outputs, VariantFigures& figures) const;
+
+    std::vector<StudyFigure> figures_;
+    std::vector<std::size_t> channel_ = {};  // of each figure, among the outputs
+    bool only_motion_ = true;                // every output is a position or an angle
+    bool together_ = true;
+    int points_ = 1;
+    std::vector<Group> groups_ = {};
+};
+
+}  // namespace elastocheck::compare::variants
