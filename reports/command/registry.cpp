@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 
 // Each is in NAME_command.cpp; inspect, compare, converge and trade are in study_commands.cpp;
-// solve-for, fit and tolerances in design_commands.cpp.
+// solve-for, fit and tolerances in design_commands.cpp, study in variants/.
 Command certify_command();
 Command compare_command();
 Command converge_command();
@@ -31,6 +31,7 @@ Command sensitivity_command();
 Command solve_command();
 Command solve_for_command();
 Command stress_command();
+Command study_command();
 Command tolerances_command();
 Command trade_command();
 
@@ -84,12 +85,12 @@ Command printing(const char* name, const char* description, std::vector<Option> 
 Program program() { return program_with(documentation); }
 
 std::vector<Command> commands() {
-    std::vector<Command> all{inspect_command(),   solve_command(),      compare_command(),
-                             converge_command(),  trade_command(),      new_command(),
-                             import_command(),    export_command(),     gate_command(),
-                             certify_command(),   judge_command(),      report_command(),
-                             stress_command(),    equilibria_command(), sensitivity_command(),
-                             solve_for_command(), fit_command(),        tolerances_command()};
+    std::vector<Command> all{
+        inspect_command(), solve_command(),      compare_command(),     converge_command(),
+        trade_command(),   new_command(),        import_command(),      export_command(),
+        gate_command(),    certify_command(),    judge_command(),       report_command(),
+        stress_command(),  equilibria_command(), sensitivity_command(), solve_for_command(),
+        fit_command(),     tolerances_command(), study_command()};
     const auto given = std::make_shared<std::string>();
     all.push_back(printing(
         "completion", "Print the completion of this command for a shell",
