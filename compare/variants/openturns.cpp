@@ -6,11 +6,11 @@
 #include <openturns/Binomial.hxx>
 #include <openturns/ComposedDistribution.hxx>
 #include <openturns/DistFunc.hxx>
+#include <openturns/JansenSensitivityAlgorithm.hxx>
 #include <openturns/LHSExperiment.hxx>
 #include <openturns/Normal.hxx>
 #include <openturns/NormalCopula.hxx>
 #include <openturns/RandomGenerator.hxx>
-#include <openturns/SaltelliSensitivityAlgorithm.hxx>
 #include <openturns/SobolSequence.hxx>
 #include <openturns/Triangular.hxx>
 #include <openturns/TruncatedNormal.hxx>
@@ -139,7 +139,7 @@ SobolIndices sobol_indices(const MatrixXd& outputs, double level, std::uint64_t 
     // Of the inputs only the number is used.
     const OT::Sample x(size(outputs.size()), size(d));
     OT::RandomGenerator::SetSeed(static_cast<OT::UnsignedInteger>(seed));
-    OT::SaltelliSensitivityAlgorithm algorithm(x, y, size(blocks));
+    OT::JansenSensitivityAlgorithm algorithm(x, y, size(blocks));
     algorithm.setUseAsymptoticDistribution(false);
     algorithm.setConfidenceLevel(level);
     const OT::Point first = algorithm.getFirstOrderIndices(),

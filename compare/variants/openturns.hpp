@@ -54,7 +54,7 @@ std::pair<std::int64_t, std::int64_t> percentile_ranks(std::uint64_t all, double
 struct SobolIndices {  // per variable: value, lower and upper bound
     Eigen::MatrixX3d first, total;
 };
-// By the estimators of Saltelli and bootstrap. `outputs` [blocks × (variables + 2)]: rows as in
+// By the estimators of Jansen and bootstrap. `outputs` [blocks × (variables + 2)]: rows as in
 // Design::indices.
 SobolIndices sobol_indices(const Eigen::MatrixXd& outputs, double level, std::uint64_t seed);
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/yaml.hpp"
@@ -18,8 +19,10 @@ class ParsedScene {
     // text that is not YAML.
     ParsedScene(std::string_view text, std::string name, Folder folder);
 
-    // As read_whole() of the text. Throws SceneError.
-    SceneAndWarnings read(std::span<const Setting> settings) const;
+    // As read_whole() of the text; without `warnings` nothing is checked for them. Throws SceneError.
+    // Thread-safe.
+    Scene read(std::span<const Setting> settings,
+               std::vector<std::string>* warnings = nullptr) const;
 
   private:
     Value tree_;

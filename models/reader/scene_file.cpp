@@ -205,7 +205,7 @@ void keep_each_once(std::vector<Number>& numbers) {
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
 }
 
-SceneAndWarnings read_tree(const Cursor& scene, const Folder& folder) {
+Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::string>* warnings) {
     if (scene.value->kind == Value::Kind::nothing)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
     scene.only_keys({"elastocheck",     "name",     "units",    "mirror",  "gravity",
@@ -252,8 +252,8 @@ SceneAndWarnings read_tree(const Cursor& scene, const Folder& folder) {
     read_trim(scene, defs.units, by_name, drivable, result);
     read_branches(scene, defs.units, by_name, drivable, result);
     [[maybe_unused]] const ByValue by_value;
-    auto warnings = implausible(scene, defs.units, result);
-    return {std::move(result), std::move(warnings)};
+    if (warnings) *warnings = implausible(scene, defs.units, result);
+    return result;
 }
 
 }  // namespace
@@ -261,19 +261,22 @@ SceneAndWarnings read_tree(const Cursor& scene, const Folder& folder) {
 ParsedScene::ParsedScene(std::string_view text, std::string name, Folder folder)
     : tree_(parse_yaml(text, name)), name_(std::move(name)), folder_(std::move(folder)) {}
 
-SceneAndWarnings ParsedScene::read(std::span<const Setting> settings) const {
+Scene ParsedScene::read(std::span<const Setting> settings,
+                        std::vector<std::string>* warnings) const {
     Value tree = tree_;
     apply(settings, tree, name_);
     std::vector<Number> numbers;
-    SceneAndWarnings read = read_tree({&tree, "", &name_, &numbers}, folder_);
+    Scene scene = read_tree({&tree, "", &name_, &numbers}, folder_, warnings);
     keep_each_once(numbers);
-    read.scene.numbers = std::move(numbers);
-    return read;
+    scene.numbers = std::move(numbers);
+    return scene;
 }
 
 SceneAndWarnings read_whole(std::string_view text, const std::string& name,
                             std::span<const Setting> settings, const Folder& folder) {
-    return ParsedScene(text, name, folder).read(settings);
+    SceneAndWarnings read;
+    read.scene = ParsedScene(text, name, folder).read(settings, &read.warnings);
+    return read;
 }
 
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,

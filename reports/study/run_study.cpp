@@ -25,7 +25,7 @@ using Eigen::Index;
 std::optional<Model> model_of(const StudyFile& file, const Eigen::VectorXd& values,
                               VariantFigures& figures) {
     try {
-        Scene scene = file.parsed.read(settings_of(file.study, values)).scene;
+        Scene scene = file.parsed.read(settings_of(file.study, values));
         if (!scene.trim) return compile(scene);
         const compare::Trimmed trimmed = compare::trim(scene);
         if (!trimmed.record || trimmed.record->reached()) return compile(trimmed.scene);

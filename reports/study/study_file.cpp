@@ -511,7 +511,8 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
     // Its name as it is written here: reasons of failed variants do not depend on where they were
     // computed.
     reader::ParsedScene parsed(text, scene_name, scene_file.parent_path());
-    auto [scene, warnings] = parsed.read({});
+    std::vector<std::string> warnings;
+    const Scene scene = parsed.read({}, &warnings);
     const compare::Trimmed trimmed = compare::trim(scene);
     if (trimmed.record && !trimmed.record->reached())
         scene_field.fail("trim: " + trimmed.record->detail);
