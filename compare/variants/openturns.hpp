@@ -1,13 +1,14 @@
 // What is taken from OpenTURNS: distributions, designs, intervals of confidence, Sobol indices.
 //
-// An optional component: openturns.cpp is built where it is installed, else without_openturns.cpp, in
-// which available() is false and every other function throws std::invalid_argument. Its headers
-// are included in openturns.cpp only.
+// An optional component, the module elastocheck-openturns.so (openturns_module.cpp, where alone the
+// headers of OpenTURNS are included). It is loaded on first use: the library takes a tenth of a second
+// to load, ten times as long as the rest of the command. Without the module available() is false, and
+// every other function throws std::invalid_argument.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -17,23 +18,14 @@ namespace elastocheck::compare::variants::openturns {
 
 bool available();
 
-// The continuous variables of a study with their normal copula.
-class Joint {
-  public:
-    // `correlation` [distributions × distributions], or empty. Throws std::invalid_argument for
-    // Levels and Given.
-    Joint(const std::vector<Distribution>& distributions, const Eigen::MatrixXd& correlation);
-    ~Joint();
-    Joint(Joint&&) noexcept;
+// From points of the unit cube [points × variables], coordinates between 0 and 1 exclusively, to values
+// of the variables (inverse Nataf transformation of their normal quantiles). Not thread-safe.
+using Transformation = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& u)>;
 
-    // Values of points of the unit cube [points × distributions], coordinates between 0 and 1
-    // exclusively (inverse Nataf transformation of their normal quantiles). Not thread-safe.
-    Eigen::MatrixXd values(const Eigen::MatrixXd& u) const;
-
-  private:
-    struct State;
-    std::unique_ptr<State> state_;
-};
+// Of continuous variables with a normal copula; `correlation` [distributions × distributions], or
+// empty. Throws std::invalid_argument for Levels and Given.
+Transformation transformation(const std::vector<Distribution>& distributions,
+                              const Eigen::MatrixXd& correlation);
 
 // Direction numbers of the Sobol sequence per dimension, as integers of 53 bits: point k is the
 // exclusive or of those at the ones of the Gray code of k.
@@ -57,5 +49,17 @@ struct SobolIndices {  // per variable: value, lower and upper bound
 // By the estimators of Jansen and bootstrap. `outputs` [blocks × (variables + 2)]: rows as in
 // Design::indices.
 SobolIndices sobol_indices(const Eigen::MatrixXd& outputs, double level, std::uint64_t seed);
+
+// What the module provides, by its only symbol.
+struct Functions {
+    decltype(&openturns::transformation) transformation;
+    decltype(&openturns::sobol_directions) sobol_directions;
+    decltype(&openturns::latin_hypercube) latin_hypercube;
+    decltype(&openturns::clopper_pearson) clopper_pearson;
+    decltype(&openturns::percentile_ranks) percentile_ranks;
+    decltype(&openturns::sobol_indices) sobol_indices;
+};
+inline constexpr const char* module_file = "elastocheck-openturns.so";
+inline constexpr const char* module_symbol = "elastocheck_openturns_functions";
 
 }  // namespace elastocheck::compare::variants::openturns

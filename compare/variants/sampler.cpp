@@ -82,7 +82,7 @@ Sampler::Sampler(const Study& study) : study_(study) {
     if (distributions.empty()) return;
     MatrixXd correlation;
     if (study.correlation.size() > 0) correlation = study.correlation(continuous_, continuous_);
-    joint_.emplace(distributions, correlation);
+    transformation_ = openturns::transformation(distributions, correlation);
 }
 
 // Of the unit cube; with indices, of twice the dimensions, and k counts blocks.
@@ -132,9 +132,9 @@ MatrixXd Sampler::values(std::uint64_t first, std::uint64_t count) const {
     const auto drawn = [&]() -> MatrixXd {
         const MatrixXd u = points(first, count);
         MatrixXd x(n, d);
-        if (joint_) {
+        if (transformation_) {
             const std::scoped_lock one_at_a_time(drawing_);
-            x(Eigen::all, continuous_) = joint_->values(u(Eigen::all, continuous_));
+            x(Eigen::all, continuous_) = transformation_(u(Eigen::all, continuous_));
         }
         for (Index j = 0; j < d; ++j) {
             const Variable& variable = study_.variables[static_cast<std::size_t>(j)];

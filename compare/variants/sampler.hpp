@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "compare/variants/openturns.hpp"
@@ -20,7 +19,7 @@ std::uint64_t block_size(const Study& study);
 
 class Sampler {
   public:
-    // Throws std::invalid_argument where the program was built without OpenTURNS.
+    // Throws std::invalid_argument without OpenTURNS where the design draws.
     explicit Sampler(const Study& study);
 
     // Values of the variants `first` to `first + count - 1` [count × variables], in the units of the
@@ -38,7 +37,7 @@ class Sampler {
     std::vector<std::vector<std::uint64_t>> directions_;  // of a Sobol sequence
     std::vector<std::uint64_t> shift_;                    // per dimension
     std::vector<Eigen::Index> continuous_;                // positions of variables
-    std::optional<openturns::Joint> joint_;               // of these
+    openturns::Transformation transformation_;            // of these
     mutable std::mutex drawing_;
 };
 

@@ -497,7 +497,6 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
                      "limits", "witness"});
     if (const Cursor version = whole.require("elastocheck_study"); version.whole_number(1, 1) != 1)
         version.fail("allowed: 1");
-    if (!openturns::available()) openturns::sobol_directions(1, 1);  // throws the reason
 
     const Cursor scene_field = whole.require("scene");
     const std::string& scene_name = scene_field.text("the file of a scene");
@@ -527,6 +526,7 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
     if (const auto witness = whole.optional("witness"))
         reading.study.witness = witness->whole_number(0, 1'000'000'000);
 
+    if (!openturns::available()) openturns::sobol_directions(1, 1);  // throws the reason
     auto solver = [&] {
         try {
             return VariantSolver(design, reading.study.figures);

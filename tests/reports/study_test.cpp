@@ -1,0 +1,344 @@
+// `elastocheck study`: bad input, known variances, interruption, shards, extension.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "compare/variants/openturns.hpp"
+#include "tests/reports/command.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// A folder with scenes and a study of one of them.
+struct StudyCommand : testing::Test, Folder {
+    void SetUp() override {
+        if (!compare::variants::openturns::available())
+            GTEST_SKIP() << "libopenturns-dev is not installed";
+        for (const char* scene : {"parallel_springs.yaml", "mcpherson.yaml"})
+            write(scene, text_of(scenes + "/" + scene));
+    }
+    std::string at(const std::string& name) const { return (path / name).string(); }
+    // `study` on the file study.yaml with this content.
+    Said study(const std::string& yaml, const std::string& options = "-o out") const {
+        write("study.yaml", yaml);
+        return run(options);
+    }
+    Said run(const std::string& options) const {
+        return support::says("cd " + path.string() +
+                             " && " ELASTOCHECK_COMMAND " study study.yaml --quiet " + options);
+    }
+    json statistics(const std::string& folder = "out") const {
+        return json::parse(text_of(path / folder / "statistics.json"));
+    }
+};
+
+double cell(const json& table, std::size_t row, const std::string& name) {
+    for (std::size_t c = 0; c < table["columns"].size(); ++c)
+        if (table["columns"][c]["name"] == name) return table["rows"][row][c].get<double>();
+    ADD_FAILURE() << "no column " << name;
+    return 0;
+}
+
+std::string replaced(const std::string& text, const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    EXPECT_NE(at, text.npos) << what;
+    return std::string(text).replace(at, what.size(), by);
+}
+
+// z = z₀ + (F + P₁ + W) / (k₁ + k₂): linear in the preload and in the weight.
+const std::string linear = R"(elastocheck_study: 1
+scene: parallel_springs.yaml
+variables:
+  springs.first.preload: {normal: {sd: 20}}
+  static_loads.weight.force.z: {normal: {sd: 30}}
+design: {kind: sobol, count: 4096, seed: 3}
+figures:
+  height: centre_z@up:1500
+limits:
+  height: {max: 420.8}
+witness: 1024
+)";
+
+// ---- Bad input, each before the first variant, with file and line.
+
+TEST_F(StudyCommand, RefusesBadInputBeforeTheFirstVariant) {
+    const struct {
+        std::string what, by, says;
+    } mistakes[]{
+        {"first.preload", "frist.preload",
+         "study.yaml:4: variables.springs.frist.preload: the scene has no such number, did you "
+         "mean "
+         "'springs.first.preload'?"},
+        {"{sd: 20}", "{sd: -20}", "study.yaml:4: variables.springs.first.preload.normal.sd: -20"},
+        {"{normal: {sd: 20}}", "{normal: {sd: 20}, uniform: {half_width: 1}}",
+         "study.yaml:4: variables.springs.first.preload.uniform: a second distribution"},
+        {"{normal: {sd: 20}}", "{}",
+         "study.yaml:4: variables.springs.first.preload: no "
+         "distribution"},
+        {"{normal: {sd: 20}}", "{triangular: {low: 1, high: 2}}",
+         "study.yaml:4: variables.springs.first.preload.triangular: mode 600 is not between"},
+        {"springs.first.preload", "branches.up.steps", "branches are the same for all variants"},
+        {"kind: sobol", "kind: sobl",
+         "study.yaml:6: design.kind: 'sobl' is not a design, did you "
+         "mean 'sobol'?"},
+        {"kind: sobol", "kind: grid", "a grid needs a list of values for each variable"},
+        {", seed: 3", "", "study.yaml:6: design.seed: missing"},
+        {"centre_z@up:1500", "center_z@up:1500",
+         "study.yaml:8: figures.height: the scene has no output 'center_z', did you mean "
+         "'centre_z'?"},
+        {"centre_z@up:1500", "centre_z@upp:1500",
+         "study.yaml:8: figures.height: the scene has no "
+         "branch 'upp', did you mean 'up'?"},
+        {"@up:1500", "@up:3001", "branch 'up' goes from 0 to 3000 N"},
+        {"@up:1500", "@up:954.929658551372", "study.yaml:7: figures: the stations are not among"},
+        {"centre_z@up:1500", "min centre_z@up:1500", "an extreme is that of the whole branch"},
+        {"height: {max", "hight: {max",
+         "study.yaml:10: limits.hight: the study has no such figure, did you mean 'height'?"},
+        {"{max: 420.8}", "{max: 1, min: 2}", "study.yaml:10: limits.height: min is above max"},
+        {"parallel_springs.yaml", "parallel.yaml", "study.yaml:2: scene: "},
+        {"witness: 1024", "witnes: 1024", "unknown field 'witnes', did you mean 'witness'?"},
+        {"design:",
+         "groups: [{variables: [springs.first.preload, static_loads.weight.force.z], correlation: "
+         "[[1, 1], [1, 1]]}]\ndesign:",
+         "study.yaml:6: groups.correlation: is not positive definite"},
+        {"design:",
+         "groups: [{variables: [springs.first.preload, nobody], correlation: []}]\ndesign:",
+         "'nobody' is not a variable"},
+        {"seed: 3}",
+         "seed: 3, indices: true}\ngroups: [{variables: [springs.first.preload, "
+         "static_loads.weight.force.z], correlation: [[1, 0.5], [0.5, 1]]}]",
+         "Sobol indices need independent variables"},
+        {"variables:\n", "variables:\n  both: {scale: 'springs.*.preload', normal: {sd: 0.1}}\n",
+         "springs.first.preload is varied by 'both' too"},
+        {"variables:\n", "variables:\n  none: {scale: 'bushings.*', normal: {sd: 0.1}}\n",
+         "study.yaml:4: variables.none.scale: the scene has no number 'bushings.*'"},
+    };
+    for (const auto& [what, by, says] : mistakes) {
+        expect_said(study(replaced(linear, what, by)), 2, {.err = {says}});
+        EXPECT_FALSE(fs::exists(path / "out")) << says;
+    }
+    write("study.yaml", linear);
+    expect_said(run("-o out --shard 3/2"), 2, {.err = {"--shard '3/2': allowed: K/N"}});
+    expect_said(run("-o out --show"), 2, {.err = {"no such ledger; nothing has been computed"}});
+}
+
+TEST_F(StudyCommand, RefusesATableWithItsLine) {
+    const std::string list = R"(elastocheck_study: 1
+scene: parallel_springs.yaml
+variables: {springs.first.rate: {}, springs.second.rate: {}}
+design: {kind: list, file: list.csv}
+figures: {height: centre_z@up:3000}
+)";
+    write("list.csv", "springs.first.rate,springs.secnd.rate\n1,2\n");
+    expect_said(study(list), 2,
+                {.err = {"list.csv:1: the study has no variable 'springs.secnd.rate', did you mean "
+                         "'springs.second.rate'?"}});
+    write("list.csv", "springs.first.rate\n1\n");
+    expect_said(study(list), 2, {.err = {"list.csv:1: 1 columns, but the study has 2 variables"}});
+    write("list.csv", "springs.second.rate,springs.first.rate\n45,30\n,30\n");
+    expect_said(study(list), 2, {.err = {"list.csv:3: springs.second.rate: no value"}});
+    write("list.csv", "springs.second.rate,springs.first.rate\n45,30\n20,30\n");
+    expect_said(study(list, "-o out --csv rows.csv"), 0, {.out = {"2 of 2 variants: 2 solved"}});
+    const auto rows = cells_of(text_of(path / "rows.csv"));
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0][3], "springs.first.rate [N/mm]");
+    EXPECT_EQ(rows[2][4], "20");
+    EXPECT_NEAR(std::stod(rows[1][5]), 400 + 3000.0 / 75, 1e-9);
+    EXPECT_NEAR(std::stod(rows[2][5]), 400 + 3000.0 / 50, 1e-9);
+}
+
+// ---- A linear suspension of known variance.
+
+TEST_F(StudyCommand, FindsTheVarianceOfALinearSuspension) {
+    expect_said(study(linear), 0, {.out = {"4096 of 4096 variants: 4096 solved"}});
+    const json all = statistics(), &figures = all["figures"];
+    const double sd = std::hypot(20, 30) / 75;
+    EXPECT_NEAR(cell(figures, 0, "design"), 420, 1e-9);
+    EXPECT_NEAR(cell(figures, 0, "mean"), 420, 1e-3);
+    EXPECT_NEAR(cell(figures, 0, "sd"), sd, 1e-3 * sd);
+    // percentiles, and the share above the limit, of the normal distribution
+    EXPECT_NEAR(cell(figures, 0, "95 %"), 420 + 1.6448536 * sd, 0.01 * sd);
+    EXPECT_LT(cell(figures, 0, "95 % low"), 420 + 1.6448536 * sd);
+    EXPECT_GT(cell(figures, 0, "95 % high"), 420 + 1.6448536 * sd);
+    const double above = 0.5 * std::erfc(0.8 / sd / std::sqrt(2.0));
+    EXPECT_NEAR(cell(figures, 0, "outside"), above, 0.004);
+    EXPECT_LT(cell(figures, 0, "outside low"), above);
+    EXPECT_GT(cell(figures, 0, "outside high"), above);
+    EXPECT_EQ(cell(all["witnesses"], 0, "witnesses"), 4);
+    EXPECT_LT(cell(all["witnesses"], 0, "difference"), 1e-9);
+}
+
+// Var z = (s₁² + s₂² + 2 ρ s₁ s₂) / k².
+TEST_F(StudyCommand, FindsTheVarianceOfCorrelatedNumbers) {
+    expect_said(study(replaced(linear, "design:",
+                               "groups: [{variables: [springs.first.preload, "
+                               "static_loads.weight.force.z], correlation: [[1, -0.8], [-0.8, "
+                               "1]]}]\ndesign:")),
+                0);
+    const double sd = std::sqrt(20 * 20 + 30 * 30 - 2 * 0.8 * 20 * 30) / 75;
+    EXPECT_NEAR(cell(statistics()["figures"], 0, "sd"), sd, 2e-3 * sd);
+}
+
+TEST_F(StudyCommand, FindsTheSharesOfALinearSuspension) {
+    expect_said(study(replaced(linear, "seed: 3", "seed: 3, indices: true")), 0,
+                {.out = {"Sobol indices"}});
+    const json sobol = statistics()["sobol"];
+    for (const auto& [row, share] : {std::pair(0u, 4.0 / 13), std::pair(1u, 9.0 / 13)})
+        for (const std::string kind : {"first", "total"}) {
+            EXPECT_LT(cell(sobol, row, kind + " low"), share);
+            EXPECT_GT(cell(sobol, row, kind + " high"), share);
+            EXPECT_NEAR(cell(sobol, row, kind), share, 0.04);
+        }
+}
+
+// A factor multiplies all numbers of its patterns.
+TEST_F(StudyCommand, ScalesSeveralNumbersByOneFactor) {
+    expect_said(study(R"(elastocheck_study: 1
+scene: parallel_springs.yaml
+variables:
+  rates: {scale: springs.*.rate, list: [0.5, 1, 2]}
+design: {kind: grid}
+figures: {height: centre_z@up:3000}
+)",
+                      "-o out --csv rows.csv"),
+                0);
+    const auto rows = cells_of(text_of(path / "rows.csv"));
+    ASSERT_EQ(rows.size(), 4u);
+    for (const std::size_t k : {1u, 2u, 3u})
+        EXPECT_NEAR(std::stod(rows[k][4]), 400 + 40 / std::stod(rows[k][3]), 1e-9);
+}
+
+// ---- Failed variants.
+
+TEST_F(StudyCommand, RecordsVariantsThatFailWithTheirReason) {
+    const Said said = study(R"(elastocheck_study: 1
+scene: parallel_springs.yaml
+variables:
+  springs.first.rate: {uniform: {low: -10, high: 30}}
+design: {kind: sobol, count: 64, seed: 1}
+figures: {height: centre_z@up:3000}
+witness: 1
+)",
+                            "-o out --csv rows.csv");
+    expect_said(said, 0, {.out = {"48 solved, 16 no scene", "springs.first.rate"}});
+    const auto rows = cells_of(text_of(path / "rows.csv"));
+    ASSERT_EQ(rows.size(), 65u) << "a gap";
+    const json figures = statistics()["figures"];
+    EXPECT_EQ(cell(figures, 0, "values"), 48);
+    EXPECT_EQ(cell(figures, 0, "missing"), 16);
+    expect_said(study(R"(elastocheck_study: 1
+scene: parallel_springs.yaml
+variables: {springs.first.rate: {list: [-1]}}
+design: {kind: grid}
+figures: {height: centre_z@up:3000}
+)",
+                      "-o none"),
+                3, {.out = {"1 no scene"}});
+}
+
+// ---- Interruption, threads, shards, extension: one content.
+
+const std::string mcpherson = R"(elastocheck_study: 1
+scene: mcpherson.yaml
+variables:
+  points.tie_rod_inner.z: {normal: {sd: 0.0005}}
+  points.strut_top.x: {triangular: {half_width: 0.001}}
+  springs.K1_coil.rate: {truncated_normal: {sd: 2000, low: -1000, high: 40000}}
+  bushes: {scale: 'bushings.K3_arm_front.rates.*', uniform: {half_width: 0.2}}
+design: {kind: sobol, count: 780, seed: 5}
+figures:
+  toe: toe@jounce:3000
+  camber: camber@rebound:-3000
+  wheel rate: wheel_rate@jounce:1500
+witness: 390
+)";
+
+std::string content(const Said& said) {
+    static const std::regex line("Content ([0-9a-f]{16})");
+    std::smatch match;
+    return std::regex_search(said.out, match, line) ? match[1].str() : "none: " + said.err;
+}
+
+TEST_F(StudyCommand, HasOneContentOnAnyThreadsInShardsAndAfterBeingKilled) {
+    const std::string one = content(study(mcpherson, "-o one --jobs 1"));
+    ASSERT_EQ(one.size(), 16u) << one;
+    EXPECT_EQ(content(run("-o two --jobs 2")), one);
+    EXPECT_EQ(content(run("-o two --show")), one);
+
+    for (const char* k : {"1", "2"})
+        expect_said(run("-o parts --shard " + std::string(k) + "/3"), 0,
+                    {.out = {std::string("Shard ") + k + "/3"}});
+    expect_said(
+        run("-o parts --merge parts/ledger-1-of-3.sqlite --merge parts/ledger-2-of-3.sqlite"), 3,
+        {.err = {"256 variants are missing: 256 of 512 to 767\n"}});
+    expect_said(run("-o elsewhere --shard 3/3"), 0);
+    EXPECT_EQ(content(run("-o parts --merge elsewhere/ledger-3-of-3.sqlite")), one);
+
+    // Killed at random moments, then finished by the same command.
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> moment(0.05, 0.6);
+    int killed = 0;
+    for (int round = 0; round < 6; ++round) {
+        const std::string jobs = round % 2 == 0 ? "1" : "2";
+        killed +=
+            support::says("cd " + path.string() +
+                          " && { exec " ELASTOCHECK_COMMAND
+                          " study study.yaml --quiet -o killed --jobs " +
+                          jobs + " >/dev/null & } && sleep " + std::to_string(moment(random)) +
+                          "; kill -" + (round % 3 == 2 ? "TERM" : "KILL") + " $!; wait $!")
+                .code > 128;
+    }
+    EXPECT_GT(killed, 0);
+    EXPECT_EQ(content(run("-o killed")), one);
+}
+
+TEST_F(StudyCommand, ExtendsWithoutRepeating) {
+    write("study.yaml", mcpherson);
+    EXPECT_NE(run("-o grown --count 300").err.find("300 variants computed"), std::string::npos);
+    EXPECT_NE(run("-o grown --count 700").err.find("400 variants computed"), std::string::npos);
+    const Said again = run("-o grown --count 700");
+    EXPECT_EQ(again.err.find("variants computed"), std::string::npos) << again.err;
+    EXPECT_EQ(content(again), content(run("-o whole --count 700")));
+    // Limits are no part of what was computed.
+    study(mcpherson + "limits: {toe: {max: 0}}\n", "-o grown --count 700");
+    EXPECT_NE(statistics("grown")["figures"].dump().find("outside"), std::string::npos);
+    expect_said(study(replaced(mcpherson, "kind: sobol", "kind: latin_hypercube"),
+                      "-o hypercube --count 3000"),
+                2, {.err = {"a Latin hypercube cannot be extended"}});
+}
+
+TEST_F(StudyCommand, RefusesLedgersOfOtherStudies) {
+    study(linear, "-o first --count 300");
+    for (const auto& [what, by] : {std::pair("sd: 20", "sd: 21"), std::pair("seed: 3", "seed: 4"),
+                                   std::pair("@up:1500", "@up:3000")})
+        expect_said(study(replaced(linear, what, by), "-o first --count 300"), 2,
+                    {.err = {"is of another study file"}});
+    write("study.yaml", linear);
+    const std::string scene = text_of(path / "parallel_springs.yaml");
+    write("parallel_springs.yaml", replaced(scene, "rate: 45", "rate: 46"));
+    expect_said(run("-o second --count 300 --merge first/ledger.sqlite"), 2,
+                {.err = {"first/ledger.sqlite: is of another scene"}});
+    write("parallel_springs.yaml", scene);
+    write("text.sqlite", "no ledger");
+    expect_said(run("-o third --count 300 --merge text.sqlite"), 2, {.err = {"text.sqlite: "}});
+}
+
+TEST_F(StudyCommand, TwoProcessesDoNotWriteOneLedger) {
+    write("study.yaml", linear);
+    expect_said(support::says("cd " + path.string() +
+                              " && mkdir out && flock out/ledger.sqlite.lock " ELASTOCHECK_COMMAND
+                              " study study.yaml -o out --quiet --count 10"),
+                2, {.err = {"another process is computing this study here"}});
+}
+
+}  // namespace
+}  // namespace elastocheck::reports
