@@ -36,7 +36,6 @@
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"

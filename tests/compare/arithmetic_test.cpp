@@ -99,7 +99,9 @@ TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
             EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
             if (cell.sweep == as_it_is) continue;
             variants.insert(cell.variant);
-            if (converged_as_drawn(cell)) EXPECT_EQ(cell.outcome, Outcome::converged) << told(cell);
+            if (converged_as_drawn(cell)) {
+                EXPECT_EQ(cell.outcome, Outcome::converged) << told(cell);
+            }
             if (cell.outcome != Outcome::converged) continue;
             EXPECT_TRUE(std::isfinite(cell.apart)) << told(cell);
             if (cell.solver == "equilibrium" || cell.solver == "energy" ||
