@@ -1,4 +1,5 @@
-// Derivative of a state by a number of the scene (sensitivity): result of every leg.
+// Derivatives by a number of the scene: of a state (sensitivity), and of its linear response.
+// Results of every leg.
 #pragma once
 
 #include <string>
@@ -27,6 +28,24 @@ struct StateRate {
     std::string detail;                 // reason of the failure; empty when converged
     std::vector<Increment> increments;  // per Model::bodies: (dr, dπ)/dp, [m] and [rad] per unit
     std::vector<Wrench> reactions;      // per Model::joints: derivative of Equilibrium::reactions
+};
+
+// d/dp of the increments of a Response, the derivative of the tangent at the state: with x_t the
+// response to a disturbance t, J x_t = -∂R/∂t,
+//
+//   J dx_t/dp = -d/dp (J x_t + ∂R/∂t) at a constant x_t
+//
+// where d/dp changes the model by its rate and the state by its StateRate. The disturbances stay: a
+// wrench at its point of the body, the offset of a joint. Outcomes as those of a StateRate. A part of
+// a motion that is idle has no derivative; what is returned for it depends on the leg.
+struct ResponseRate {
+    Outcome outcome = Outcome::converged;
+    std::string detail;
+    std::vector<std::vector<Increment>> increments;  // per disturbance and body, [m, rad] per unit
+};
+struct ResponseRates {
+    Response at;
+    std::vector<ResponseRate> by;  // per rate; empty unless `at` has converged
 };
 
 }  // namespace elastocheck

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 
+#include "compare/outputs/dual.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/positions.hpp"
-#include "compare/outputs/rates.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
@@ -25,59 +26,154 @@ using Eigen::Vector3d;
 constexpr double nowhere = 1e4;  // [m]
 constexpr double rigid = 1e12;   // [N/m]
 
-double ratio(double value, double by, double limit) {
-    if (std::isnan(value) || std::isnan(by)) return nan;
-    return std::abs(value) <= limit * std::abs(by) && by != 0 ? value / by : undefined;
+template <class S>
+S ratio(const S& value, const S& by, double limit) {
+    using std::abs;
+    if (std::isnan(value_of(value)) || std::isnan(value_of(by))) return nan;
+    return std::abs(value_of(value)) <= limit * std::abs(value_of(by)) && value_of(by) != 0
+               ? value / by
+               : S(undefined);
 }
 
-// ---- Motions of a wheel.
+// ---- Motions of a wheel, for S = Dual with their derivatives by a number of the model.
 
+template <class S>
+using Vector = Eigen::Matrix<S, 3, 1>;
+
+Vector3d with(const Vector3d& value, const Vector3d&, double) { return value; }
+Vector<Dual> with(const Vector3d& value, const Vector3d& rate, Dual) {
+    return {Dual(value.x(), rate.x()), Dual(value.y(), rate.y()), Dual(value.z(), rate.z())};
+}
+
+template <class S>
+struct MotionOf {
+    Vector<S> dr = Vector<S>::Constant(S(0)), dpi = Vector<S>::Constant(S(0));
+};
+template <class S>
+struct ResponseOf {
+    using Motions = std::vector<MotionOf<S>>;
+    std::vector<Motions> travel;
+    Motions steering;
+    std::vector<std::array<Motions, causes>> held, free;
+    bool tied = false, nothing_resists = false;
+};
+template <class S>
+struct Reading {
+    using Response = ResponseOf<S>;
+    using Motions = typename Response::Motions;
+};
+template <>
+struct Reading<double> {
+    using Response = WheelResponse;
+    using Motions = compare::Motions;
+};
+template <class S>
+using MotionsOf = typename Reading<S>::Motions;
+
+// A point or direction of a body: where it is, and from the origin of its body.
+template <class S>
+struct Placed {
+    BodyId body;
+    Vector<S> at, lever;
+};
+
+template <class S>
 struct Wheels {
+    using Number = S;
     const Model& model;
     const Equilibrium& state;
-    const WheelResponse& response;
-    const Wheel& operator[](std::size_t w) const { return model.wheels[w]; }
-    Point centre(std::size_t w) const {
-        return {model.wheels[w].body, model.wheels[w].centre_local};
-    }
-    Point patch(std::size_t w) const {
-        return {model.wheels[w].body, model.wheels[w].contact_local};
-    }
-    Vector3d at(const Point& point) const { return position(state.poses, point); }
-    double side(std::size_t w) const { return model.wheels[w].side; }
+    const typename Reading<S>::Response& response;
+    // with S = Dual: of the model, and of the state
+    const Model* rate = nullptr;
+    const StateRate* by = nullptr;
 
-    double toe(std::size_t w, const Motions& by) const { return rate_of(model, Toe{w}, state, by); }
-    double camber(std::size_t w, const Motions& by) const {
-        return rate_of(model, Camber{w}, state, by);
+    const Wheel& operator[](std::size_t w) const { return model.wheels[w]; }
+    const Wheel& rate_of(std::size_t w) const { return changing().wheels[w]; }
+    // Where nothing changes, its own parts stand in the place of rates and are not read.
+    const Model& changing() const { return rate != nullptr ? *rate : model; }
+    S number(double value, double derivative) const {
+        return with(Vector3d(value, 0, 0), Vector3d(derivative, 0, 0), S())[0];
     }
-    Vector3d spin(std::size_t w) const {
-        return pose(state.poses, model.wheels[w].body).p * model.wheels[w].spin_axis_local;
+    Placed<S> placed(BodyId body, const Vector3d& s_local, const Vector3d& ds_local) const {
+        const Pose& on = pose(state.poses, body);
+        const Vector3d s = on.p * s_local;
+        Vector3d ds = Vector3d::Zero(), dr = Vector3d::Zero();
+        if (rate != nullptr) {
+            ds = on.p * ds_local;
+            if (body != ground) {
+                const Increment& moved = by->increments[static_cast<std::size_t>(body)];
+                dr = moved.dr;
+                ds += moved.dpi.cross(s);
+            }
+        }
+        return {body, with(on.r + s, dr + ds, S()), with(s, ds, S())};
+    }
+    Placed<S> centre(std::size_t w) const {
+        return placed(model.wheels[w].body, model.wheels[w].centre_local, rate_of(w).centre_local);
+    }
+    Placed<S> patch(std::size_t w) const {
+        return placed(model.wheels[w].body, model.wheels[w].contact_local,
+                      rate_of(w).contact_local);
+    }
+    Placed<S> point(const Point& p, const Point& d) const {
+        return placed(p.body, p.s_local, d.s_local);
+    }
+    double side(std::size_t w) const { return model.wheels[w].side; }
+    Vector<S> spin(std::size_t w) const {
+        return placed(model.wheels[w].body, model.wheels[w].spin_axis_local,
+                      rate_of(w).spin_axis_local)
+            .lever;
+    }
+
+    // Rates along a motion of the channels toe and camber: atan2(e_x, side e_y), -asin(e_z).
+    S toe(std::size_t w, const MotionsOf<S>& motions) const {
+        const Vector<S> e = spin(w), de = turned_by(motions, model.wheels[w].body).cross(e);
+        const S x = S(side(w)) * e.y(), dx = S(side(w)) * de.y();
+        return (x * de.x() - e.x() * dx) / (x * x + e.x() * e.x());
+    }
+    S camber(std::size_t w, const MotionsOf<S>& motions) const {
+        using std::sqrt;
+        const Vector<S> e = spin(w), de = turned_by(motions, model.wheels[w].body).cross(e);
+        return -(de.z() / sqrt(S(1) - e.z() * e.z()));
+    }
+
+    static Vector<S> turned_by(const MotionsOf<S>& motions, BodyId body) {
+        if (body == ground) return Vector<S>::Constant(S(0));
+        return motions[static_cast<std::size_t>(body)].dpi;
+    }
+    static Vector<S> moved_by(const MotionsOf<S>& motions, const Placed<S>& point) {
+        if (point.body == ground) return Vector<S>::Constant(S(0));
+        const auto& body = motions[static_cast<std::size_t>(point.body)];
+        return body.dr + body.dpi.cross(point.lever);
     }
 };
 
 // Weighted sum of several causes.
-Motions sum(std::span<const Motions> causes, std::span<const double> weights) {
-    Motions total(causes.front().size());
-    for (std::size_t k = 0; k < causes.size(); ++k)
+template <class S>
+MotionsOf<S> sum(const std::vector<MotionsOf<S>>& all, const std::vector<S>& weights) {
+    MotionsOf<S> total(all.front().size());
+    for (std::size_t k = 0; k < all.size(); ++k)
         for (std::size_t b = 0; b < total.size(); ++b) {
-            total[b].dr += weights[k] * causes[k][b].dr;
-            total[b].dpi += weights[k] * causes[k][b].dpi;
+            total[b].dr += weights[k] * all[k][b].dr;
+            total[b].dpi += weights[k] * all[k][b].dpi;
         }
     return total;
 }
 
 // Heave: all wheels raised by 1 m; with tied wheels, their common motion scaled so that this wheel
 // rises by 1 m. Roll: the wheels of an axle in opposition, the left up; not for tied wheels.
-Motions raised(const Wheels& wheels, std::size_t w) {
+template <class S>
+MotionsOf<S> raised(const Wheels<S>& wheels, std::size_t w) {
     const auto& first = wheels.response.travel.front();
-    const double whole =
-        wheels.response.tied ? 1 / moved(wheels.state, first, wheels.centre(w)).z() : 1;
-    return sum(wheels.response.travel, std::vector<double>(wheels.response.travel.size(), whole));
+    const S whole =
+        wheels.response.tied ? S(1) / wheels.moved_by(first, wheels.centre(w)).z() : S(1);
+    return sum<S>(wheels.response.travel, std::vector<S>(wheels.response.travel.size(), whole));
 }
-Motions rolled(const Wheels& wheels) {
-    std::vector<double> weights;
-    for (const auto& wheel : wheels.model.wheels) weights.push_back(wheel.side);
-    return sum(wheels.response.travel, weights);
+template <class S>
+MotionsOf<S> rolled(const Wheels<S>& wheels) {
+    std::vector<S> weights;
+    for (const auto& wheel : wheels.model.wheels) weights.push_back(S(wheel.side));
+    return sum<S>(wheels.response.travel, weights);
 }
 
 // One left and one right wheel.
@@ -87,6 +183,33 @@ bool is_axle(const Model& model) {
 
 // ---- Centres and axes.
 
+// The solution of A P = b, of coincident lines the nearest; none of parallel ones. Two lines that
+// coincide only here have a solution without derivative.
+std::optional<Vector2d> crossing(const Eigen::Matrix2d& A, const Vector2d& b, double track) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> lines;
+    lines.setThreshold(1e-9);
+    lines.compute(A);
+    const Vector2d P = lines.solve(b);
+    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return std::nullopt;
+    return P;
+}
+std::optional<Eigen::Matrix<Dual, 2, 1>> crossing(const Eigen::Matrix<Dual, 2, 2>& A,
+                                                  const Eigen::Matrix<Dual, 2, 1>& b,
+                                                  const Dual& track) {
+    const auto value = [](const Dual& entry) { return entry.x; };
+    const auto rate = [](const Dual& entry) { return entry.dx; };
+    const Eigen::Matrix2d A_x = A.unaryExpr(value), A_dx = A.unaryExpr(rate);
+    const Vector2d b_x = b.unaryExpr(value), b_dx = b.unaryExpr(rate);
+    const auto P = crossing(A_x, b_x, track.x);
+    if (!P) return std::nullopt;
+    Eigen::FullPivLU<Eigen::Matrix2d> lines;
+    lines.setThreshold(1e-9);
+    lines.compute(A_x);
+    Vector2d dP = Vector2d::Constant(nan);
+    if (lines.isInvertible()) dP = lines.solve(b_dx - A_dx * *P);
+    return Eigen::Matrix<Dual, 2, 1>(Dual(P->x(), dP.x()), Dual(P->y(), dP.y()));
+}
+
 // Instant centre in front view: the patch of a wheel moves perpendicularly to the line through its
 // instant centre. The roll centre lies on that line: for an axle in roll at the intersection of
 // both lines; for one wheel at the middle of the vehicle, y = 0.
@@ -94,31 +217,29 @@ bool is_axle(const Model& model) {
 //   (P - c) · (dy, dz) = 0      h = P_z - c_z
 //
 // Two coincident lines (arms that guide the wheels vertically) meet halfway between the wheels.
-double roll_centre(const Wheels& wheels) {
-    const auto seen = [](const Vector3d& v) { return Vector2d(v.y(), v.z()); };
+template <class S>
+S roll_centre(const Wheels<S>& wheels) {
+    using std::abs;
+    using Plane = Eigen::Matrix<S, 2, 1>;
+    const auto seen = [](const Vector<S>& v) { return Plane(v.y(), v.z()); };
     if (!is_axle(wheels.model)) {
-        const Point patch = wheels.patch(0);
-        const Vector3d d = moved(wheels.state, wheels.response.travel[0], patch);
-        return ratio(wheels.at(patch).y() * d.y(), d.z(), nowhere);
+        const Placed<S> patch = wheels.patch(0);
+        const Vector<S> d = wheels.moved_by(wheels.response.travel[0], patch);
+        return ratio<S>(patch.at.y() * d.y(), d.z(), nowhere);
     }
     if (wheels.response.tied) return undefined;
-    const Motions roll = rolled(wheels);
-    Eigen::Matrix2d A;
-    Vector2d c[2], b;
+    const MotionsOf<S> roll = rolled(wheels);
+    Eigen::Matrix<S, 2, 2> A;
+    Plane c[2], b;
     for (std::size_t w = 0; w < 2; ++w) {
-        c[w] = seen(wheels.at(wheels.patch(w)));
+        c[w] = seen(wheels.patch(w).at);
         A.row(static_cast<Eigen::Index>(w)) =
-            seen(moved(wheels.state, roll, wheels.patch(w))).normalized().transpose();
+            seen(wheels.moved_by(roll, wheels.patch(w))).normalized().transpose();
     }
-    const Vector2d middle = (c[0] + c[1]) / 2;
+    const Plane middle = (c[0] + c[1]) / S(2);
     for (int w = 0; w < 2; ++w) b[w] = A.row(w).dot(c[w] - middle);
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> lines;
-    lines.setThreshold(1e-9);
-    lines.compute(A);
-    const Vector2d P = lines.solve(b);
-    const double track = std::abs(c[0].x() - c[1].x());
-    if ((A * P - b).norm() > 1e-9 * track || !(P.norm() <= nowhere)) return undefined;
-    return P.y();
+    const auto P = crossing(A, b, S(abs(c[0].x() - c[1].x())));
+    return P ? P->y() : S(undefined);
 }
 
 // Instant centre of the carrier in side and front view, from the wheel centre, with velocity v and
@@ -127,39 +248,47 @@ double roll_centre(const Wheels& wheels) {
 
 // Virtual steering axis: screw axis of the carrier when the rack moves at constant wheel-centre
 // height. n upward, through  c + ω × v / ω².
+template <class S>
 struct Axis {
-    Vector3d n, through;
+    Vector<S> n, through;
 };
-std::optional<Axis> steering_axis(const Wheels& wheels, std::size_t w) {
+template <class S>
+std::optional<Axis<S>> steering_axis(const Wheels<S>& wheels, std::size_t w) {
+    using std::abs;
     if (wheels.response.steering.empty()) return std::nullopt;
-    const Vector3d omega = turned(wheels.response.steering, wheels[w].body),
-                   v = moved(wheels.state, wheels.response.steering, wheels.centre(w));
-    if (!(v.norm() <= nowhere * omega.norm()) || !(std::abs(omega.z()) > 1e-6 * omega.norm()))
-        return std::nullopt;
-    return Axis{omega.normalized() * (omega.z() > 0 ? 1 : -1),
-                wheels.at(wheels.centre(w)) + omega.cross(v) / omega.squaredNorm()};
+    const Vector<S> omega = wheels.turned_by(wheels.response.steering, wheels[w].body),
+                    v = wheels.moved_by(wheels.response.steering, wheels.centre(w));
+    const S rate = omega.norm();
+    if (!(v.norm() <= S(nowhere) * rate) || !(abs(omega.z()) > S(1e-6) * rate)) return std::nullopt;
+    return Axis<S>{omega.normalized() * S(omega.z() > S(0) ? 1 : -1),
+                   wheels.centre(w).at + omega.cross(v) / omega.squaredNorm()};
 }
 // Vector from the patch to the intersection of the axis with the road.
-Vector3d on_the_road(const Wheels& wheels, std::size_t w, const Axis& axis) {
-    const Vector3d patch = wheels.at(wheels.patch(w));
-    return axis.through + axis.n * (patch.z() - axis.through.z()) / axis.n.z() - patch;
+template <class S>
+Vector<S> on_the_road(const Wheels<S>& wheels, std::size_t w, const Axis<S>& axis) {
+    const Vector<S> patch = wheels.patch(w).at;
+    return axis.through + axis.n * ((patch.z() - axis.through.z()) / axis.n.z()) - patch;
 }
 // Unit vectors in the road plane that follow the steered wheel: across it outwards, and along it
 // forwards.
-Vector3d across(const Wheels& wheels, std::size_t w) {
-    const Vector3d e = wheels.spin(w);
-    return Vector3d(e.x(), e.y(), 0).normalized();
+template <class S>
+Vector<S> across(const Wheels<S>& wheels, std::size_t w) {
+    const Vector<S> e = wheels.spin(w);
+    return Vector<S>(e.x(), e.y(), S(0)).normalized();
 }
-Vector3d along(const Wheels& wheels, std::size_t w) {
-    return wheels.side(w) * across(wheels, w).cross(Vector3d::UnitZ());
+template <class S>
+Vector<S> along(const Wheels<S>& wheels, std::size_t w) {
+    return S(wheels.side(w)) * across(wheels, w).cross(Vector<S>(S(0), S(0), S(1)));
 }
 
 // Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by
 // half the track, the other one goes down by as much.
-Motions rolled_towards(const Wheels& wheels, std::size_t w) {
-    Motions roll = rolled(wheels);
-    const double half = std::abs(wheels.at(wheels.patch(0)).y() - wheels.at(wheels.patch(1)).y()) /
-                        2 * wheels.side(w);
+template <class S>
+MotionsOf<S> rolled_towards(const Wheels<S>& wheels, std::size_t w) {
+    using std::abs;
+    MotionsOf<S> roll = rolled(wheels);
+    const S half =
+        S(abs(wheels.patch(0).at.y() - wheels.patch(1).at.y())) / S(2) * S(wheels.side(w));
     for (auto& motion : roll) motion.dr *= half, motion.dpi *= half;
     return roll;
 }
@@ -168,60 +297,80 @@ Motions rolled_towards(const Wheels& wheels, std::size_t w) {
 
 // 1 N up on the patch of every wheel; or on an axle in opposition, this wheel's up; model `free`.
 enum class Pattern { alike, opposite };
-double wheel_rate(const Wheels& wheels, std::size_t w, Pattern pattern) {
+template <class S>
+S wheel_rate(const Wheels<S>& wheels, std::size_t w, Pattern pattern) {
     if (wheels.response.free.empty()) return wheels.response.nothing_resists ? undefined : nan;
-    std::vector<Motions> up;
-    std::vector<double> weights;
+    std::vector<MotionsOf<S>> up;
+    std::vector<S> weights;
     for (std::size_t k = 0; k < wheels.response.free.size(); ++k) {
         up.push_back(wheels.response.free[k][at_patch + 2]);
-        weights.push_back(pattern == Pattern::alike || k == w ? 1 : -1);
+        weights.push_back(S(pattern == Pattern::alike || k == w ? 1 : -1));
     }
-    return ratio(1, moved(wheels.state, sum(up, weights), wheels.centre(w)).z(), rigid);
+    return ratio<S>(S(1), wheels.moved_by(sum<S>(up, weights), wheels.centre(w)).z(), rigid);
 }
-double ride_rate(const Wheels& wheels, std::size_t w) {
-    const double k_w = wheel_rate(wheels, w, Pattern::alike), k_t = wheels[w].tyre_rate;
-    return std::isinf(k_w) ? undefined : k_w * k_t / (k_w + k_t);
+template <class S>
+S ride_rate(const Wheels<S>& wheels, std::size_t w) {
+    const S k_w = wheel_rate(wheels, w, Pattern::alike),
+            k_t = wheels.number(wheels[w].tyre_rate, wheels.rate_of(w).tyre_rate);
+    return std::isinf(value_of(k_w)) ? S(undefined) : k_w * k_t / (k_w + k_t);
 }
 
 // Sign towards the middle of the vehicle, for equal values of a wheel and its mirror image; at the
 // patch, wheels held.
-double inward(const Wheels& wheels, std::size_t w) { return -wheels.side(w); }
+template <class S>
+S inward(const Wheels<S>& wheels, std::size_t w) {
+    return S(-wheels.side(w));
+}
 
-const Motions& held(const Wheels& wheels, std::size_t w, int cause) {
+template <class S>
+const MotionsOf<S>& held(const Wheels<S>& wheels, std::size_t w, int cause) {
     return wheels.response.held[w][static_cast<std::size_t>(cause)];
 }
 
 // The displacement of the loaded point along the load is a compliance.
-double stiffness(const Wheels& wheels, std::size_t w, int cause) {
-    const Point at = cause < moment_on ? wheels.centre(w) : wheels.patch(w);
-    return ratio(1, moved(wheels.state, held(wheels, w, cause), at)[cause % 3], rigid);
+template <class S>
+S stiffness(const Wheels<S>& wheels, std::size_t w, int cause) {
+    const Placed<S> at = cause < moment_on ? wheels.centre(w) : wheels.patch(w);
+    return ratio<S>(S(1), wheels.moved_by(held(wheels, w, cause), at)[cause % 3], rigid);
 }
 
 // Longitudinal displacement of a point per wheel travel, all wheels raised together: tangent of the
 // angle at which the links, not the springs, carry a longitudinal force.
-double forward_per_travel(const Wheels& wheels, const Point& at) {
-    const Vector3d d = moved(wheels.state, raised(wheels, 0), at);
-    return ratio(d.x(), d.z(), nowhere);
+template <class S>
+S forward_per_travel(const Wheels<S>& wheels, const Placed<S>& at) {
+    const Vector<S> d = wheels.moved_by(raised(wheels, 0), at);
+    return ratio<S>(d.x(), d.z(), nowhere);
 }
 // Point at which a driving force acts on the links: the patch where an axle housing carries the
 // drive torque, the wheel centre where the car body carries it through a shaft.
-Point driven_at(const Wheels& wheels, std::size_t w) {
+template <class S>
+Placed<S> driven_at(const Wheels<S>& wheels, std::size_t w) {
     const bool housing = is_axle(wheels.model) && wheels[0].body == wheels[1].body;
     return housing ? wheels.patch(w) : wheels.centre(w);
 }
 // Milliken & Milliken, Race Car Vehicle Dynamics, 1995, ch. 17: axle share · tan
 // φ · wheelbase / height of the centre of gravity.
-double anti(const Wheels& wheels, const Point& at, double share, double sign) {
-    const Vehicle& vehicle = *wheels.model.vehicle;
-    return sign * share * forward_per_travel(wheels, at) * vehicle.wheelbase / vehicle.cg_height;
+template <class S>
+S anti(const Wheels<S>& wheels, const Placed<S>& at, double Vehicle::*share, double sign) {
+    const Vehicle &vehicle = *wheels.model.vehicle, &d = *wheels.changing().vehicle;
+    const auto number = [&](double Vehicle::*which) {
+        return wheels.number(vehicle.*which, d.*which);
+    };
+    return S(sign) * number(share) * forward_per_travel(wheels, at) * number(&Vehicle::wheelbase) /
+           number(&Vehicle::cg_height);
 }
 
-double steer_gradient(const Wheels& wheels, std::size_t w) {
-    return wheels.response.steering.empty() ? undefined : wheels.toe(w, wheels.response.steering);
+template <class S>
+S steer_gradient(const Wheels<S>& wheels, std::size_t w) {
+    return wheels.response.steering.empty() ? S(undefined)
+                                            : wheels.toe(w, wheels.response.steering);
 }
 
-double shortening(const Wheels& wheels, const Point& i, const Point& j) {
-    return rate_of(wheels.model, Compression{i, j}, wheels.state, raised(wheels, 0));
+template <class S>
+S shortening(const Wheels<S>& wheels, const Placed<S>& i, const Placed<S>& j) {
+    const MotionsOf<S> motions = raised(wheels, 0);
+    const Vector<S> D = j.at - i.at, dD = wheels.moved_by(motions, j) - wheels.moved_by(motions, i);
+    return -(D.dot(dD) / D.norm());
 }
 
 // ---- Catalogue: owner, name, unit, definition with its sign, meaning of undefined, formula.
@@ -241,14 +390,29 @@ enum class Of {
     damper,
 };
 
+// One formula, evaluated with doubles and with duals; k: wheel, or spring in Model::elastics, or
+// damper; SI.
+struct Formula {
+    double (*value)(const Wheels<double>& wheels, std::size_t k);
+    Dual (*with_rate)(const Wheels<Dual>& wheels, std::size_t k);
+
+    template <class Generic>
+    Formula(const Generic& formula) : value(formula), with_rate(formula) {}  // NOLINT: of a lambda
+};
+
+// A number as those of the formula.
+template <class S>
+S in(const Wheels<S>&, double value) {
+    return S(value);
+}
+
 struct Entry {
     Of of;
     const char* name;
     Unit unit;
     const char* definition;
     const char* undefined;
-    double (*formula)(const Wheels& wheels,
-                      std::size_t k);  // k: wheel, or spring in Model::elastics, or damper; SI
+    Formula formula;
     bool swing_arm = false;
 };
 
@@ -266,61 +430,59 @@ const std::array table{
     Entry{Of::every_wheel, "bump_steer", Unit::deg_per_m,
           "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
           "positive towards toe-in in jounce",
-          never, [](const Wheels& x, std::size_t w) { return x.toe(w, raised(x, w)); }},
+          never, [](const auto& x, std::size_t w) { return x.toe(w, raised(x, w)); }},
     Entry{Of::every_wheel, "bump_camber", Unit::deg_per_100mm,
           "change of camber over travel of the wheel centre, all wheels rising by the same amount; "
           "positive where the top leans out in jounce",
-          never, [](const Wheels& x, std::size_t w) { return x.camber(w, raised(x, w)); }},
+          never, [](const auto& x, std::size_t w) { return x.camber(w, raised(x, w)); }},
     Entry{Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
           "lateral displacement of the contact patch over travel, all wheels rising by the same "
           "amount; positive outwards in jounce",
           never,
-          [](const Wheels& x, std::size_t w) {
-              return x.side(w) * moved(x.state, raised(x, w), x.patch(w)).y();
+          [](const auto& x, std::size_t w) {
+              return in(x, x.side(w)) * x.moved_by(raised(x, w), x.patch(w)).y();
           }},
     Entry{Of::every_wheel, "recession_gradient", Unit::mm_per_100mm,
           "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
           "same amount; positive to the back in jounce",
           never,
-          [](const Wheels& x, std::size_t w) {
-              return -moved(x.state, raised(x, w), x.centre(w)).x();
-          }},
+          [](const auto& x, std::size_t w) { return -x.moved_by(raised(x, w), x.centre(w)).x(); }},
     Entry{Of::every_wheel, "front_view_swing_arm", Unit::mm,
           "lateral distance from the wheel centre to the instant centre of the carrier seen from "
           "the front, all wheels rising by the same amount; positive inboard",
           "the carrier does not rotate as seen from the front: the arm is infinite",
-          [](const Wheels& x, std::size_t w) {
-              const Motions by = raised(x, w);
-              const Vector3d v = moved(x.state, by, x.centre(w));
-              return ratio(x.side(w) * v.z(), turned(by, x[w].body).x(), nowhere);
+          [](const auto& x, std::size_t w) {
+              const auto by = raised(x, w);
+              const auto v = x.moved_by(by, x.centre(w));
+              return ratio(in(x, x.side(w)) * v.z(), x.turned_by(by, x[w].body).x(), nowhere);
           },
           true},
     Entry{Of::every_wheel, "side_view_swing_arm", Unit::mm,
           "longitudinal distance from the wheel centre to the instant centre of the carrier seen "
           "from the side, all wheels rising by the same amount; positive ahead of the wheel",
           "the carrier does not rotate as seen from the side: the arm is infinite",
-          [](const Wheels& x, std::size_t w) {
-              const Motions by = raised(x, w);
-              const Vector3d v = moved(x.state, by, x.centre(w));
-              return ratio(v.z(), turned(by, x[w].body).y(), nowhere);
+          [](const auto& x, std::size_t w) {
+              const auto by = raised(x, w);
+              const auto v = x.moved_by(by, x.centre(w));
+              return ratio(v.z(), x.turned_by(by, x[w].body).y(), nowhere);
           },
           true},
     Entry{Of::every_wheel, "wheel_rate", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, all "
           "wheels with the same load",
-          no_rate, [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
+          no_rate, [](const auto& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
     Entry{Of::every_wheel, "lateral_force_steer", Unit::deg_per_kN,
           "change of toe over a force at the contact patch towards the middle of the vehicle (as "
           "on the "
           "outer wheel in a "
           "turn), wheel centres held at their height; positive towards toe-in",
           never,
-          [](const Wheels& x, std::size_t w) {
+          [](const auto& x, std::size_t w) {
               return inward(x, w) * x.toe(w, held(x, w, at_patch + 1));
           }},
     Entry{Of::every_wheel, "lateral_force_camber", Unit::deg_per_kN,
           "change of camber over the same force, likewise; positive where the top leans out", never,
-          [](const Wheels& x, std::size_t w) {
+          [](const auto& x, std::size_t w) {
               return inward(x, w) * x.camber(w, held(x, w, at_patch + 1));
           }},
     Entry{Of::every_wheel, "lateral_stiffness", Unit::newton_per_mm,
@@ -328,167 +490,169 @@ const std::array table{
           "their "
           "height",
           gives_nothing,
-          [](const Wheels& x, std::size_t w) { return stiffness(x, w, at_patch + 1); }},
+          [](const auto& x, std::size_t w) { return stiffness(x, w, at_patch + 1); }},
     Entry{Of::every_wheel, "braking_force_steer", Unit::deg_per_kN,
           "change of toe over a force to the back at the contact patch, wheel centres held at "
           "their height; "
           "positive towards "
           "toe-in",
-          never, [](const Wheels& x, std::size_t w) { return -x.toe(w, held(x, w, at_patch)); }},
+          never, [](const auto& x, std::size_t w) { return -x.toe(w, held(x, w, at_patch)); }},
     Entry{Of::every_wheel, "braking_force_camber", Unit::deg_per_kN,
           "change of camber over the same force, likewise; positive where the top leans out", never,
-          [](const Wheels& x, std::size_t w) { return -x.camber(w, held(x, w, at_patch)); }},
+          [](const auto& x, std::size_t w) { return -x.camber(w, held(x, w, at_patch)); }},
     Entry{Of::every_wheel, "longitudinal_stiffness", Unit::newton_per_mm,
           "longitudinal force at the contact patch over its longitudinal displacement, wheel "
           "centres held at "
           "their height",
-          gives_nothing, [](const Wheels& x, std::size_t w) { return stiffness(x, w, at_patch); }},
+          gives_nothing, [](const auto& x, std::size_t w) { return stiffness(x, w, at_patch); }},
     Entry{Of::every_wheel, "traction_force_steer", Unit::deg_per_kN,
           "change of toe over a force forward at the wheel centre, wheel centres held at their "
           "height; "
           "positive towards toe-in",
-          never, [](const Wheels& x, std::size_t w) { return x.toe(w, held(x, w, at_centre)); }},
+          never, [](const auto& x, std::size_t w) { return x.toe(w, held(x, w, at_centre)); }},
     Entry{Of::every_wheel, "longitudinal_stiffness_at_centre", Unit::newton_per_mm,
           "longitudinal force at the wheel centre over its longitudinal displacement, wheel "
           "centres held at "
           "their height",
-          gives_nothing, [](const Wheels& x, std::size_t w) { return stiffness(x, w, at_centre); }},
+          gives_nothing, [](const auto& x, std::size_t w) { return stiffness(x, w, at_centre); }},
     Entry{Of::every_wheel, "aligning_torque_steer", Unit::deg_per_100Nm,
           "change of toe over a moment about the vertical that turns the wheel towards toe-in, "
           "wheel centres "
           "held at their "
           "height; positive towards toe-in",
           never,
-          [](const Wheels& x, std::size_t w) {
-              return -x.side(w) * x.toe(w, held(x, w, moment_on + 2));
+          [](const auto& x, std::size_t w) {
+              return in(x, -x.side(w)) * x.toe(w, held(x, w, moment_on + 2));
           }},
     Entry{Of::every_wheel, "aligning_torque_camber", Unit::deg_per_100Nm,
           "change of camber over the same moment, likewise; positive where the top leans out",
           never,
-          [](const Wheels& x, std::size_t w) {
-              return -x.side(w) * x.camber(w, held(x, w, moment_on + 2));
+          [](const auto& x, std::size_t w) {
+              return in(x, -x.side(w)) * x.camber(w, held(x, w, moment_on + 2));
           }},
     Entry{Of::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
           "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
-          ride_rate},
+          [](const auto& x, std::size_t w) { return ride_rate(x, w); }},
     Entry{Of::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
           "change of toe over the displacement of the steering joint, wheel centres held at their "
           "height; "
           "positive towards "
           "toe-in",
-          not_steered, steer_gradient},
+          not_steered, [](const auto& x, std::size_t w) { return steer_gradient(x, w); }},
     Entry{Of::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
           "change of toe over the angle of the steering joint, wheel centres held at their height; "
           "positive "
           "towards toe-in",
-          not_steered, steer_gradient},
+          not_steered, [](const auto& x, std::size_t w) { return steer_gradient(x, w); }},
     Entry{
         Of::steered_wheel, "caster_steered", Unit::deg,
         "angle to the vertical seen from the side of the axis about which the carrier turns when "
         "the steering moves, wheel centres held at their height; positive where its top leans back",
         does_not_steer,
-        [](const Wheels& x, std::size_t w) {
+        [](const auto& x, std::size_t w) {
             const auto axis = steering_axis(x, w);
-            return axis ? std::atan2(-axis->n.x(), axis->n.z()) : undefined;
+            using std::atan2;
+            return axis ? atan2(-axis->n.x(), axis->n.z()) : in(x, undefined);
         }},
     Entry{Of::steered_wheel, "kingpin_inclination_steered", Unit::deg,
           "angle to the vertical seen from the front of the same axis; positive where its top "
           "leans inwards",
           does_not_steer,
-          [](const Wheels& x, std::size_t w) {
+          [](const auto& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? std::atan2(-x.side(w) * axis->n.y(), axis->n.z()) : undefined;
+              using std::atan2;
+              return axis ? atan2(in(x, -x.side(w)) * axis->n.y(), axis->n.z()) : in(x, undefined);
           }},
     Entry{Of::steered_wheel, "scrub_radius_steered", Unit::mm,
           "distance across the wheel from the contact patch to the intersection of the same axis "
           "with the road, positive inboard",
           does_not_steer,
-          [](const Wheels& x, std::size_t w) {
+          [](const auto& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : undefined;
+              return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
           }},
     Entry{Of::steered_wheel, "mechanical_trail_steered", Unit::mm,
           "distance along the wheel from the contact patch to the intersection of the same axis "
           "with the road, positive in front",
           does_not_steer,
-          [](const Wheels& x, std::size_t w) {
+          [](const auto& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : undefined;
+              return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
           }},
-    Entry{Of::front_wheel, "anti_dive", Unit::percent,
-          "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
-          "patch: share of the load transfer under braking that the links carry; positive where "
-          "they resist dive",
-          no_vertical,
-          [](const Wheels& x, std::size_t w) {
-              return anti(x, x.patch(w), x.model.vehicle->brake_share, 1);
-          }},
+    Entry{
+        Of::front_wheel, "anti_dive", Unit::percent,
+        "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
+        "patch: share of the load transfer under braking that the links carry; positive where "
+        "they resist dive",
+        no_vertical,
+        [](const auto& x, std::size_t w) { return anti(x, x.patch(w), &Vehicle::brake_share, 1); }},
     Entry{Of::front_wheel, "anti_lift", Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist lift of the front "
           "when the axle drives",
           no_vertical,
-          [](const Wheels& x, std::size_t w) {
-              return anti(x, driven_at(x, w), x.model.vehicle->drive_share, 1);
+          [](const auto& x, std::size_t w) {
+              return anti(x, driven_at(x, w), &Vehicle::drive_share, 1);
           }},
     Entry{Of::rear_wheel, "anti_lift", Unit::percent,
           "brake_share · wheelbase / cg_height · rearward over vertical displacement of the "
           "contact patch: share of the load transfer under braking that the links carry; positive "
           "where they resist lift of the rear",
           no_vertical,
-          [](const Wheels& x, std::size_t w) {
-              return anti(x, x.patch(w), x.model.vehicle->brake_share, -1);
+          [](const auto& x, std::size_t w) {
+              return anti(x, x.patch(w), &Vehicle::brake_share, -1);
           }},
     Entry{Of::rear_wheel, "anti_squat", Unit::percent,
           "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
           "drives",
           no_vertical,
-          [](const Wheels& x, std::size_t w) {
-              return anti(x, driven_at(x, w), x.model.vehicle->drive_share, -1);
+          [](const auto& x, std::size_t w) {
+              return anti(x, driven_at(x, w), &Vehicle::drive_share, -1);
           }},
     Entry{
         Of::wheels, "roll_centre_height", Unit::mm,
         "height above the contact patches of the intersection of the lines that are perpendicular, "
         "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
         "with the middle plane of the vehicle for one wheel; positive above the road",
-        "no finite roll centre", [](const Wheels& x, std::size_t) { return roll_centre(x); }},
+        "no finite roll centre", [](const auto& x, std::size_t) { return roll_centre(x); }},
     Entry{Of::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "
           "positive "
           "towards toe-in",
           does_not_roll,
-          [](const Wheels& x, std::size_t w) {
-              return x.response.tied ? undefined : x.toe(w, rolled_towards(x, w));
+          [](const auto& x, std::size_t w) {
+              return x.response.tied ? in(x, undefined) : x.toe(w, rolled_towards(x, w));
           }},
     Entry{Of::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where "
           "the top "
           "leans out",
           does_not_roll,
-          [](const Wheels& x, std::size_t w) {
-              return x.response.tied ? undefined : x.camber(w, rolled_towards(x, w));
+          [](const auto& x, std::size_t w) {
+              return x.response.tied ? in(x, undefined) : x.camber(w, rolled_towards(x, w));
           }},
     Entry{Of::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, "
           "with the opposite force on the other wheel",
           no_rate,
-          [](const Wheels& x, std::size_t w) { return wheel_rate(x, w, Pattern::opposite); }},
+          [](const auto& x, std::size_t w) { return wheel_rate(x, w, Pattern::opposite); }},
     Entry{
         Of::spring, "motion_ratio", Unit::none,
         "shortening of the spring over travel of the wheel centres, all rising by the same amount",
         never,
-        [](const Wheels& x, std::size_t k) {
+        [](const auto& x, std::size_t k) {
             const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
-            return shortening(x, spring.i, spring.j);
+            const auto& d = std::get<AxialSpring>(x.changing().elastics[k].kind);
+            return shortening(x, x.point(spring.i, d.i), x.point(spring.j, d.j));
         }},
     Entry{
         Of::damper, "motion_ratio", Unit::none,
         "shortening of the damper over travel of the wheel centres, all rising by the same amount",
         never,
-        [](const Wheels& x, std::size_t k) {
-            const auto& damper = x.model.dampers[k];
-            return shortening(x, damper.i, damper.j);
+        [](const auto& x, std::size_t k) {
+            const auto &damper = x.model.dampers[k], &d = x.changing().dampers[k];
+            return shortening(x, x.point(damper.i, d.i), x.point(damper.j, d.j));
         }},
 };
 
@@ -562,7 +726,52 @@ std::vector<Channel> characteristics(const Model& model) {
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
                 const WheelResponse& response) {
     const Entry& entry = table[what.entry];
-    return response.why_not.empty() ? entry.formula({model, state, response}, what.of) : nan;
+    return response.why_not.empty() ? entry.formula.value({model, state, response}, what.of) : nan;
+}
+
+namespace {
+
+std::vector<MotionOf<Dual>> with_rate(const Motions& at, const Motions& rate) {
+    std::vector<MotionOf<Dual>> both(at.size());
+    for (std::size_t b = 0; b < at.size() && b < rate.size(); ++b)
+        both[b] = {with(at[b].dr, rate[b].dr, Dual()), with(at[b].dpi, rate[b].dpi, Dual())};
+    return both;
+}
+std::vector<std::array<std::vector<MotionOf<Dual>>, causes>> with_rate(
+    const std::vector<std::array<Motions, causes>>& at,
+    const std::vector<std::array<Motions, causes>>& rate) {
+    std::vector<std::array<std::vector<MotionOf<Dual>>, causes>> both(rate.size());
+    for (std::size_t w = 0; w < rate.size(); ++w)
+        for (std::size_t k = 0; k < causes; ++k) both[w][k] = with_rate(at[w][k], rate[w][k]);
+    return both;
+}
+
+}  // namespace
+
+std::vector<double> rates_of(const Model& model, std::span<const Characteristic> which,
+                             const Equilibrium& state, const Model& rate,
+                             const StateRate& state_rate, const WheelResponse& at,
+                             const WheelResponseRate& by) {
+    std::vector<double> rates(which.size(), nan);
+    if (!by.why_not.empty()) return rates;
+    ResponseOf<Dual> response;
+    response.tied = at.tied, response.nothing_resists = at.nothing_resists;
+    for (std::size_t w = 0; w < at.travel.size(); ++w)
+        response.travel.push_back(with_rate(at.travel[w], by.travel[w]));
+    response.steering = with_rate(at.steering, by.steering);
+    response.held = with_rate(at.held, by.held);
+    response.free = with_rate(at.free, by.free);
+    const Wheels<Dual> wheels{model, state, response, &rate, &state_rate};
+    for (std::size_t k = 0; k < which.size(); ++k) {
+        const Dual value = table[which[k].entry].formula.with_rate(wheels, which[k].of);
+        if (std::isfinite(value.x)) rates[k] = value.dx;
+    }
+    return rates;
+}
+
+bool needs_free(const Characteristic& what) {
+    const Of of = table[what.entry].of;
+    return of == Of::wheel_on_tyre || table[what.entry].unit == Unit::newton_per_mm;
 }
 
 bool is_swing_arm(const Characteristic& what) { return table[what.entry].swing_arm; }
@@ -570,7 +779,7 @@ bool is_swing_arm(const Characteristic& what) { return table[what.entry].swing_a
 Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
                            const WheelResponse& response) {
     const auto n = static_cast<Eigen::Index>(response.free.size());
-    const Wheels wheels{model, state, response};
+    const Wheels<double> wheels{model, state, response};
     const int force = point == WheelPoint::centre ? at_centre : at_patch;
     Eigen::MatrixXd C(6 * n, 6 * n);
     for (Eigen::Index j = 0; j < n; ++j)
@@ -579,8 +788,9 @@ Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibri
                                           [static_cast<std::size_t>(k < 3 ? force + k : k)];
             for (Eigen::Index i = 0; i < n; ++i) {
                 const auto w = static_cast<std::size_t>(i);
-                const Point at = point == WheelPoint::centre ? wheels.centre(w) : wheels.patch(w);
-                C.block<6, 1>(6 * i, 6 * j + k) << moved(state, by, at), turned(by, wheels[w].body);
+                const auto at = point == WheelPoint::centre ? wheels.centre(w) : wheels.patch(w);
+                C.block<6, 1>(6 * i, 6 * j + k) << wheels.moved_by(by, at),
+                    turned(by, wheels[w].body);
             }
         }
     return C;

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -17,8 +17,11 @@
 #include "compare/deviation/deviation.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
+#include "compare/outputs/rates.hpp"
+#include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/numbers.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -29,10 +32,6 @@ using Eigen::VectorXd;
 
 // Points of a branch between which a figure over another output is interpolated.
 constexpr int interpolated_points = 40;
-
-// h of the differences, as a share of step_of(): 0.4 mm, 0.4 %. The error of R is of the order h⁴,
-// and the rounding of the figures, some 1e-13 of their size, is divided by h / 4.
-constexpr double share_of_step = 0.4;
 
 // Model with its outputs, of which the required ones are evaluated.
 struct Solver {
@@ -110,8 +109,10 @@ struct Solver {
         }
     }
 
-    // Figures at values of another output, interpolated on the curve of the branch.
-    void over_outputs(const Branch& branch, const std::vector<std::size_t>& which) const {
+    // Figures at values of another output, interpolated on the curve of the branch. `places`, if
+    // asked for, receives the parameters there.
+    void over_outputs(const Branch& branch, const std::vector<std::size_t>& which,
+                      std::map<std::size_t, double>* places = nullptr) const {
         const auto channels = outputs(which);
         const auto ways = sides_of(model, branch, std::min(branch.steps, interpolated_points));
         const PathCurve path = walk(model, channels, branch, ways, {.leg = leg});
@@ -119,9 +120,11 @@ struct Solver {
             const auto over = static_cast<std::size_t>(find_channel(channels, figures[k].over));
             const auto c = static_cast<std::size_t>(find_channel(channels, figures[k].name));
             const auto x = placed_by(path.curve, over);
-            if (reaches(x, figures[k].at))
+            if (reaches(x, figures[k].at)) {
                 set(k, interpolate(x, path.curve.channel(c), figures[k].at, 6), channels[c]);
-            else
+                if (places != nullptr)
+                    (*places)[k] = interpolate(x, path.curve.a, figures[k].at, 6);
+            } else
                 miss(x.empty()
                          ? fmt::format("branch '{}': {} is not monotonic", branch.name,
                                        figures[k].over)
@@ -162,53 +165,174 @@ FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, 
     return result;
 }
 
-double step_of(const Number& number) {
-    static const std::map<std::string, double> millimetre{
-        {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};
-    if (const auto unit = millimetre.find(number.unit); unit != millimetre.end())
-        return unit->second;
-    return number.value != 0 ? 0.01 * std::abs(number.value) : 1;
+namespace {
+
+// The derivative by the parameter of a branch, as if it were a number of the scene: all its drivers
+// start later.
+ModelRate by_parameter(const Model& model, const std::string& branch_name) {
+    ModelRate rate;
+    rate.path = "(parameter)";
+    rate.rate = without_numbers(model);
+    for (std::size_t b = 0; b < model.branches.size(); ++b)
+        if (model.branches[b].name == branch_name)
+            for (std::size_t d = 0; d < model.branches[b].drivers.size(); ++d)
+                rate.rate.branches[b].drivers[d].start = model.branches[b].drivers[d].rate;
+    return rate;
 }
 
-Figures differenced_figures(SceneAt scene_at, std::vector<Figure> figures,
-                            std::vector<Number> numbers, int threads) {
-    const auto value = [scene_at = std::move(scene_at),
-                        figures = std::move(figures)](const VectorXd& p) -> VectorXd {
+// Rates of what a channel reads in the design position, in its unit.
+double drawn_rate(const Model& model, const Channel& channel, std::size_t place,
+                  const ModelRate& rate) {
+    if (!rate.undefined.empty()) return nan;
+    StateRate design;
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+        const Pose &at = model.bodies[b].design, &change = rate.rate.bodies[b].design;
+        design.increments.push_back({change.r, 2 * (change.p * at.p.conjugate()).vec()});
+    }
+    design.reactions.resize(model.joints.size());
+    return in_unit(channel.unit) * rate_of(model, channel.reads, design_state(model), rate.rate,
+                                           read_rates(model, rate.rate)[place], design);
+}
+
+// One branch of figure_gradient(): its rows.
+struct BranchGradient {
+    const Model& model;
+    std::span<const ModelRate> rates;  // of the model, by the numbers
+    const TrimRates* trim;
+    std::span<const Figure> figures;
+    FigureGradient& result;
+
+    void add(const Branch& branch, const std::vector<std::size_t>& which, std::string& why) const {
+        FigureValues unused;
+        unused.value = VectorXd::Constant(static_cast<Index>(figures.size()), nan);
+        const Solver solver{model, figures, Leg::equilibrium, unused};
+        std::map<std::size_t, double> places;
+        std::vector<std::size_t> over;
+        for (const std::size_t k : which) {
+            if (figures[k].over.empty())
+                places[k] = figures[k].at;
+            else
+                over.push_back(k);
+        }
+        if (!over.empty()) solver.over_outputs(branch, over, &places);
+        why = unused.why_not;
+        if (places.empty()) return;
+
+        const auto outputs = solver.outputs(which);
+        GradientOptions options{.branches = {branch.name}, .legs = {Leg::equilibrium}};
+        for (const auto& [k, a] : places) options.stations[branch.name].push_back(a);
+        std::vector<ModelRate> all(rates.begin(), rates.end());
+        std::optional<TrimRates> with_parameter;
+        if (!over.empty()) all.push_back(by_parameter(model, branch.name));
+        if (trim != nullptr) {
+            with_parameter = *trim;
+            if (!over.empty()) {
+                with_parameter->numbers.push_back(all.back());
+                with_parameter->scenes.push_back(without_numbers(trim->scenes.front()));
+            }
+            options.trim = &*with_parameter;
+        }
+        std::vector<VariedNumber> numbers;
+        for (const ModelRate& rate : all) numbers.push_back({.path = rate.path});
+        const Gradients found = gradients(model, outputs, numbers, all, options);
+        for (const SideGradients& side : found.sides) {
+            const LegGradients& leg = side.legs.front();
+            if (why.empty()) why = leg.failure;
+            for (const auto& [k, a] : places)
+                for (std::size_t s = 0; s < leg.at.size(); ++s)
+                    if (side.a[s] == a) row(k, outputs, leg.at[s]);
+            for (const auto& at_station : side.why_number)
+                for (const std::string& reason : at_station)
+                    if (why.empty()) why = reason;
+        }
+    }
+
+  private:
+    void row(std::size_t k, const std::vector<Channel>& outputs, const MatrixXd& at) const {
+        const auto n = static_cast<Index>(rates.size());
+        const int y = find_channel(outputs, figures[k].name);
+        Eigen::RowVectorXd rate = at.row(y).head(n);
+        if (!figures[k].over.empty()) {
+            const int x = find_channel(outputs, figures[k].over);
+            rate -= at(y, n) / at(x, n) * at.row(x).head(n);
+        }
+        if (figures[k].change) {
+            const auto every = channels(model);
+            const int place = find_channel(every, figures[k].name);
+            for (Index p = 0; p < n; ++p)
+                rate[p] -= place < 0 ? nan
+                                     : drawn_rate(model, every[static_cast<std::size_t>(place)],
+                                                  static_cast<std::size_t>(place),
+                                                  rates[static_cast<std::size_t>(p)]);
+        }
+        result.rate.row(static_cast<Index>(k)) = rate;
+    }
+};
+
+}  // namespace
+
+FigureGradient figure_gradient(const Scene& scene, std::span<const ModelRate> rates,
+                               std::span<const Figure> figures, int threads) {
+    const auto rows = static_cast<Index>(figures.size()),
+               columns = static_cast<Index>(rates.size());
+    FigureGradient result{
+        MatrixXd::Constant(rows, columns, nan), MatrixXd::Zero(rows, columns), {}};
+    const Trimmed trimmed = trim(scene);
+    if (trimmed.record && !trimmed.record->reached()) {
+        result.why_not = "trim: " + trimmed.record->detail;
+        return result;
+    }
+    const Model model = compile(trimmed.scene);
+    std::optional<TrimRates> trim_of;
+    if (trimmed.record) {
+        trim_of = trim_rates(scene, trimmed, rates);
+        rates = trim_of->numbers;
+    }
+    const BranchGradient gradient{model, rates, trim_of ? &*trim_of : nullptr, figures, result};
+    std::vector<std::string> why(model.branches.size());
+    std::vector<Job> jobs;
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        std::vector<std::size_t> which;
+        for (std::size_t k = 0; k < figures.size(); ++k)
+            if (figures[k].branch == model.branches[b].name) which.push_back(k);
+        if (!which.empty())
+            jobs.push_back({model.branches[b].name,
+                            [&, b, which] { gradient.add(model.branches[b], which, why[b]); }});
+    }
+    run_jobs(jobs, threads, {});
+    if (!result.rate.allFinite())
+        for (const std::string& reason : why)
+            if (result.why_not.empty()) result.why_not = reason;
+    return result;
+}
+
+Figures exact_figures(SceneAt scene_at, RatesAt rates_at, std::vector<Figure> figures,
+                      int threads) {
+    const auto value = [scene_at, figures](const VectorXd& p) -> VectorXd {
         try {
             return figure_values(scene_at(p), figures, Leg::equilibrium).value;
         } catch (const std::runtime_error&) {  // no such scene: a negative rate, points that meet
             return VectorXd::Constant(static_cast<Index>(figures.size()), nan);
         }
     };
-    const auto gradient = [value, numbers = std::move(numbers),
-                           threads](const VectorXd& p) -> FigureGradient {
-        constexpr std::array steps{1.0, 0.5, 0.25, -0.25, -0.5, -1.0};  // of h
-        std::vector<std::array<VectorXd, steps.size()>> f(numbers.size());
-        std::vector<Job> jobs;
-        for (std::size_t k = 0; k < numbers.size(); ++k)
-            for (std::size_t s = 0; s < steps.size(); ++s)
-                jobs.push_back({numbers[k].path, [&, k, s] {
-                                    VectorXd changed = p;
-                                    changed[static_cast<Index>(k)] +=
-                                        steps[s] * share_of_step * step_of(numbers[k]);
-                                    f[k][s] = value(changed);
-                                }});
-        run_jobs(jobs, threads, {});
-        const Index rows = f.empty() ? 0 : f.front()[0].size();
-        FigureGradient result{MatrixXd(rows, p.size()), MatrixXd(rows, p.size())};
-        for (Index k = 0; k < p.size(); ++k) {
-            const auto& at = f[static_cast<std::size_t>(k)];
-            const double h = share_of_step * step_of(numbers[static_cast<std::size_t>(k)]);
-            const auto D = [&](std::size_t s) -> VectorXd {
-                return (at[s] - at[steps.size() - 1 - s]) / (2 * h * steps[s]);
-            };
-            const VectorXd R = (4 * D(1) - D(0)) / 3, R_half = (4 * D(2) - D(1)) / 3;
-            result.rate.col(k) = (16 * R_half - R) / 15;
-            result.error.col(k) = (R_half - R).cwiseAbs();
+    const auto gradient = [scene_at, rates_at, figures, threads](const VectorXd& p) {
+        try {
+            return figure_gradient(scene_at(p), rates_at(p), figures, threads);
+        } catch (const std::runtime_error& error) {
+            const auto rows = static_cast<Index>(figures.size());
+            return FigureGradient{MatrixXd::Constant(rows, p.size(), nan),
+                                  MatrixXd::Zero(rows, p.size()), error.what()};
         }
-        return result;
     };
     return {value, gradient};
+}
+
+double step_of(const Number& number) {
+    static const std::map<std::string, double> millimetre{
+        {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};
+    if (const auto unit = millimetre.find(number.unit); unit != millimetre.end())
+        return unit->second;
+    return number.value != 0 ? 0.01 * std::abs(number.value) : 1;
 }
 
 }  // namespace elastocheck::compare

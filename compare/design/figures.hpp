@@ -1,14 +1,11 @@
 // Figures of a scene, outputs at stations of its branches, as functions of numbers of its file.
 //
-// The algorithms of this room know a scene by `Figures` alone. Its implementation here differences
-// solutions of the equilibrium leg at changed numbers, each from the reader on: settled start and
-// trim are part of the function.
+// The algorithms of this room know a scene by `Figures` alone. Its implementation here is the
+// equilibrium leg: values by solution of the scene, from the reader on, rates by the derivatives of
+// compare/sensitivity. Settled start and trim are part of the function. A figure y at a value of
+// another output x is at the parameter a where x(a, p) has it, so that
 //
-//   D(h) = (f(p + h) - f(p - h)) / 2h      R(h) = (4 D(h/2) - D(h)) / 3      (Richardson)
-//   df/dp ≈ (16 R(h/2) - R(h)) / 15
-//
-// The estimate of its error is |R(h/2) - R(h)|, which is larger than the error of R(h/2). At a kink
-// (a stop that just touches) it has the size of the jump.
+//   dy/dp = ∂y/∂p - (∂y/∂a) / (∂x/∂a) ∂x/∂p
 #pragma once
 
 #include <Eigen/Core>
@@ -20,6 +17,7 @@
 #include "elastocheck/channels.hpp"
 #include "elastocheck/legs.hpp"
 #include "elastocheck/scene.hpp"
+#include "models/rates/model_rates.hpp"
 
 namespace elastocheck::compare {
 
@@ -36,7 +34,8 @@ struct Figure {
 // number in the file.
 struct FigureGradient {
     Eigen::MatrixXd rate;
-    Eigen::MatrixXd error;  // estimate; zero where the rate is exact
+    Eigen::MatrixXd error;     // estimate; zero where the rate is exact
+    std::string why_not = {};  // reason of the first rate that is NaN
 };
 
 struct Figures {
@@ -45,8 +44,10 @@ struct Figures {
     std::function<FigureGradient(const Eigen::VectorXd& p)> gradient;
 };
 
-// The scene with these values of the varied numbers. May throw std::runtime_error: no such scene.
+// The scene with these values of the varied numbers, and its model's derivatives by them. May throw
+// std::runtime_error: no such scene.
 using SceneAt = std::function<Scene(const Eigen::VectorXd& p)>;
+using RatesAt = std::function<std::vector<ModelRate>(const Eigen::VectorXd& p)>;
 
 // All outputs of a model that a figure can be: channels, characteristics, forces of elements.
 std::vector<Channel> figure_outputs(const Model& model);
@@ -60,12 +61,17 @@ struct FigureValues {
 };
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg);
 
-// The step in which the effect of a number is differenced and shown: 1 mm of a length, else 1 % of
-// the value; one unit where that is zero.
+// Rates of the figures by the equilibrium leg; `rates`: of the scene, one per number. NaN where there
+// is none: a figure without value, a kink. Branches on several threads.
+FigureGradient figure_gradient(const Scene& scene, std::span<const ModelRate> rates,
+                               std::span<const Figure> figures, int threads = 1);
+
+// The step in which the effect of a number is shown: 1 mm of a length, else 1 % of the value; one
+// unit where that is zero.
 double step_of(const Number& number);
 
-// By the equilibrium leg, and by differences with h = 0.4 of the step of each number.
-Figures differenced_figures(SceneAt scene_at, std::vector<Figure> figures,
-                            std::vector<Number> numbers, int threads = 1);
+// By the equilibrium leg.
+Figures exact_figures(SceneAt scene_at, RatesAt rates_at, std::vector<Figure> figures,
+                      int threads = 1);
 
 }  // namespace elastocheck::compare

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "compare/outputs/positions.hpp"
@@ -64,14 +65,17 @@ double end_passed(const elastocheck::Curve& curve, double x) {
 constexpr double at_a_knot = 1e-9;    // [m, rad], larger than the error of a state
 constexpr double slopes_jump = 1e-6;  // of the steeper slope: beyond rounding
 
-bool is_corner(const elastocheck::Curve& curve, double x) {
+// The knot near x where the slope jumps.
+std::optional<std::size_t> corner_at(const elastocheck::Curve& curve, double x) {
     const auto& knots = curve.knots;
     const auto near =
         static_cast<std::size_t>(std::ranges::lower_bound(knots, x - at_a_knot) - knots.begin());
-    if (near == knots.size() || knots[near] > x + at_a_knot) return false;
+    if (near == knots.size() || knots[near] > x + at_a_knot) return std::nullopt;
     const double h = near == 0 ? 0 : knots[near] - knots[near - 1];
     const double before = slope(curve.pieces[near], h), behind = slope(curve.pieces[near + 1], 0);
-    return std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind));
+    if (!(std::abs(behind - before) > slopes_jump * std::max(std::abs(before), std::abs(behind))))
+        return std::nullopt;
+    return near;
 }
 
 std::string beyond_end(const std::string& what, double x, double end, Unit unit) {
@@ -168,16 +172,19 @@ double steepest(const ScalarLaw& law) {
         law);
 }
 
-bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state) {
-    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
-        bool found = false;
+std::vector<Corner> corners(const Model& model, const Branch& branch, const Equilibrium& state) {
+    std::vector<Corner> all;
+    for (std::size_t k = 0; k < model.elastics.size(); ++k)
         each_curve(model.elastics[k].kind, [&](std::size_t axis, const elastocheck::Curve& curve) {
             const Vector6 x = deformation(model.elastics[k].kind, k, branch, state);
-            found |= is_corner(curve, x[static_cast<Eigen::Index>(axis)]);
+            if (const auto knot = corner_at(curve, x[static_cast<Eigen::Index>(axis)]))
+                all.push_back({k, axis, *knot});
         });
-        if (found) return true;
-    }
-    return false;
+    return all;
+}
+
+bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state) {
+    return !corners(model, branch, state).empty();
 }
 
 std::string outside_table(const Model& model, const Branch& branch, const Equilibrium& state) {

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "elastocheck/equilibrium_path.hpp"
 #include "elastocheck/model.hpp"
@@ -28,8 +29,12 @@ Vector6 deformation(const Bushing& bushing, const Equilibrium& state);
 double force(const ScalarLaw& law, double x);
 double steepest(const ScalarLaw& law);
 
-// Whether the deformation of an element is, to 1e-9 m or rad, at a knot where the slope of its law
-// jumps: the tangent stiffness of the model then differs between the two sides.
+// Elements whose deformation is, to 1e-9 m or rad, at a knot where the slope of its law jumps: the
+// tangent stiffness of the model then differs between the two sides.
+struct Corner {
+    std::size_t element, axis, knot;  // in Model::elastics, of its deformations, in Curve::knots
+};
+std::vector<Corner> corners(const Model& model, const Branch& branch, const Equilibrium& state);
 bool at_corner(const Model& model, const Branch& branch, const Equilibrium& state);
 
 // First element that is deformed beyond the end of a curve that is not extrapolated

@@ -7,11 +7,15 @@
 #include <map>
 #include <optional>
 
+#include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/rates.hpp"
+#include "compare/sensitivity/element_rates.hpp"
+#include "compare/sensitivity/one_sided.hpp"
 #include "models/branch.hpp"
+#include "models/kinds.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/sensitivity.hpp"
 #include "reference/energy/sensitivity.hpp"
@@ -23,7 +27,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Smallest size of a row, of the largest row of motions [mm, deg] or of forces [N, N·m].
+// Smallest size of a row, of the largest row of its kind.
 constexpr double smallest_row = 1e-6;
 
 std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
@@ -49,19 +53,29 @@ Model on_side(const Model& rate, std::size_t branch, const BranchSide& side) {
     return on_branch(rate, here);
 }
 
+// What an output reads, and its position in channels(model); -1 for one that is not in this list,
+// which has no points or numbers of its own.
+struct ReadFrom {
+    Reads reads;
+    int channel = -1;
+};
+
 // A rate of the model with what the outputs read, on any side.
 struct NumberColumn {
     const ModelRate* rate;
     std::vector<Reads> reads;
 };
-std::vector<NumberColumn> columns_of(const Model& model, std::span<const std::size_t> outputs,
+std::vector<NumberColumn> columns_of(const Model& model, std::span<const ReadFrom> outputs,
                                      std::span<const ModelRate> rates) {
     std::vector<NumberColumn> all;
     for (const ModelRate& rate : rates) {
         NumberColumn& column = all.emplace_back(NumberColumn{&rate, {}});
         if (!rate.undefined.empty()) continue;
         const auto changed = read_rates(model, rate.rate);
-        for (const std::size_t output : outputs) column.reads.push_back(changed.at(output));
+        for (const ReadFrom& output : outputs)
+            column.reads.push_back(output.channel >= 0
+                                       ? changed[static_cast<std::size_t>(output.channel)]
+                                       : output.reads);
     }
     return all;
 }
@@ -74,11 +88,112 @@ struct SideJob {
     std::vector<Model> rates;            // on this side, of the columns that have a derivative
     std::vector<std::size_t> of_column;  // their columns
     std::size_t numbers = 0;
+    // outputs that are characteristics, by their positions
+    std::vector<std::size_t> characteristic_at = {};
+    std::vector<Characteristic> which = {};
+    bool with_free = false;  // whether one reads the wheels without jacks
+    int steering = -1;
 };
+
+// Of a channel or of an element, in its unit; NaN of a characteristic.
+double output_rate(const Channel& output, const BranchSide& side, const Equilibrium& state,
+                   const Model& rate, const Reads& reads_rate, const StateRate& state_rate) {
+    const auto* element = std::get_if<OfElement>(&output.reads);
+    return in_unit(output.unit) *
+           (element != nullptr
+                ? element_rate(side.model, side.branch, state, *element, rate, state_rate)
+                : rate_of(side.model, output.reads, state, rate, reads_rate, state_rate));
+}
+
+// Total derivatives by the numbers, from those by numbers and adjustments. A number that moves no
+// adjustment takes none of their derivatives, which may be undefined.
+MatrixXd with_adjustments(const MatrixXd& all, Index numbers, const MatrixXd& adjusting) {
+    MatrixXd total = all.leftCols(numbers);
+    for (Index k = 0; k < numbers; ++k)
+        for (Index j = 0; j < adjusting.rows(); ++j)
+            if (adjusting(j, k) != 0) total.col(k) += adjusting(j, k) * all.col(numbers + j);
+    return total;
+}
+
+// The model on one side of the only corner of a state: derivatives of the outputs, and in the last
+// row of the deformation beyond the knot.
+MatrixXd beside_corner(const SideJob& job, Leg leg, const Equilibrium& state, const Corner& corner,
+                       int which, const MatrixXd& adjusting) {
+    BranchSide side = job.side;
+    side.model = one_sided(job.side.model, corner, which);
+    std::vector<Model> rates;
+    for (const Model& rate : job.rates)
+        rates.push_back(one_sided_rate(rate, job.side.model, corner, which));
+    const auto found = sensitivity_by(leg, side, state, rates);
+    const auto rows = std::ssize(job.outputs);
+    MatrixXd all = MatrixXd::Constant(rows + 1, std::ssize(job.columns), nan);
+    for (std::size_t n = 0; n < found.size(); ++n) {
+        const std::size_t k = job.of_column[n];
+        const auto column = static_cast<Index>(k);
+        for (std::size_t c = 0; c < job.outputs.size(); ++c)
+            all(static_cast<Index>(c), column) = output_rate(job.outputs[c], side, state, rates[n],
+                                                             job.columns[k].reads[c], found[n]);
+        const elastocheck::Curve& curve =
+            *curve_of(rates[n].elastics[corner.element].kind, corner.axis);
+        all(rows, column) = deformation_rate(side.model, side.branch, state, corner.element,
+                                             corner.axis, rates[n], found[n]) -
+                            curve.knots[corner.knot];
+    }
+    return with_adjustments(all, static_cast<Index>(job.numbers), adjusting);
+}
+
+// The one-sided derivatives at a corner. Where a number moves the state above the knot, those of the
+// model above it hold; the two models must agree on the direction.
+OneSided one_sided_at(const SideJob& job, Leg leg, const Equilibrium& state,
+                      const MatrixXd& adjusting) {
+    const auto at = corners(job.side.model, job.side.branch, state);
+    if (at.size() != 1) return {};
+    const MatrixXd above = beside_corner(job, leg, state, at.front(), +1, adjusting),
+                   below = beside_corner(job, leg, state, at.front(), -1, adjusting);
+    const auto rows = std::ssize(job.outputs), numbers = std::ssize(job.columns);
+    OneSided both{MatrixXd::Constant(rows, above.cols(), nan),
+                  MatrixXd::Constant(rows, above.cols(), nan)};
+    for (Index k = 0; k < std::min(numbers, above.cols()); ++k) {
+        const double up = above(rows, k), down = below(rows, k);
+        if (!(up * down > 0) && !(up == 0 && down == 0)) continue;
+        both.growing.col(k) = (up > 0 ? above : below).col(k).head(rows);
+        both.falling.col(k) = (up > 0 ? below : above).col(k).head(rows);
+    }
+    return both;
+}
+
+// The rows of the characteristics, for the numbers without a reason.
+void add_characteristics(const SideJob& job, Leg leg, const Equilibrium& state,
+                         std::span<const StateRate> found, std::span<const std::string> reasons,
+                         Analyses& analyses, MatrixXd& all) {
+    if (job.which.empty()) return;
+    std::vector<Model> rates;
+    std::vector<StateRate> state_rates;
+    std::vector<std::size_t> columns;
+    for (std::size_t n = 0; n < found.size(); ++n)
+        if (reasons[job.of_column[n]].empty()) {
+            rates.push_back(job.rates[n]);
+            state_rates.push_back(found[n]);
+            columns.push_back(job.of_column[n]);
+        }
+    if (columns.empty()) return;
+    const WheelResponseRates response = wheel_response_rates(
+        job.side, leg, job.steering, state, rates, state_rates, job.with_free, analyses);
+    for (std::size_t n = 0; n < columns.size(); ++n) {
+        const auto values = rates_of(job.side.model, job.which, state, rates[n], state_rates[n],
+                                     response.at, response.by[n]);
+        for (std::size_t w = 0; w < values.size(); ++w) {
+            const std::size_t c = job.characteristic_at[w];
+            all(static_cast<Index>(c), static_cast<Index>(columns[n])) =
+                in_unit(job.outputs[c].unit) * values[w];
+        }
+    }
+}
 
 // Derivatives of the outputs by every number; `adjusting`: dx/dp of a trim, or empty.
 MatrixXd derivatives_at(const SideJob& job, Leg leg, const Equilibrium& state,
-                        const MatrixXd& adjusting, std::vector<std::string>* why) {
+                        const MatrixXd& adjusting, Analyses& analyses,
+                        std::vector<std::string>* why) {
     MatrixXd all = MatrixXd::Constant(std::ssize(job.outputs), std::ssize(job.columns), nan);
     std::vector<std::string> reasons(job.columns.size());
     for (std::size_t k = 0; k < job.columns.size(); ++k)
@@ -93,17 +208,11 @@ MatrixXd derivatives_at(const SideJob& job, Leg leg, const Equilibrium& state,
             reasons[k] = fmt::format("{}: {}", name(found[n].outcome), found[n].detail);
         if (!reasons[k].empty()) continue;
         for (std::size_t c = 0; c < job.outputs.size(); ++c)
-            all(static_cast<Index>(c), static_cast<Index>(k)) =
-                in_unit(job.outputs[c].unit) * rate_of(job.side.model, job.outputs[c].reads, state,
-                                                       job.rates[n], job.columns[k].reads[c],
-                                                       found[n]);
+            all(static_cast<Index>(c), static_cast<Index>(k)) = output_rate(
+                job.outputs[c], job.side, state, job.rates[n], job.columns[k].reads[c], found[n]);
     }
-    const auto numbers = static_cast<Index>(job.numbers);
-    MatrixXd by_numbers = all.leftCols(numbers);
-    // A number that moves no adjustment takes none of their derivatives, which may be undefined.
-    for (Index k = 0; k < numbers; ++k)
-        for (Index j = 0; j < adjusting.rows(); ++j)
-            if (adjusting(j, k) != 0) by_numbers.col(k) += adjusting(j, k) * all.col(numbers + j);
+    add_characteristics(job, leg, state, found, reasons, analyses, all);
+    const MatrixXd by_numbers = with_adjustments(all, static_cast<Index>(job.numbers), adjusting);
     if (why != nullptr) {
         reasons.resize(job.numbers);
         for (Index k = 0; k < adjusting.cols(); ++k) {
@@ -116,12 +225,25 @@ MatrixXd derivatives_at(const SideJob& job, Leg leg, const Equilibrium& state,
     return by_numbers;
 }
 
+// The values on this side of a branch, from its start on; the start is on the first side.
+std::vector<double> on_this_side(std::vector<double> values, const BranchSide& side, bool first) {
+    std::erase_if(values, [&](double a) { return a == 0 ? !first : !(a * side.branch.to > 0); });
+    std::ranges::sort(values, {}, [](double a) { return std::abs(a); });
+    const auto again = std::ranges::unique(values);
+    values.erase(again.begin(), again.end());
+    return values;
+}
+
 // The largest entry of every output's row by the first leg, each number by its step.
 std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
     std::vector<double> sizes(all.outputs.size(), 0);
-    double motions = 0, forces = 0;
+    // motions, forces, and the characteristics of each unit
+    std::map<int, double> kinds;
     const auto largest = [&](std::size_t c) -> double& {
-        return all.outputs[c].kinematic() ? motions : forces;
+        const Channel& output = all.outputs[c];
+        if (output.kind() == ChannelKind::characteristic)
+            return kinds[2 + static_cast<int>(output.unit)];
+        return kinds[output.unit == Unit::newton || output.unit == Unit::newton_metre ? 1 : 0];
     };
     for (std::size_t c = 0; c < sizes.size(); ++c) {
         if (!side.why_output[c].empty()) continue;
@@ -205,9 +327,9 @@ Gradients gradients(const Model& model, std::span<const Channel> outputs,
                     const GradientOptions& options) {
     Gradients all{{outputs.begin(), outputs.end()}, {numbers.begin(), numbers.end()}, {}};
     const auto every = channels(model);
-    std::vector<std::size_t> places;
+    std::vector<ReadFrom> places;
     for (const Channel& output : outputs)
-        places.push_back(static_cast<std::size_t>(find_channel(every, output.name)));
+        places.push_back({output.reads, find_channel(every, output.name)});
     std::vector<NumberColumn> columns = columns_of(model, places, rates);
     std::map<Leg, MatrixXd> adjusting;
     for (const Leg leg : options.legs) adjusting[leg] = {};
@@ -225,11 +347,25 @@ Gradients gradients(const Model& model, std::span<const Channel> outputs,
         const std::string& branch_name = model.branches[branch].name;
         if (!options.branches.empty() && std::ranges::count(options.branches, branch_name) == 0)
             continue;
+        bool first_side = true;
         for (BranchSide side : sides_of(model, model.branches[branch], options.points)) {
             if (options.progress) options.progress(side.name);
             side.analysis =
                 std::make_shared<const recursive::Analysis>(recursive::analyse(side.model));
+            const bool chosen = options.stations.contains(branch_name);
+            const std::vector<double> stations =
+                chosen ? on_this_side(options.stations.at(branch_name), side, first_side)
+                       : std::vector<double>{};
+            first_side = false;
+            if (chosen && stations.empty()) continue;
             SideJob job{side, outputs, columns, {}, {}, numbers.size()};
+            job.steering = steering_joint(side.model);
+            for (std::size_t c = 0; c < outputs.size(); ++c)
+                if (const auto* which = std::get_if<Characteristic>(&outputs[c].reads)) {
+                    job.characteristic_at.push_back(c);
+                    job.which.push_back(*which);
+                    job.with_free = job.with_free || needs_free(*which);
+                }
             for (std::size_t k = 0; k < columns.size(); ++k)
                 if (columns[k].rate->undefined.empty()) {
                     job.rates.push_back(on_side(columns[k].rate->rate, branch, side));
@@ -249,16 +385,23 @@ Gradients gradients(const Model& model, std::span<const Channel> outputs,
                 LegGradients& by = here.legs.emplace_back();
                 by.leg = leg;
                 const bool first = here.legs.size() == 1;
-                const EquilibriumPath path =
-                    walk(side, {.leg = leg}, [&](const Equilibrium& state) {
-                        std::vector<std::string>* why = nullptr;
-                        if (first) {
-                            here.a.push_back(state.load + 0.0);  // no -0
-                            here.values.push_back(evaluate(side.model, outputs, state));
-                            why = &here.why_number.emplace_back();
-                        }
-                        by.at.push_back(derivatives_at(job, leg, state, adjusting.at(leg), why));
-                    });
+                Analyses analyses;
+                const auto visit = [&](const Equilibrium& state) {
+                    std::vector<std::string>* why = nullptr;
+                    if (first) {
+                        here.a.push_back(state.load + 0.0);  // no -0
+                        here.values.push_back(
+                            row_of(side.model, outputs, side, {.leg = leg}, state, analyses)
+                                .values);
+                        why = &here.why_number.emplace_back();
+                    }
+                    by.at.push_back(
+                        derivatives_at(job, leg, state, adjusting.at(leg), analyses, why));
+                    if (first)
+                        here.one_sided.push_back(one_sided_at(job, leg, state, adjusting.at(leg)));
+                };
+                const EquilibriumPath path = chosen ? walk_through(side, leg, stations, visit)
+                                                    : walk(side, {.leg = leg}, visit);
                 if (path.outcome != Outcome::converged) {
                     by.failure =
                         fmt::format("{}: {}", elastocheck::name(path.outcome), path.detail);

@@ -1,4 +1,5 @@
 // Derivatives of the outputs by the numbers of a scene along its branches, by every leg.
+// Outputs are channels, K&C characteristics, and forces and deformations of elements.
 //
 // Each leg follows the branch and differentiates its own conditions at its own states:
 // recursive/sensitivity.hpp, reference/equilibrium/sensitivity.hpp, reference/energy/sensitivity.hpp.
@@ -8,6 +9,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +45,14 @@ struct LegGradients {
     bool not_applicable = false;
 };
 
+// One-sided derivatives where there is no derivative [outputs × numbers], in the same units: where
+// the number grows, and where it falls. NaN where there are none; empty matrices where every entry
+// has a derivative.
+struct OneSided {
+    Eigen::MatrixXd growing, falling;
+    bool empty() const { return growing.size() == 0; }
+};
+
 // Largest difference of two legs.
 struct Disagreement {
     double share = 0;   // of the largest entry of the output's row
@@ -60,14 +70,15 @@ struct SideGradients {
     // per station and number: reason why there is no derivative, by the equilibrium leg; empty: there
     // is one
     std::vector<std::vector<std::string>> why_number;
+    std::vector<OneSided> one_sided;      // per station, by the equilibrium leg
     std::vector<std::string> why_output;  // per output, likewise: not determined on this branch
     Disagreement worst;
 };
 
 // Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
 // the output over all numbers and stations of the side, each number by its step. The largest entry
-// counts as at least a millionth of the largest of all rows of motions (mm, deg), or of forces and
-// moments (N, N·m).
+// counts as at least a millionth of the largest of all rows of motions (mm, deg), of forces and
+// moments (N, N·m), or of the characteristics of its unit.
 inline constexpr double gradients_agree = 1e-8;
 
 struct Gradients {
@@ -80,6 +91,8 @@ struct Gradients {
 
 struct GradientOptions {
     int points = 4;  // stations per branch after the start, equal increments of a
+    // in place of them, per name of a branch: values of its parameter [SI]
+    std::map<std::string, std::vector<double>> stations = {};
     std::vector<std::string> branches = {};  // names; empty: all
     std::vector<Leg> legs = {Leg::equilibrium, Leg::energy, Leg::series};
     // of a trimmed scene: `rates` are then TrimRates::numbers
@@ -87,7 +100,8 @@ struct GradientOptions {
     std::function<void(const std::string&)> progress = {};
 };
 
-// `rates`: of `model`, one per number.
+// `outputs`: of channels(model), characteristics(model) or element_channels(model). `rates`: of
+// `model`, one per number.
 Gradients gradients(const Model& model, std::span<const Channel> outputs,
                     std::span<const VariedNumber> numbers, std::span<const ModelRate> rates,
                     const GradientOptions& options = {});

@@ -51,6 +51,7 @@ Vector3<Real> logarithm(const Matrix3<Real>& R) {
 // J(θ)⁻¹ = I - ½ θ̃ + c(θ) θ̃²,  c = (1 - (θ/2) cot(θ/2)) / θ², the inverse left Jacobian.
 template <class Real>
 Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
+    using std::sqrt;
     using std::tan;
     const Real t2 = theta.squaredNorm();
     // Below 0.03 rad the series 1/12 + t²/720 + t⁴/30240 + t⁶/1209600 is exact to 1e-16; above it
@@ -59,7 +60,7 @@ Matrix3<Real> inverse_left_jacobian(const Vector3<Real>& theta) {
     if (t2 < Real(1e-3)) {
         c = Real(1) / 12 + t2 * (Real(1) / 720 + t2 * (Real(1) / 30240 + t2 * (Real(1) / 1209600)));
     } else {
-        const Real half = std::sqrt(t2) / 2;
+        const Real half = sqrt(t2) / 2;
         c = (1 - half / tan(half)) / t2;
     }
     const Matrix3<Real> t = tilde(theta);

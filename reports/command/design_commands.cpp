@@ -95,13 +95,13 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
     }
     const auto figures = figures_of(wanted);
     const auto scene = scene_at(request.scene, request.settings, varied.numbers);
+    const auto rates = rates_at(request.scene, request.settings, varied.numbers);
     SolvedFor solved{.numbers = varied.numbers,
                      .wishes = {target, varied.start, varied.low, varied.high},
                      .solution = {},
                      .rows = {}};
     solved.solution = compare::solve_for(
-        compare::differenced_figures(scene, figures, varied.numbers, threads_of(request.running)),
-        solved.wishes);
+        compare::exact_figures(scene, rates, figures, threads_of(request.running)), solved.wishes);
     const compare::Solution& solution = solved.solution;
     if (!solution.before.allFinite()) {
         print_error(
@@ -113,10 +113,11 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
         if (solution.still[j])
             throw std::invalid_argument(fmt::format(
                 "--want {}: none of the numbers moves it:\n  {}", request.want[j],
-                fmt::join(compare::why_still(scene, figures[j], varied.numbers, varied.start),
-                          "\n  ")));
+                fmt::join(
+                    compare::why_still(scene, rates, figures[j], varied.numbers, varied.start),
+                    "\n  ")));
     if (!solution.gradient.rate.allFinite()) {
-        print_error("no rate at the start: a figure has no value at a slightly changed number\n");
+        print_error("no rate at the start: {}\n", solution.gradient.why_not);
         return could_not_judge;
     }
     for (std::size_t k = 0; k < wanted.size(); ++k) {
@@ -173,8 +174,9 @@ int fit(const FitRequest& request, const Delivery& delivery) {
     for (Index k = 0; k < varied.start.size(); ++k)
         result.measured.step[k] = compare::step_of(varied.numbers[static_cast<std::size_t>(k)]);
     result.fitted = compare::fit(
-        compare::differenced_figures(scene_at(request.scene, request.settings, varied.numbers),
-                                     data.figures, varied.numbers, threads_of(request.running)),
+        compare::exact_figures(scene_at(request.scene, request.settings, varied.numbers),
+                               rates_at(request.scene, request.settings, varied.numbers),
+                               data.figures, threads_of(request.running)),
         result.measured);
     if (!result.fitted.why_not.empty()) {
         const auto start =
@@ -228,33 +230,34 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
     std::vector<std::string> words;
     for (const auto& number : given.numbers) words.push_back(number.path);
     const Varied varied = parse_varied(words, loaded.scene);
-    const compare::Figures figures = compare::differenced_figures(
-        scene_at(request.scene, request.settings, varied.numbers), figures_of(named),
-        varied.numbers, threads_of(request.running));
+    const compare::Figures figures =
+        compare::exact_figures(scene_at(request.scene, request.settings, varied.numbers),
+                               rates_at(request.scene, request.settings, varied.numbers),
+                               figures_of(named), threads_of(request.running));
     const VectorXd nominal = figures.value(varied.start);
     const compare::FigureGradient gradient = figures.gradient(varied.start);
     const auto scatter = compare::scatter(gradient.rate, given.numbers, given.correlation);
-    const auto unsure = compare::scatter(gradient.error, given.numbers);
     ToleratedScene all{.numbers = given.numbers, .figures = {}};
     int code = fine;
     for (std::size_t k = 0; k < named.size(); ++k) {
         const auto i = static_cast<Index>(k);
         if (!std::isfinite(nominal[i]) || !gradient.rate.row(i).allFinite()) {
             if (request.of.empty()) continue;
-            print_error("{}: no value here\n", request.of[k]);
+            print_error("{}: no {} here{}{}\n", request.of[k],
+                        std::isfinite(nominal[i]) ? "rate" : "value",
+                        gradient.why_not.empty() ? "" : ": ", gradient.why_not);
             code = could_not_judge;
             continue;
         }
         // A figure that moves by rounding does not move.
         const double rounding = 1e-10 * (1 + std::abs(nominal[i]));
-        const bool moves = scatter[k].sd > 3 * unsure[k].sd + rounding;
+        const bool moves = scatter[k].sd > rounding;
         all.figures.push_back(
             {.output = named[k].figure.name,
              .unit = symbol(named[k].output.unit),
              .place = named[k].place,
              .nominal = nominal[i],
-             .scatter = moves ? scatter[k] : compare::Scatter{0, 0, 0 * scatter[k].share},
-             .rate_error = unsure[k].sd});
+             .scatter = moves ? scatter[k] : compare::Scatter{0, 0, 0 * scatter[k].share}});
     }
     delivery.print_text(tolerances_text(all, request.most));
     print_result(delivery, tolerances_schema, tolerances_json(all));
@@ -268,8 +271,8 @@ Command tolerances_command() {
     const auto request = std::make_shared<TolerancesRequest>();
     return {
         "tolerances",
-        "Scatter of the figures by the tolerances of the numbers of a scene; rates by Richardson "
-        "differences of the equilibrium leg, their error stated",
+        "Scatter of the figures by the tolerances of the numbers of a scene; exact rates by the "
+        "equilibrium leg",
         {scene_option(request->scene),
          {"TOLERANCES", Text{&request->file, a_file("*.yaml")},
           "file with the tolerances, such as points.tie_rod_inner.z: {normal: {sd: 0.5}}", true},
@@ -292,7 +295,7 @@ Command solve_for_command() {
     using enum TextList::Form;
     return {"solve-for",
             "Change numbers of a scene as little as possible so that figures have wanted values; "
-            "gradients by differences of the equilibrium leg",
+            "exact gradients by the equilibrium leg",
             {scene_option(request->scene),
              {"--vary", TextList{&request->vary, repeated},
               "number that may change, with its limits: points.tie_rod_inner.z=260:340; repeat it",
@@ -317,7 +320,7 @@ Command fit_command() {
     using enum TextList::Form;
     return {
         "fit",
-        "Fit numbers of a scene to measured curves, with 95 % intervals; gradients by differences "
+        "Fit numbers of a scene to measured curves, with 95 % intervals; exact gradients "
         "of the equilibrium leg",
         {scene_option(request->scene),
          {"--measured", Text{&request->measured, a_file("*.csv")},

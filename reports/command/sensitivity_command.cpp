@@ -3,9 +3,13 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
+#include "compare/design/figures.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
@@ -25,7 +29,7 @@ namespace {
 struct SensitivityRequest {
     std::string scene;
     Settings settings;
-    std::vector<std::string> of, to, branches;
+    std::vector<std::string> of, to, branches, at;
     std::string csv;  // file of all derivatives; empty: none
     int points = 4;
     int most = 5;
@@ -75,13 +79,48 @@ std::vector<Item> chosen(const char* option, const char* label, const char* labe
     return list;
 }
 
+// The stations "BRANCH:VALUE", values in the unit of the branch's parameter.
+std::map<std::string, std::vector<double>> stations(const std::vector<std::string>& words,
+                                                    const Model& model) {
+    std::map<std::string, std::vector<double>> all;
+    std::vector<std::string> names;
+    for (const Branch& branch : model.branches) names.push_back(branch.name);
+    for (const std::string& word : words) {
+        const auto colon = word.rfind(':');
+        const std::string name = word.substr(0, colon);
+        const auto branch = std::ranges::find(model.branches, name, &Branch::name);
+        if (branch == model.branches.end())
+            throw std::invalid_argument(fmt::format("--at '{}': the scene has no branch {}{}", word,
+                                                    reader::quote(name),
+                                                    reader::did_you_mean(name, names, "branches")));
+        const std::string text = colon == word.npos ? "" : word.substr(colon + 1);
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+            throw std::invalid_argument(
+                fmt::format("--at '{}': allowed: BRANCH:VALUE, such as {}:{:g}", word, name,
+                            compare::in_unit(compare::unit_of(branch->unit)) * branch->to));
+        const double a = value / compare::in_unit(compare::unit_of(branch->unit)),
+                     low = std::min(branch->from, branch->to),
+                     high = std::max(branch->from, branch->to), within = 1e-9 * (high - low);
+        if (!(a >= low - within && a <= high + within))
+            throw std::invalid_argument(
+                fmt::format("--at '{}': branch '{}' goes from {:g} to {:g} {}", word, name,
+                            compare::in_unit(compare::unit_of(branch->unit)) * low,
+                            compare::in_unit(compare::unit_of(branch->unit)) * high,
+                            symbol(compare::unit_of(branch->unit))));
+        all[name].push_back(a);
+    }
+    return all;
+}
+
 // Exit code 0: every leg that applies follows every branch and they agree; else 3.
 int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
     if (!request.csv.empty()) check_may_write(request.csv, gradients_file);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Model& model = loaded.model;
 
-    auto outputs = compare::channels(model);
+    auto outputs = compare::figure_outputs(model);
     if (request.of.empty())
         std::erase_if(outputs, [](const compare::Channel& c) { return !c.main; });
     outputs = chosen("--of", "output", "outputs", outputs, request.of,
@@ -96,6 +135,7 @@ int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
     const compare::Gradients all =
         gradients_of(request.scene, request.settings, loaded, outputs, std::move(rates),
                      {.points = request.points,
+                      .stations = stations(request.at, model),
                       .branches = of_branches,
                       .progress = [](const std::string& what) { progress(what); }});
     progress("");
@@ -122,14 +162,16 @@ Command sensitivity_command() {
         "change?",
         {scene_option(request->scene),
          {"--of", TextList{&request->of, commas},
-          "outputs, names or patterns with * (default: positions and angles of wheels and "
-          "probes)"},
+          "outputs, names or patterns with *: channels, characteristics such as bump_steer, forces "
+          "of elements (default: positions and angles of wheels and probes)"},
          {"--to", TextList{&request->to, commas},
           "numbers of the scene, names as for --set or patterns with * (default: all)"},
          {"--branch", TextList{&request->branches, commas},
           "names of branches, or patterns (default: all)"},
          {"--points", Integer{&request->points, 1, 1000},
           "stations per branch after its start (default: 4)"},
+         {"--at", TextList{&request->at, commas},
+          "stations BRANCH:VALUE in place of --points for that branch, such as jounce:1500"},
          {"--most", Integer{&request->most, 0, 100000},
           "numbers shown per output, those with the largest effect (default: 5; 0: all)"},
          {"--csv", Text{&request->csv, a_file("*.csv")}, "file of all derivatives at all stations"},

@@ -120,17 +120,22 @@ TEST(Fit, IntervalsContainTheTruthInNinetyFiveOfAHundredDecays) {
 
 struct Rig {
     SceneAt scene;
+    RatesAt rates;
     std::vector<Number> numbers;
     VectorXd start, step;
 };
 Rig rig(const std::string& name, const std::vector<std::string>& paths) {
     Rig made;
-    made.scene = [file = std::string(ELASTOCHECK_SCENES "/") + name + ".yaml",
-                  paths](const VectorXd& p) {
-        std::vector<Setting> settings;
+    const std::string file = std::string(ELASTOCHECK_SCENES "/") + name + ".yaml";
+    const auto settings = [paths](const VectorXd& p) {
+        std::vector<Setting> all;
         for (std::size_t k = 0; k < paths.size(); ++k)
-            settings.push_back(setting(paths[k], p[static_cast<Index>(k)]));
-        return read_scene(file, settings);
+            all.push_back(setting(paths[k], p[static_cast<Index>(k)]));
+        return all;
+    };
+    made.scene = [file, settings](const VectorXd& p) { return read_scene(file, settings(p)); };
+    made.rates = [file, settings, paths](const VectorXd& p) {
+        return model_rates(file, settings(p), paths);
     };
     for (const auto& path : paths)
         for (const auto& number : support::scene(name).numbers)
@@ -166,8 +171,8 @@ double coverage_of_a_bushing(int rigs) {
     Curves curves;
     add(curves, "pull", 4000, 5, {"centre_x", "centre_y", "centre_z"});
     add(curves, "push", -4000, 5, {"centre_x", "centre_y", "centre_z"});
-    return coverage(differenced_figures(of.scene, curves.figures, of.numbers), of.start,
-                    1.1 * of.start, of.step, curves.column, {0.02, 0.02, 0.02}, rigs);
+    return coverage(exact_figures(of.scene, of.rates, curves.figures), of.start, 1.1 * of.start,
+                    of.step, curves.column, {0.02, 0.02, 0.02}, rigs);
 }
 TEST(Fit, IntervalsOfTheRatesOfABushingContainTheTruth) {
     const double share = coverage_of_a_bushing(40);
@@ -189,7 +194,7 @@ TEST(Fit, FindsAHardpointThatIsTwoMillimetresAway) {
     Curves curves;
     add(curves, "jounce", 3000, 10, {"toe", "camber", "wheel_centre_y", "wheel_centre_z"});
     add(curves, "rebound", -3000, 10, {"toe", "camber", "wheel_centre_y", "wheel_centre_z"});
-    const Figures figures = differenced_figures(of.scene, curves.figures, of.numbers);
+    const Figures figures = exact_figures(of.scene, of.rates, curves.figures);
     VectorXd truth = of.start;
     truth[2] += 2e-3;
     VectorXd y = figures.value(truth);
@@ -218,7 +223,7 @@ TEST(Fit, NamesACombinationThatTheDataDoNotDetermine) {
     const Rig of = rig("parallel_springs", {"springs.first.rate", "springs.second.rate"});
     Curves curves;
     add(curves, "up", 3000, 8, {"centre_z"});
-    const Figures figures = differenced_figures(of.scene, curves.figures, of.numbers);
+    const Figures figures = exact_figures(of.scene, of.rates, curves.figures);
     VectorXd truth(2);
     truth << 33, 47;
     const Fitted found =
@@ -235,7 +240,7 @@ TEST(Fit, WithoutMoreValuesThanNumbersHasNoInterval) {
     const Rig of = rig("parallel_springs", {"springs.first.rate"});
     Curves curves;
     add(curves, "up", 3000, 1, {"centre_z"});
-    const Figures figures = differenced_figures(of.scene, curves.figures, of.numbers);
+    const Figures figures = exact_figures(of.scene, of.rates, curves.figures);
     VectorXd y(1);
     y << 437.5;
     const Fitted found = fit(figures, measured(y, curves.column, of.start, of.step));

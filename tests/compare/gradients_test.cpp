@@ -2,9 +2,15 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
 #include <optional>
 
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
@@ -20,6 +26,13 @@ std::string file_of(const std::string& scene) {
     return std::string(ELASTOCHECK_SCENES) + "/" + scene + ".yaml";
 }
 
+std::vector<Channel> outputs_of(const Model& model) {
+    auto all = channels(model);
+    std::ranges::move(characteristics(model), std::back_inserter(all));
+    std::ranges::move(element_channels(model), std::back_inserter(all));
+    return all;
+}
+
 struct Asked {
     Model model;
     std::vector<Channel> outputs;
@@ -32,7 +45,7 @@ Asked asked(const std::string& file, const std::vector<Setting>& settings = {}) 
     const Scene scene = read_scene(file, settings);
     const Trimmed trimmed = trim(scene);
     all.model = compile(trimmed.scene);
-    all.outputs = channels(all.model);
+    all.outputs = outputs_of(all.model);
     all.rates = all_model_rates(file, settings);
     for (const auto& rate : all.rates) all.numbers.push_back(varied_number(rate, scene.numbers));
     if (trimmed.record) {
@@ -89,7 +102,9 @@ std::vector<double> outputs_with(const std::string& file, const Setting& set, do
     side.model.branches = {side.branch};
     const auto path = walk(side, {.leg = Leg::equilibrium});
     EXPECT_EQ(path.outcome, Outcome::converged) << path.detail;
-    return evaluate(side.model, channels(model), path.points.back());
+    return row_of(side.model, outputs_of(model), side, {.leg = Leg::equilibrium},
+                  path.points.back())
+        .values;
 }
 
 // Against extrapolated differences of whole solutions, trim included.
@@ -122,20 +137,26 @@ TEST(Gradients, AreTheDifferencesOfScenesWithANumberSet) {
         const auto up = at(h), down = at(-h), near_up = at(h / 2), near_down = at(-h / 2);
         const auto& table = by.sides.front().legs.front().at.back();
         const auto determined = by.sides.front().why_output;
-        double size = 0, force = 0;
+        // the largest entry of the outputs of a unit and kind
+        std::map<std::pair<ChannelKind, Unit>, double> sizes;
+        const auto size = [&](std::size_t c) -> double& {
+            return sizes[{all.outputs[c].kind(), all.outputs[c].unit}];
+        };
+        const auto entry = [&](std::size_t c) { return table(static_cast<Eigen::Index>(c), k); };
         for (std::size_t c = 0; c < all.outputs.size(); ++c)
-            if (determined[c].empty())
-                (all.outputs[c].kinematic() ? size : force) =
-                    std::max(all.outputs[c].kinematic() ? size : force,
-                             std::abs(table(static_cast<Eigen::Index>(c), k)));
+            if (determined[c].empty() && std::isfinite(entry(c)))
+                size(c) = std::max(size(c), std::abs(entry(c)));
         for (std::size_t c = 0; c < all.outputs.size(); ++c) {
             if (!determined[c].empty()) continue;
+            if (!std::isfinite(up[c]) || !std::isfinite(down[c])) {
+                EXPECT_TRUE(std::isnan(entry(c))) << scene << ": " << all.outputs[c].name;
+                continue;
+            }
             const double difference =
                 (8 * (near_up[c] - near_down[c]) - (up[c] - down[c])) / (6 * h);
-            const double off = std::abs(table(static_cast<Eigen::Index>(c), k) - difference) /
-                               (all.outputs[c].kinematic() ? size : force);
+            const double off = std::abs(entry(c) - difference) / size(c);
             EXPECT_LE(off, 1e-7) << scene << ": " << all.outputs[c].name << " by " << number << ": "
-                                 << table(static_cast<Eigen::Index>(c), k) << ", " << difference;
+                                 << entry(c) << ", " << difference;
             worst = std::max(worst, off);
             ++compared;
         }
@@ -222,6 +243,102 @@ TEST(GradientsClosedForm, TheFourBarByItsCrank) {
                     });
 }
 
+// ---- Closed forms of characteristics, scenes in m: the derivatives are those of second order.
+
+constexpr double in_deg = 180 / std::numbers::pi;
+
+// By every leg: f(leg, derivative of an output by a number) at one station of the only branch.
+template <class Check>
+void each_leg(const std::string& text, const std::vector<std::string>& names,
+              const std::vector<std::string>& paths, double at, const Check& check) {
+    const Scene scene = parse_scene(text, "closed.yaml", {});
+    const Model model = compile(scene);
+    const auto every = outputs_of(model);
+    std::vector<Channel> outputs;
+    for (const auto& output : names)
+        outputs.push_back(every.at(static_cast<std::size_t>(find_channel(every, output))));
+    const auto rates = model_rates(text, "closed.yaml", {}, paths);
+    std::vector<VariedNumber> numbers;
+    for (const auto& rate : rates) numbers.push_back(varied_number(rate, scene.numbers));
+    const Gradients by = gradients(model, outputs, numbers, rates,
+                                   {.stations = {{model.branches.front().name, {at}}},
+                                    .legs = {Leg::equilibrium, Leg::energy, Leg::series}});
+    ASSERT_EQ(by.sides.size(), 1u);
+    for (const auto& leg : by.sides.front().legs) {
+        ASSERT_EQ(leg.at.size(), 1u) << leg.failure;
+        SCOPED_TRACE(name(leg.leg));
+        check(leg.at.front());
+    }
+    EXPECT_TRUE(by.conclusive()) << by.sides.front().worst.where;
+}
+
+// A semi-trailing arm about the axis d = b - a: with W(q) = d_x (q_y - a_y) - d_y (q_x - a_x), the
+// vertical velocity of q,
+//
+//   bump steer -d_z / W(c)          wheel rate k (u·v(low))² / (W(p) W(c)),  u along the spring
+TEST(GradientsClosedForm, OfASemiTrailingArm) {
+    const double ax = 0.5, ay = 0.9, az = 0.02, dx = -0.08, dy = -0.4, dz = -0.07, k = 50e3;
+    const auto W = [&](double x, double y) { return dx * (y - ay) - dy * (x - ax); };
+    const double W_c = W(0, 1.1), W_p = W(0.03, 1.12), W_low = W(0.1, 1.0);
+    const double v_x = dy * (0 - az) - dz * (1.0 - ay);  // of `low`
+    const double rate = k * W_low * W_low / (W_p * W_c);
+    each_leg(
+        "points: {a: [0.5, 0.9, 0.02], b: [0.42, 0.5, -0.05], c: [0, 1.1, 0],\n"
+        "         p: [0.03, 1.12, -0.3], top: [0.1, 1.0, 0.4], low: [0.1, 1.0, 0.0]}\n"
+        "bodies: {arm: {origin: c}}\n"
+        "joints: {axis: {type: revolute, bodies: [arm, ground], at: a, axis: [a, b]}}\n"
+        "springs: {coil: {bodies: [arm, ground], from: low, to: top, rate: 50e3}}\n"
+        "loads: {up: {on: arm, at: p, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: up, to: 500, steps: 2}}\n"
+        "wheel: {body: arm, centre: c, contact_patch: p, spin_axis: y, side: left}\n",
+        {"bump_steer", "wheel_rate"},
+        {"points.b.z", "points.a.x", "springs.coil.rate", "points.low.x"}, 0,
+        [&](const Eigen::MatrixXd& by) {
+            EXPECT_NEAR(by(0, 0), in_deg * -1 / W_c, 1e-9);
+            // d_x falls by one, and a_x grows: dW = -(c_y - a_y) + d_y
+            EXPECT_NEAR(by(0, 1), in_deg * dz * (dy - (1.1 - ay)) / (W_c * W_c), 1e-8);
+            EXPECT_NEAR(by(0, 2), 0, 1e-12);
+            EXPECT_NEAR(by(1, 2), 1e-3 * rate / k, 1e-12);
+            EXPECT_NEAR(by(1, 3), 1e-3 * 2 * rate / W_low * (-dy - v_x / 0.4), 1e-7);
+        });
+}
+
+std::string equal_arms(const std::string& branch) {
+    return "points: {ui: [0, 0.3, 0.45], uo: [0, 0.7, 0.45], li: [0, 0.3, 0.15],\n"
+           "         lo: [0, 0.7, 0.15], c: [0, 0.8, 0.3], p: [0, 0.8, 0], top: [0, 0.6, 0.8]}\n"
+           "bodies: {upper: {origin: ui}, lower: {origin: li}, wheel: {origin: c}}\n"
+           "joints:\n"
+           "  ui: {type: revolute, bodies: [upper, ground], at: ui, axis: x}\n"
+           "  li: {type: revolute, bodies: [lower, ground], at: li, axis: x}\n"
+           "  uo: {type: revolute, bodies: [wheel, upper], at: uo, axis: x}\n"
+           "  lo: {type: revolute, bodies: [wheel, lower], at: lo, axis: x}\n"
+           "springs: {coil: {bodies: [wheel, ground], from: lo, to: top, rate: 30e3}}\n"
+           "loads: {up: {on: wheel, at: p, force: [0, 0, 1]}}\n"
+           "branches: {" +
+           branch +
+           "}\n"
+           "wheel: {body: wheel, centre: c, contact_patch: p, spin_axis: y, side: left}\n";
+}
+
+// The upper inner joint raised by t: the lines of the arms meet at y - 0.3 = 0.4 (0.3 + t) / t, and
+// the camber changes by 1 / (y - 0.8) = t / (0.12 - 0.1 t).
+TEST(GradientsClosedForm, OfParallelLinksThatLoseTheirParallelism) {
+    each_leg(equal_arms("up: {load: up, to: 100, steps: 2}"), {"bump_camber"}, {"points.ui.z"}, 0,
+             [](const Eigen::MatrixXd& by) { EXPECT_NEAR(by(0, 0), in_deg / 10 / 0.12, 1e-8); });
+}
+
+// Arms of length L, level as drawn, with the wheel raised by z on a jack: the patch moves inwards by
+// z / √(L² - z²) of the rise. Both outer joints outwards make both arms longer.
+TEST(GradientsClosedForm, OfAFourBarWithEqualArms) {
+    const double z = 0.1, L = 0.4;
+    each_leg(equal_arms("lift: {drive: travel, to: 0.1, steps: 2}"),
+             {"track_gradient", "bump_camber"}, {"points.uo.y", "points.lo.y"}, z,
+             [&](const Eigen::MatrixXd& by) {
+                 EXPECT_NEAR(by(0, 0) + by(0, 1), 100 * z * L / std::pow(L * L - z * z, 1.5), 1e-8);
+                 EXPECT_NEAR(by(1, 0) + by(1, 1), 0, 1e-9);
+             });
+}
+
 // At the corner of a law a stiffness has two values, and an entry says so.
 TEST(Gradients, AnEntryAtACornerSaysWhyThereIsNone) {
     const std::string file =
@@ -241,6 +358,44 @@ TEST(Gradients, AnEntryAtACornerSaysWhyThereIsNone) {
                 }
             }
     EXPECT_GT(at_a_corner, 0);
+}
+
+// A spring of 20 N/mm that a stop of 80 N/mm joins at 10 mm: z = F / 20 below the knot and
+// 10 + (F - 200) / 100 above. At F = 200 N the force itself, a number of the scene, has two rates.
+TEST(Gradients, AtACornerBothSidesAreThoseOfTheLawOnThisSide) {
+    const std::string text =
+        "units: {length: mm, force: N, angle: deg}\n"
+        "points: {low: [0, 0, 0], top: [0, 0, 400]}\n"
+        "bodies: {block: {origin: top}}\n"
+        "joints: {guide: {type: translational, bodies: [block, ground], at: top, axis: z}}\n"
+        "springs: {coil: {bodies: [block, ground], from: top, to: low, rate: 20,\n"
+        "                 rebound_stop: {clearance: 10, rate: 80}}}\n"
+        "loads: {up: {on: block, at: top, force: [0, 0, 1]}}\n"
+        "branches: {up: {load: up, to: 400, steps: 2}}\n"
+        "probes: {tip: {on: block, at: top}}\n";
+    const Scene scene = parse_scene(text, "stop.yaml", {});
+    const Model model = compile(scene);
+    const auto every = outputs_of(model);
+    const int z = find_channel(every, "tip_z");
+    ASSERT_GE(z, 0);
+    const auto rates = model_rates(
+        text, "stop.yaml", {},
+        std::vector<std::string>{"springs.coil.rate", "springs.coil.rebound_stop.clearance"});
+    std::vector<VariedNumber> numbers;
+    for (const auto& rate : rates) numbers.push_back(varied_number(rate, scene.numbers));
+    const Gradients by = gradients(model, {&every[static_cast<std::size_t>(z)], 1}, numbers, rates,
+                                   {.stations = {{"up", {200}}}, .legs = {Leg::equilibrium}});
+    const SideGradients& side = by.sides.front();
+    ASSERT_EQ(side.one_sided.size(), 1u);
+    EXPECT_NE(side.why_number[0][0].find("corner of its law"), std::string::npos);
+    const OneSided& both = side.one_sided.front();
+    ASSERT_FALSE(both.empty());
+    // A stiffer spring, z falls: below the knot, -F / k². A softer one: above, -10 / 100.
+    EXPECT_NEAR(both.growing(0, 0), -200. / 20 / 20, 1e-9);
+    EXPECT_NEAR(both.falling(0, 0), -10. / 100, 1e-9);
+    // More clearance: the spring alone, 0. Less: 80 / 100 of it.
+    EXPECT_NEAR(both.growing(0, 1), 0, 1e-9);
+    EXPECT_NEAR(both.falling(0, 1), 0.8, 1e-9);
 }
 
 }  // namespace

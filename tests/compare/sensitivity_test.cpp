@@ -12,9 +12,13 @@
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
 #include "models/rates/fields.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/linear_response.hpp"
 #include "recursive/sensitivity.hpp"
+#include "reference/energy/linear_response.hpp"
 #include "reference/energy/sensitivity.hpp"
+#include "reference/equilibrium/linear_response.hpp"
 #include "reference/equilibrium/sensitivity.hpp"
 #include "tests/support/scenes.hpp"
 #include "tests/support/slopes.hpp"
@@ -276,6 +280,132 @@ TEST(Sensitivity, IsTheDerivativeOfEveryLegsOwnSolutions) {
         }
     }
     EXPECT_GE(compared, 20);
+    RecordProperty("worst", fmt::format("{:.1e}", worst));
+}
+
+// ---- Derivatives of the linear response.
+
+// A force and a moment on every body, and the offset of every joint that has one.
+std::vector<Disturbance> disturbances(const Model& model) {
+    std::vector<Disturbance> all;
+    for (int b = 0; b < std::ssize(model.bodies); ++b) {
+        const Point at{b, {0.02, -0.03, 0.05}};
+        all.push_back(UnitWrench{at, {0.3, -0.5, 0.8}, Vector3d::Zero()});
+        all.push_back(UnitWrench{at, Vector3d::Zero(), {0.6, 0.2, -0.7}});
+    }
+    for (std::size_t k = 0; k < model.joints.size(); ++k)
+        if (model.joints[k].driven >= 0) all.push_back(Motion{static_cast<int>(k)});
+    return all;
+}
+struct Responding {
+    std::string name;
+    std::function<ResponseRates(const OneWay&, const Equilibrium&, std::span<const Disturbance>,
+                                const Model& rate)>
+        rates;
+};
+std::vector<Responding> responding_legs() {
+    return {
+        {"equilibrium",
+         [](const OneWay& way, const Equilibrium& state, std::span<const Disturbance> by,
+            const Model& rate) {
+             return reference::equilibrium::response_rates(way.model, way.branch, state, by,
+                                                           {&rate, 1});
+         }},
+        {"energy",
+         [](const OneWay& way, const Equilibrium& state, std::span<const Disturbance> by,
+            const Model& rate) {
+             return reference::energy::response_rates(way.model, way.branch, state, by, {&rate, 1});
+         }},
+        {"recursion", [](const OneWay& way, const Equilibrium& state,
+                         std::span<const Disturbance> by, const Model& rate) {
+             return recursive::response_rates(way.model, way.branch, state, by, {&rate, 1},
+                                              recursive::analyse(way.model));
+         }}};
+}
+
+TEST(Sensitivity, TheLegsAgreeOnTheDerivativeOfTheResponse) {
+    double worst = 0;
+    int answered = 0;
+    everywhere([&](const std::string& where, const OneWay& way, double a) {
+        // the part of a motion that is idle depends on the leg
+        if (!recursive::diagnose(way.model).idle.empty()) return;
+        const Equilibrium state = support::bare(state_at(way, a, Leg::equilibrium));
+        const Model rate = Randomly{std::mt19937(7)}.rate_of(way.model);
+        const auto by = disturbances(way.model);
+        const auto legs = responding_legs();
+        const ResponseRates truth = legs.front().rates(way, state, by, rate);
+        if (truth.at.outcome != Outcome::converged) return;
+        for (std::size_t l = 1; l < legs.size(); ++l) {
+            const ResponseRates other = legs[l].rates(way, state, by, rate);
+            if (is_not_applicable(other.at.outcome)) continue;
+            ASSERT_EQ(other.at.outcome, Outcome::converged) << where << ": " << other.at.detail;
+            EXPECT_EQ(other.by.front().outcome, truth.by.front().outcome)
+                << where << ": " << legs[l].name << ": " << other.by.front().detail
+                << truth.by.front().detail;
+            if (truth.by.front().outcome != Outcome::converged ||
+                other.by.front().outcome != Outcome::converged)
+                continue;
+            for (std::size_t t = 0; t < by.size(); ++t) {
+                // of what the change of the model by as much as itself would make of the response
+                const double size =
+                    std::max(1e-12, support::stacked(truth.at.increments[t]).cwiseAbs().maxCoeff());
+                const double off = apart(support::stacked(other.by.front().increments[t]),
+                                         support::stacked(truth.by.front().increments[t]), size);
+                EXPECT_LE(off, 1e-8) << where << ", at " << a << ": " << legs[l].name << ", " << t;
+                worst = std::max(worst, off);
+                ++answered;
+            }
+        }
+    });
+    EXPECT_GT(answered, 500);
+    RecordProperty("worst", fmt::format("{:.1e} of {}", worst, answered));
+}
+
+// The response solved again with all numbers changed by ±h, ±h/2, each at its own equilibrium.
+TEST(Sensitivity, TheDerivativeOfTheResponseIsThatOfResponsesSolvedAgain) {
+    const double h = 2e-3;
+    double worst = 0;
+    for (const auto& scene : {"double_wishbone", "four_bar", "single_bushing",
+                              "bushing_by_small_angles", "semi_trailing_arm"}) {
+        const Model model = compile(trim(support::scene(scene)).scene);
+        const BranchSide side = sides_of(model, model.branches.front(), 1).front();
+        const OneWay way{side.model, side.branch};
+        const double a = side.branch.to / 2;
+        const Model rate = Randomly{std::mt19937(11)}.rate_of(way.model);
+        const auto by = disturbances(way.model);
+        const auto solved = [&](double s) {
+            OneWay here{changed(way.model, rate, s), {}};
+            here.branch = here.model.branches.front();
+            const Equilibrium state = state_at(here, a, Leg::equilibrium);
+            VectorXd all;
+            const Response response =
+                reference::equilibrium::linear_response(here.model, here.branch, state, by);
+            for (const auto& increments : response.increments) {
+                const VectorXd one = support::stacked(increments);
+                all.conservativeResize(all.size() + one.size());
+                all.tail(one.size()) = one / one.norm();
+            }
+            return all;
+        };
+        const VectorXd difference =
+            (8 * (solved(h / 2) - solved(-h / 2)) - (solved(h) - solved(-h))) / (6 * h);
+        const Equilibrium state = state_at(way, a, Leg::equilibrium);
+        const ResponseRates found =
+            reference::equilibrium::response_rates(way.model, way.branch, state, by, {&rate, 1});
+        ASSERT_EQ(found.by.front().outcome, Outcome::converged) << found.by.front().detail;
+        VectorXd exact(difference.size());
+        Eigen::Index at = 0;
+        for (std::size_t t = 0; t < by.size(); ++t) {
+            const VectorXd x = support::stacked(found.at.increments[t]),
+                           dx = support::stacked(found.by.front().increments[t]);
+            exact.segment(at, x.size()) =
+                dx / x.norm() - x * (x.dot(dx) / std::pow(x.norm(), 3));  // of x / |x|
+            at += x.size();
+        }
+        const double off = apart(exact, difference, 1e-6);
+        EXPECT_LE(off, 1e-7) << scene;
+        worst = std::max(worst, off);
+    }
     RecordProperty("worst", fmt::format("{:.1e}", worst));
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "reference/equilibrium/linear_algebra/mixed.hpp"
+
 namespace elastocheck::reference::equilibrium {
 namespace {
 
@@ -235,6 +237,7 @@ NumberRate number_rate(const System& frozen, const Model& rate, double a, const 
         });
 
     // The laws of bushings, and their undeformed state.
+    number.laws.assign(model.elastics.size(), Vector6::Zero());
     for (std::size_t e = 0; e < model.elastics.size(); ++e) {
         const auto of_bushing = [&](const Bushing& bushing) {
             const auto& d = std::get<Bushing>(rate.elastics[e].kind);
@@ -246,8 +249,10 @@ NumberRate number_rate(const System& frozen, const Model& rate, double a, const 
             for (int k = 0; k < 6; ++k) moving_at[k].v[0] = -d.undeformed[k];
             const Vec6<Dual> answer = gradient(bushing.law, moving_at);
             const Vector6 law = force_rate(bushing.law, d.law, at);
-            for (int k = 0; k < 6; ++k)
-                path.preload[static_cast<std::size_t>(k)].rate += answer[k].v[0] + law[k];
+            for (int k = 0; k < 6; ++k) {
+                number.laws[e][k] = answer[k].v[0] + law[k];
+                path.preload[static_cast<std::size_t>(k)].rate += number.laws[e][k];
+            }
             for (std::size_t k = 3; k < 6; ++k)
                 path.rotational = path.rotational || path.preload[k].rate != 0;
             number.elements[e] =
@@ -388,6 +393,305 @@ std::vector<Wrench> wrench_rates(const NumberRate& number, const VectorXd& x, co
         row += part.rows;
     }
     return rates;
+}
+
+// ---- Mixed derivatives: along p, a number or a step of one unknown, and along the responses.
+
+namespace {
+
+constexpr int at_once = 8;  // responses of one pass
+using Second = Mixed<at_once>;
+
+// Responses first ... first + count - 1.
+struct Pass {
+    const Responding& to;
+    Eigen::Index first, count;
+
+    // Entry (row, of the responses).
+    Second::Along entries(const Eigen::MatrixXd& all, Eigen::Index row) const {
+        Second::Along s = Second::Along::Zero();
+        s.head(count) = all.row(row).segment(first, count).transpose().array();
+        return s;
+    }
+};
+
+// The step p of the unknowns: of one body or of one reaction.
+struct UnitStep {
+    Eigen::Index entry = -1;  // in dx; -1: none
+    bool is(Eigen::Index k) const { return entry == k; }
+};
+
+// The frame of a body at x. It moves by the responses, before that by p (so exp(η π_t) exp(ε π_p)),
+// and before that by a twist in its own axes along p.
+Frame<Second> moving(const System& system, const VectorXd& x, const Pass& pass, const UnitStep& p,
+                     BodyId body, const Twist& twist) {
+    const Frame<double> at = frame_of(system, x, body);
+    Vector3d dr = turned(at.p, twist.v), omega = turned(at.p, twist.w);
+    const Vector3d v = dr;
+    Frame<Second> frame{at.r.cast<Second>(), at.p.cast<Second>()};
+    Second::Along r_t[3], pi_t[3];
+    for (int k = 0; k < 3; ++k) r_t[k].setZero(), pi_t[k].setZero();
+    if (body != ground)
+        for (int k = 0; k < 3; ++k) {
+            if (p.is(6 * body + k)) dr[k] += system.length;
+            if (p.is(6 * body + 3 + k)) omega[k] += 1;
+            r_t[k] = system.length * pass.entries(pass.to.X, 6 * body + k);
+            pi_t[k] = pass.entries(pass.to.X, 6 * body + 3 + k);
+        }
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3, m = (k + 2) % 3;
+        frame.r[k].p = dr[k];
+        frame.r[k].s = r_t[k];
+        frame.r[k].ps = pi_t[l] * v[m] - pi_t[m] * v[l];
+    }
+    // Half of π times a quaternion, from the left.
+    const Vector3d half = omega / 2;
+    const Quaterniond by_p = product(Quaterniond(0, half.x(), half.y(), half.z()), at.p);
+    for (int n = 0; n < at_once; ++n) {
+        const Quaterniond turn(0, pi_t[0][n] / 2, pi_t[1][n] / 2, pi_t[2][n] / 2),
+            by_s = product(turn, at.p), by_ps = product(turn, by_p);
+        for (int k = 0; k < 4; ++k) {
+            frame.p.coeffs()[k].s[n] = by_s.coeffs()[k];
+            frame.p.coeffs()[k].ps[n] = by_ps.coeffs()[k];
+        }
+    }
+    for (int k = 0; k < 4; ++k) frame.p.coeffs()[k].p = by_p.coeffs()[k];
+    return frame;
+}
+
+struct MixedSource {
+    const System& system;
+    const VectorXd& x;
+    const Pass& pass;
+    UnitStep p;
+    const NumberRate* number = nullptr;  // or a number
+
+    bool wants(Term term, std::size_t k) const {
+        if (number == nullptr) return touched(term, k);
+        switch (term) {
+            case Term::element: return number->elements[k];
+            case Term::load: return number->loads[k];
+            case Term::ground_spring: return false;
+            case Term::constraint: return number->constraints[k];
+        }
+        return true;
+    }
+    Frame<Second> frame(const Part& part, int which) const {
+        return moving(system, x, pass, p, which == 0 ? part.i : part.j, twist(part, which));
+    }
+    Second reaction(const Part& part, int k) const {
+        const Eigen::Index at = 6 * system.bodies + part.row + k;
+        Second R(x[system.bodies + at]);
+        if (p.is(at)) R.p = 1;
+        R.s = pass.entries(pass.to.X, at);
+        return R;
+    }
+    Second offset(std::size_t c) const {
+        Second more;
+        more.s = pass.entries(pass.to.offset, static_cast<Eigen::Index>(c));
+        return more;
+    }
+    Twist twist(const Part& part, int which) const {
+        return number == nullptr ? Twist{} : twist_of(*number, part, which);
+    }
+
+  private:
+    // Whether a term depends on the unknown that p moves.
+    bool touched(Term term, std::size_t k) const {
+        const Model& model = *system.model;
+        const int body = p.entry < 6 * system.bodies ? static_cast<int>(p.entry / 6) : ground;
+        const auto joins = [&](const Pair& pair) { return pair.i == body || pair.j == body; };
+        switch (term) {
+            case Term::element: return body != ground && joins(bodies_of(model.elastics[k].kind));
+            case Term::load: return body != ground && body_of(system.loads[k].kind) == body;
+            case Term::ground_spring: return false;
+            case Term::constraint: break;
+        }
+        if (body != ground) return joins(bodies_of(model.constraints[k].kind));
+        int row = static_cast<int>(p.entry) - 6 * system.bodies;
+        for (std::size_t c = 0; c < k; ++c) row -= rows(model.constraints[c].kind);
+        return row >= 0 && row < rows(model.constraints[k].kind);
+    }
+};
+
+// Sums the mixed derivatives of the equations [n × responses of the pass].
+struct MixedSink {
+    const MixedSource& source;
+    Eigen::MatrixXd E;
+
+    // The arm of the twist, as in Sink.
+    void balance(const Part& part, BodyId body, const Vec3<Second>& force,
+                 const Vec3<Second>& moment) {
+        const Vector3d v = source.twist(part, body == part.i ? 0 : 1).v / source.system.length;
+        Vec3<Second> arm = Vec3<Second>::Constant(Second(0.));
+        if (!v.isZero(0)) {
+            Second along(0.);
+            along.p = 1;
+            const Frame<Second> frame =
+                moving(source.system, source.x, source.pass, {}, body, Twist{});
+            arm = cross(Vec3<Second>(turned(frame.p, v) * along), force);
+        }
+        for (int k = 0; k < 3; ++k) {
+            add(6 * body + k, force[k]);
+            add(6 * body + 3 + k, moment[k] + arm[k]);
+        }
+    }
+    void constraint(const Part& part, int k, const Second& Phi) {
+        add(6 * source.system.bodies + part.row + k, Phi);
+    }
+    void add(Eigen::Index row, const Second& value) {
+        E.row(row) += value.ps.head(E.cols()).matrix().transpose();
+    }
+};
+
+// Change of a law's force along p: of its numbers, and of the deformation x by -p dx.
+Second law_change(const LinearRate& u, const LinearRate& d, const Second& x, const Second& p,
+                  double dx) {
+    return p * (d.k * x - Second(u.k * dx));
+}
+Second law_change(const Curve& u, const Curve& d, const Second& x, const Second& p, double dx) {
+    const auto k = static_cast<std::size_t>(piece_at(u, x));
+    const std::size_t knot = k == 0 ? 0 : k - 1;
+    const Second h = x - Second(u.knots[knot]), moved = h - p * Second(d.knots[knot] + dx);
+    Second before(0.), after(0.);
+    for (std::size_t n = 4; n-- > 0;) {
+        before = before * h + Second(u.pieces[k][n]);
+        after = after * moved + Second(u.pieces[k][n]) + p * Second(d.pieces[k][n]);
+    }
+    return after - before;
+}
+Second law_change(const ScalarLaw& law, const ScalarLaw& d, const Second& x, const Second& p,
+                  double dx) {
+    return std::visit(
+        [&]<class Law>(const Law& u) { return law_change(u, std::get<Law>(d), x, p, dx); }, law);
+}
+Vec6<Second> law_change(const SpatialLaw& law, const SpatialLaw& d, const Vec6<Second>& e,
+                        const Second& p, const Vector6& de) {
+    return std::visit(overloaded{[&](const LinearStiffness& u) {
+                                     const Vector6 constant = u.K * de;
+                                     Vec6<Second> f = gradient(d, e);
+                                     for (int k = 0; k < 6; ++k)
+                                         f[k] = p * (f[k] - Second(constant[k]));
+                                     return f;
+                                 },
+                                 [&](const PerAxis& u) {
+                                     Vec6<Second> f;
+                                     for (int k = 0; k < 6; ++k) {
+                                         const auto at = static_cast<std::size_t>(k);
+                                         f[k] =
+                                             law_change(u.axis[at], std::get<PerAxis>(d).axis[at],
+                                                        e[k], p, de[k]);
+                                     }
+                                     return f;
+                                 }},
+                      law);
+}
+bool changes(const ScalarLaw& d) {
+    return std::visit(
+        overloaded{[](const LinearRate& u) { return u.k != 0; }, [](const Curve&) { return true; }},
+        d);
+}
+bool changes(const SpatialLaw& d) {
+    return std::visit(overloaded{[](const LinearStiffness& u) { return !u.K.isZero(0); },
+                                 [](const PerAxis&) { return true; }},
+                      d);
+}
+
+// The laws of elements: their change of force acts as a preload, at frames that only respond.
+void add_law_changes(const NumberRate& number, const MixedSource& source, const Second& p,
+                     MixedSink& sink) {
+    const System& system = source.system;
+    const Model& model = *system.model;
+    for (std::size_t e = 0; e < model.elastics.size(); ++e) {
+        const ElasticKind &kind = model.elastics[e].kind, &rate = number.rate->elastics[e].kind;
+        const auto [body_i, body_j] = bodies_of(kind);
+        const auto frame = [&](BodyId body) {
+            return moving(system, source.x, source.pass, {}, body, Twist{});
+        };
+        const auto apply = [&](BodyId body, const Frame<Second>& at,
+                               const Interaction<Second>& on) {
+            if (body == ground) return;
+            const Vec3<Second> moment = on.moment + cross(Vec3<Second>(on.at - at.r), on.force);
+            for (int k = 0; k < 3; ++k) {
+                sink.add(6 * body + k, on.force[k] * (1 / system.force));
+                sink.add(6 * body + 3 + k, moment[k] * (1 / (system.force * system.length)));
+            }
+        };
+        const auto act = [&](const Frame<Second>& i, const Frame<Second>& j,
+                             const OnBoth<Second>& on) {
+            apply(body_i, i, on.i);
+            apply(body_j, j, on.j);
+        };
+        std::visit(
+            overloaded{
+                [&](const AxialSpring& spring) {
+                    const auto& d = std::get<AxialSpring>(rate);
+                    if (!changes(d.law)) return;
+                    const Frame<Second> i = frame(body_i), j = frame(body_j);
+                    const Second x = deformations(system, e, Second(0.), i, j)[0];
+                    AxialSpring without = spring;
+                    without.law = LinearRate{};
+                    act(i, j,
+                        interaction(without, Second(0.), law_change(spring.law, d.law, x, p, 0),
+                                    by_itself, i, j));
+                },
+                [&](const Bushing& bushing) {
+                    const auto& d = std::get<Bushing>(rate);
+                    if (!changes(d.law) && d.undeformed.isZero(0)) return;
+                    const Frame<Second> i = frame(body_i), j = frame(body_j);
+                    const Vec6<Second> at = deformations(system, e, Second(0.), i, j);
+                    Bushing without = bushing;
+                    without.law = LinearStiffness{Matrix6::Zero()};
+                    act(i, j,
+                        interaction(without, law_change(bushing.law, d.law, at, p, d.undeformed),
+                                    system.elements[e].rotational, all_by_themselves, i, j));
+                }},
+            kind);
+    }
+}
+
+template <class EachPass>
+void in_passes(const Responding& to, const EachPass& each) {
+    for (Eigen::Index first = 0; first < to.X.cols(); first += at_once)
+        each(Pass{to, first, std::min<Eigen::Index>(at_once, to.X.cols() - first)});
+}
+
+}  // namespace
+
+std::vector<Eigen::MatrixXd> curvatures(const System& frozen, const VectorXd& x,
+                                        const Responding& to) {
+    const int n = frozen.equations();
+    std::vector<Eigen::MatrixXd> D(static_cast<std::size_t>(to.X.cols()),
+                                   Eigen::MatrixXd::Zero(n, n));
+    in_passes(to, [&](const Pass& pass) {
+        for (int k = 0; k < n; ++k) {
+            const MixedSource source{frozen, x, pass, {k}};
+            MixedSink sink{source, Eigen::MatrixXd::Zero(n, pass.count)};
+            assemble<Second>(frozen, Second(0.), Second(0.), {}, source, sink);
+            for (Eigen::Index t = 0; t < pass.count; ++t)
+                D[static_cast<std::size_t>(pass.first + t)].col(k) = sink.E.col(t);
+        }
+    });
+    return D;
+}
+
+Eigen::MatrixXd rates_of(const NumberRate& number, const VectorXd& x, const Responding& to) {
+    // The laws change with the deformation, beside the terms.
+    System system = number.changing;
+    for (std::size_t e = 0; e < number.laws.size(); ++e)
+        for (int k = 0; k < 6; ++k)
+            system.elements[e].preload[static_cast<std::size_t>(k)].rate -= number.laws[e][k];
+    Second a(0.);
+    a.p = 1;
+    Eigen::MatrixXd all(system.equations(), to.X.cols());
+    in_passes(to, [&](const Pass& pass) {
+        const MixedSource source{system, x, pass, {}, &number};
+        MixedSink sink{source, Eigen::MatrixXd::Zero(system.equations(), pass.count)};
+        assemble<Second>(system, a, Second(0.), {}, source, sink);
+        add_law_changes(number, source, a, sink);
+        all.middleCols(pass.first, pass.count) = sink.E;
+    });
+    return all;
 }
 
 }  // namespace elastocheck::reference::equilibrium

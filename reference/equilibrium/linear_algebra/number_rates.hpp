@@ -19,6 +19,8 @@ struct NumberRate {
     // largest motion of a feature within its body, or change of an undeformed length, over L or in
     // radians
     double motion = 0;
+    // per element: the part of changing.preload's rates that is the change of its law at x
+    std::vector<Vector6> laws = {};
     // the terms of the system that the number changes, by their positions
     std::vector<bool> elements = {}, loads = {}, constraints = {};
 };
@@ -31,5 +33,17 @@ Eigen::VectorXd rate_of(const NumberRate& number, const Eigen::VectorXd& x);
 // Rates of Equilibrium::reactions where x changes by dx.
 std::vector<Wrench> wrench_rates(const NumberRate& number, const Eigen::VectorXd& x,
                                  const Eigen::VectorXd& dx);
+
+// ---- Derivatives of the response to disturbances, J X + ∂E/∂t = 0, by hyper-dual numbers.
+
+struct Responding {
+    Eigen::MatrixXd X;       // steps dx [n], one column per disturbance
+    Eigen::MatrixXd offset;  // the disturbance of each constraint's offset [constraints × columns]
+};
+// Per disturbance: D with D dx = change of J X + ∂E/∂t by the step dx of x [n × n].
+std::vector<Eigen::MatrixXd> curvatures(const System& frozen, const Eigen::VectorXd& x,
+                                        const Responding& to);
+// The change of J X + ∂E/∂t by ∂/∂m dm at fixed x and X [n × columns].
+Eigen::MatrixXd rates_of(const NumberRate& number, const Eigen::VectorXd& x, const Responding& to);
 
 }  // namespace elastocheck::reference::equilibrium

@@ -152,6 +152,18 @@ compare::SceneAt scene_at(const std::string& file, const Settings& settings,
     };
 }
 
+compare::RatesAt rates_at(const std::string& file, const Settings& settings,
+                          const std::vector<Number>& numbers) {
+    std::vector<std::string> paths;
+    for (const Number& number : numbers) paths.push_back(number.path);
+    return [file, fixed = without(settings, numbers), numbers, paths](const VectorXd& p) {
+        Settings all = fixed;
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            add(all, numbers[k], p[static_cast<Index>(k)]);
+        return model_rates(file, all, paths);
+    };
+}
+
 NamedFigure parse_figure(const std::string& word, const std::string& option, const Model& model) {
     if (model.branches.empty())
         throw std::invalid_argument(

@@ -168,12 +168,11 @@ Table scatter_table(const ToleratedScene& all) {
                  {"at", "", "", true, words},
                  {"nominal", "", "", false, given},
                  {"sd", "", "standard deviation", false, three},
-                 {"worst case", "", "", false, three},
-                 {"error of sd", "", "estimate, by the error of the rates", false, size}},
+                 {"worst case", "", "", false, three}},
                 {}};
     for (const auto& figure : all.figures)
         table.rows.push_back({figure.output, figure.unit, figure.place, figure.nominal,
-                              figure.scatter.sd, figure.scatter.worst_case, figure.rate_error});
+                              figure.scatter.sd, figure.scatter.worst_case});
     return table;
 }
 

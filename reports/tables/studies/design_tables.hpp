@@ -15,7 +15,7 @@ namespace elastocheck::reports {
 // Incremented when a field changes its meaning or is removed; new fields do not increment them.
 inline constexpr const char* solve_for_schema = "elastocheck/solve-for/1";
 inline constexpr const char* fit_schema = "elastocheck/fit/1";
-inline constexpr const char* tolerances_schema = "elastocheck/tolerances/1";
+inline constexpr const char* tolerances_schema = "elastocheck/tolerances/2";
 
 // ---- solve-for
 
@@ -56,7 +56,6 @@ struct ToleratedFigure {
     std::string output, unit, place;
     double nominal = 0;
     compare::Scatter scatter;
-    double rate_error = 0;  // estimate, of the standard deviation by the error of the rates
 };
 struct ToleratedScene {
     std::vector<compare::Tolerated> numbers;

@@ -33,6 +33,13 @@ std::string missing(const SideGradients& side, std::size_t station, std::size_t 
     return std::isnan(value) ? "the output is undefined here" : "";
 }
 
+// One-sided derivative; NaN where there is none.
+double beside(const SideGradients& side, std::size_t station, std::size_t output,
+              std::size_t number, Eigen::MatrixXd compare::OneSided::*which) {
+    if (station >= side.one_sided.size() || side.one_sided[station].empty()) return std::nan("");
+    return (side.one_sided[station].*which)(static_cast<Index>(output), static_cast<Index>(number));
+}
+
 std::string named(const compare::VariedNumber& number) {
     return number.path + (number.side > 0   ? " (increase only)"
                           : number.side < 0 ? " (decrease only)"
@@ -65,7 +72,9 @@ compare::Table sensitivity_table(const Gradients& all) {
                           {"per", "", "unit of the output per unit of the number", true},
                           {"effect", "", "derivative times `step`, in the unit of the output"},
                           {"step", "", "1 mm of a length, else 1 % of the value", true},
-                          {"missing", "", "why there is no derivative", true}},
+                          {"missing", "", "why there is no derivative", true},
+                          {"growing", "", "where there is none: derivative where the number grows"},
+                          {"falling", "", "and where it falls"}},
                          {}};
     for (const SideGradients& side : all.sides)
         for (std::size_t s = 0; s < side.a.size(); ++s)
@@ -78,7 +87,9 @@ compare::Table sensitivity_table(const Gradients& all) {
                     table.rows.push_back({side.name, in_unit(side.unit) * side.a[s],
                                           std::string(symbol(side.unit)), all.outputs[c].name,
                                           number.path, value, per(all.outputs[c], number),
-                                          value * number.step, std::string(number.step_name), why});
+                                          value * number.step, std::string(number.step_name), why,
+                                          beside(side, s, c, k, &compare::OneSided::growing),
+                                          beside(side, s, c, k, &compare::OneSided::falling)});
                 }
     return table;
 }
@@ -125,10 +136,19 @@ std::string sensitivity_text(const Gradients& all, int most) {
                 const auto& number = all.numbers[k];
                 const double start = entry(side, 0, c, k), end = entry(side, last, c, k);
                 for (const std::size_t s : {std::size_t{0}, last})
-                    if (const auto why = missing(side, s, c, k, entry(side, s, c, k)); !why.empty())
-                        reasons.insert(fmt::format("{} by {} at {:g} {}: {}", all.outputs[c].name,
-                                                   number.path, in_unit(side.unit) * side.a[s],
-                                                   symbol(side.unit), why));
+                    if (const auto why = missing(side, s, c, k, entry(side, s, c, k));
+                        !why.empty()) {
+                        const double growing = beside(side, s, c, k, &compare::OneSided::growing),
+                                     falling = beside(side, s, c, k, &compare::OneSided::falling);
+                        reasons.insert(fmt::format(
+                            "{} by {} at {:g} {}: {}{}", all.outputs[c].name, number.path,
+                            in_unit(side.unit) * side.a[s], symbol(side.unit), why,
+                            std::isnan(growing) || std::isnan(falling)
+                                ? ""
+                                : fmt::format("; {:.3g} {} where the number grows, {:.3g} where it "
+                                              "falls",
+                                              growing, per(all.outputs[c], number), falling)));
+                    }
                 if (size[k] == 0 && !std::isnan(start) && !std::isnan(end) && most > 0 && !first)
                     continue;
                 // a remainder of rounding is shown as zero
