@@ -16,6 +16,7 @@
 #include "compare/sensitivity/one_sided.hpp"
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
+#include "models/numbers.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/sensitivity.hpp"
 #include "reference/energy/sensitivity.hpp"
@@ -225,6 +226,31 @@ MatrixXd derivatives_at(const SideJob& job, Leg leg, const Equilibrium& state,
     return by_numbers;
 }
 
+// Of a motion that nothing resists, which has no derivative, where it deforms the element at the
+// design position: its description. Then no component in the element's axes is determined, which
+// turn with it. Empty for other outputs.
+std::string idle_motion_of(const BranchSide& side, const Channel& output) {
+    constexpr double moves = 1e-9;  // [m, rad] of a unit motion
+    const auto* of = std::get_if<OfElement>(&output.reads);
+    if (of == nullptr || side.analysis->diagnosis.idle.empty()) return {};
+    const auto element = static_cast<std::size_t>(of->element);
+    const std::size_t axes =
+        member<ScalarLaw>(side.model.elastics[element].kind) != nullptr ? 1 : 6;
+    const Equilibrium drawn = design_state(side.model);
+    const Model constant = without_numbers(side.model);
+    for (const auto& mode : side.analysis->diagnosis.idle) {
+        StateRate motion;
+        const Eigen::VectorXd dq = mode.dq;
+        for (Index b = 0; b < dq.size(); b += 6)
+            motion.increments.push_back({dq.segment<3>(b), dq.segment<3>(b + 3)});
+        for (std::size_t axis = 0; axis < axes; ++axis)
+            if (std::abs(deformation_rate(side.model, side.branch, drawn, element, axis, constant,
+                                          motion)) > moves)
+                return "it takes part in a motion that nothing resists: " + mode.description;
+    }
+    return {};
+}
+
 // The values on this side of a branch, from its start on; the start is on the first side.
 std::vector<double> on_this_side(std::vector<double> values, const BranchSide& side, bool first) {
     std::erase_if(values, [&](double a) { return a == 0 ? !first : !(a * side.branch.to > 0); });
@@ -378,7 +404,7 @@ Gradients gradients(const Model& model, std::span<const Channel> outputs,
                 determined_channels(outputs, side.model, side.analysis->diagnosis.determined);
             for (std::size_t c = 0; c < outputs.size(); ++c)
                 here.why_output.push_back(
-                    determined[c] ? ""
+                    determined[c] ? idle_motion_of(side, outputs[c])
                                   : "its joint is inactive on this branch, or shares its load with "
                                     "redundant joints in an undetermined way");
             for (const Leg leg : options.legs) {

@@ -262,7 +262,7 @@ TEST(Figures, HaveTheRatesOfDifferencesOfSolutions) {
          {.name = "bump_camber", .branch = "jounce", .at = z, .over = "travel"}});
     const FigureGradient gradient = of.gradient(p);
     ASSERT_TRUE(gradient.rate.allFinite()) << gradient.why_not << gradient.rate;
-    const VectorXd step = vector({1e-3, 1e-3, 300});
+    const VectorXd step = vector({5e-4, 5e-4, 300});
     for (Index k = 0; k < p.size(); ++k) {
         const auto at = [&](double share) {
             VectorXd q = p;
