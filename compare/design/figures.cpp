@@ -21,7 +21,7 @@
 #include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
-#include "models/numbers.hpp"
+#include "models/rates/fields.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -172,7 +172,7 @@ namespace {
 ModelRate by_parameter(const Model& model, const std::string& branch_name) {
     ModelRate rate;
     rate.path = "(parameter)";
-    rate.rate = without_numbers(model);
+    rate.rate = elastocheck::rates::without_numbers(model);
     for (std::size_t b = 0; b < model.branches.size(); ++b)
         if (model.branches[b].name == branch_name)
             for (std::size_t d = 0; d < model.branches[b].drivers.size(); ++d)
@@ -228,7 +228,8 @@ struct BranchGradient {
             with_parameter = *trim;
             if (!over.empty()) {
                 with_parameter->numbers.push_back(all.back());
-                with_parameter->scenes.push_back(without_numbers(trim->scenes.front()));
+                with_parameter->scenes.push_back(
+                    elastocheck::rates::without_numbers(trim->scenes.front()));
             }
             options.trim = &*with_parameter;
         }

@@ -237,7 +237,7 @@ std::string idle_motion_of(const BranchSide& side, const Channel& output) {
     const std::size_t axes =
         member<ScalarLaw>(side.model.elastics[element].kind) != nullptr ? 1 : 6;
     const Equilibrium drawn = design_state(side.model);
-    const Model constant = without_numbers(side.model);
+    const Model constant = elastocheck::rates::without_numbers(side.model);
     for (const auto& mode : side.analysis->diagnosis.idle) {
         StateRate motion;
         const Eigen::VectorXd dq = mode.dq;

@@ -16,8 +16,8 @@
 #include "compare/variants/sampler.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
-#include "models/numbers.hpp"
 #include "models/overloaded.hpp"
+#include "models/rates/fields.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/csv_table.hpp"
@@ -534,7 +534,7 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
             whole.require("figures").fail(error.what());
         }
     }();
-    const auto numbers = numbers_of(scene);
+    const auto numbers = elastocheck::rates::archive_of(scene).values;
     const Provenance made = provenance();
     StudyIdentity identity{
         .scene = input_hash(text + std::string(reinterpret_cast<const char*>(numbers.data()),
