@@ -16,7 +16,7 @@
 #include "compare/sensitivity/one_sided.hpp"
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
-#include "models/numbers.hpp"
+#include "models/rates/fields.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/sensitivity.hpp"
 #include "reference/energy/sensitivity.hpp"
