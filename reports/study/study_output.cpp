@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "compare/variants/sampler.hpp"
+#include "models/overloaded.hpp"
 #include "reports/files/files.hpp"
 #include "reports/study/run_study.hpp"
 #include "reports/tables/render.hpp"
@@ -25,6 +27,43 @@ constexpr std::size_t most_shown = 10;  // failed variants
 constexpr double agree_of_spread = 1e-6, agree_of_size = 1e-9;
 
 Cell count(std::uint64_t n) { return static_cast<double>(n); }
+
+std::string describe_distribution(const Distribution& distribution) {
+    return std::visit(
+        overloaded{
+            [](const Normal& d) { return fmt::format("normal, {:g}, sd {:g}", d.mean, d.sd); },
+            [](const Uniform& d) { return fmt::format("uniform, {:g} to {:g}", d.low, d.high); },
+            [](const Triangular& d) {
+                return fmt::format("triangular, {:g} to {:g}, mode {:g}", d.low, d.high, d.mode);
+            },
+            [](const TruncatedNormal& d) {
+                return fmt::format("normal, {:g}, sd {:g}, between {:g} and {:g}", d.mean, d.sd,
+                                   d.low, d.high);
+            },
+            [](const Levels& d) {
+                return fmt::format("list of {}, {:g} to {:g}", d.values.size(),
+                                   *std::ranges::min_element(d.values),
+                                   *std::ranges::max_element(d.values));
+            },
+            [](const Given&) { return std::string("as listed"); }},
+        distribution);
+}
+
+// What was drawn, with the unit of each number: that of the scene is easily another one than meant.
+Table variables_table(const StudyFile& file) {
+    using enum Digits;
+    Table table{{{"variable", "", "", true, words},
+                 {"unit", "", "", true, words},
+                 {"design", "", "of the scene as it is written", false, given},
+                 {"distribution", "", "", true, words},
+                 {"scales", "", "how many numbers, of a factor", false, hidden}},
+                {}};
+    for (const Variable& variable : file.study.variables)
+        table.rows.push_back({variable.name, variable.unit, variable.nominal,
+                              describe_distribution(variable.distribution),
+                              count(variable.scaled.size())});
+    return table;
+}
 
 Table figures_table(const StudyFile& file, const StudyResult& result) {
     using enum Digits;
@@ -176,7 +215,7 @@ std::string study_text(const StudyFile& file, const StudyResult& result) {
     const std::uint64_t size = file.study.design.count;
     std::string out =
         fmt::format("{} of {} variants: {}\n\n", result.summary.rows, size, outcomes_text(result));
-    out += text(figures_table(file, result));
+    out += text(variables_table(file)) + "\n" + text(figures_table(file, result));
     if (const Table table = sobol_table(file, result); !table.rows.empty())
         out += "\nShares of the variance (Sobol indices)\n" + text(table);
     if (file.study.witness > 0)
@@ -200,6 +239,7 @@ json study_json(const StudyFile& file, const StudyResult& result) {
             {"count", file.study.design.count},
             {"rows", result.summary.rows},
             {"outcomes", outcomes},
+            {"variables", table_json(variables_table(file))},
             {"figures", table_json(figures_table(file, result))},
             {"sobol", table_json(sobol_table(file, result))},
             {"witnesses", table_json(witness_table(file, result))},

@@ -159,7 +159,9 @@ figures: {height: centre_z@up:3000}
 // ---- A linear suspension of known variance.
 
 TEST_F(StudyCommand, FindsTheVarianceOfALinearSuspension) {
-    expect_said(study(linear), 0, {.out = {"4096 of 4096 variants: 4096 solved"}});
+    expect_said(study(linear), 0,
+                {.out = {"4096 of 4096 variants: 4096 solved",
+                         "springs.first.preload        N        600  normal, 600, sd 20"}});
     const json all = statistics(), &figures = all["figures"];
     const double sd = std::hypot(20, 30) / 75;
     EXPECT_NEAR(cell(figures, 0, "design"), 420, 1e-9);
