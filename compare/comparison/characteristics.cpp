@@ -38,16 +38,16 @@ S ratio(const S& value, const S& by, double limit) {
 // ---- Motions of a wheel, for S = Dual with their derivatives by a number of the model.
 
 template <class S>
-using Vector = Eigen::Matrix<S, 3, 1>;
+using Triple = Eigen::Matrix<S, 3, 1>;
 
 Vector3d with(const Vector3d& value, const Vector3d&, double) { return value; }
-Vector<Dual> with(const Vector3d& value, const Vector3d& rate, Dual) {
+Triple<Dual> with(const Vector3d& value, const Vector3d& rate, Dual) {
     return {Dual(value.x(), rate.x()), Dual(value.y(), rate.y()), Dual(value.z(), rate.z())};
 }
 
 template <class S>
 struct MotionOf {
-    Vector<S> dr = Vector<S>::Constant(S(0)), dpi = Vector<S>::Constant(S(0));
+    Triple<S> dr = Triple<S>::Constant(S(0)), dpi = Triple<S>::Constant(S(0));
 };
 template <class S>
 struct ResponseOf {
@@ -74,7 +74,7 @@ using MotionsOf = typename Reading<S>::Motions;
 template <class S>
 struct Placed {
     BodyId body;
-    Vector<S> at, lever;
+    Triple<S> at, lever;
 };
 
 template <class S>
@@ -119,7 +119,7 @@ struct Wheels {
         return placed(p.body, p.s_local, d.s_local);
     }
     double side(std::size_t w) const { return model.wheels[w].side; }
-    Vector<S> spin(std::size_t w) const {
+    Triple<S> spin(std::size_t w) const {
         return placed(model.wheels[w].body, model.wheels[w].spin_axis_local,
                       rate_of(w).spin_axis_local)
             .lever;
@@ -127,22 +127,22 @@ struct Wheels {
 
     // Rates along a motion of the channels toe and camber: atan2(e_x, side e_y), -asin(e_z).
     S toe(std::size_t w, const MotionsOf<S>& motions) const {
-        const Vector<S> e = spin(w), de = turned_by(motions, model.wheels[w].body).cross(e);
+        const Triple<S> e = spin(w), de = turned_by(motions, model.wheels[w].body).cross(e);
         const S x = S(side(w)) * e.y(), dx = S(side(w)) * de.y();
         return (x * de.x() - e.x() * dx) / (x * x + e.x() * e.x());
     }
     S camber(std::size_t w, const MotionsOf<S>& motions) const {
         using std::sqrt;
-        const Vector<S> e = spin(w), de = turned_by(motions, model.wheels[w].body).cross(e);
+        const Triple<S> e = spin(w), de = turned_by(motions, model.wheels[w].body).cross(e);
         return -(de.z() / sqrt(S(1) - e.z() * e.z()));
     }
 
-    static Vector<S> turned_by(const MotionsOf<S>& motions, BodyId body) {
-        if (body == ground) return Vector<S>::Constant(S(0));
+    static Triple<S> turned_by(const MotionsOf<S>& motions, BodyId body) {
+        if (body == ground) return Triple<S>::Constant(S(0));
         return motions[static_cast<std::size_t>(body)].dpi;
     }
-    static Vector<S> moved_by(const MotionsOf<S>& motions, const Placed<S>& point) {
-        if (point.body == ground) return Vector<S>::Constant(S(0));
+    static Triple<S> moved_by(const MotionsOf<S>& motions, const Placed<S>& point) {
+        if (point.body == ground) return Triple<S>::Constant(S(0));
         const auto& body = motions[static_cast<std::size_t>(point.body)];
         return body.dr + body.dpi.cross(point.lever);
     }
@@ -221,10 +221,10 @@ template <class S>
 S roll_centre(const Wheels<S>& wheels) {
     using std::abs;
     using Plane = Eigen::Matrix<S, 2, 1>;
-    const auto seen = [](const Vector<S>& v) { return Plane(v.y(), v.z()); };
+    const auto seen = [](const Triple<S>& v) { return Plane(v.y(), v.z()); };
     if (!is_axle(wheels.model)) {
         const Placed<S> patch = wheels.patch(0);
-        const Vector<S> d = wheels.moved_by(wheels.response.travel[0], patch);
+        const Triple<S> d = wheels.moved_by(wheels.response.travel[0], patch);
         return ratio<S>(patch.at.y() * d.y(), d.z(), nowhere);
     }
     if (wheels.response.tied) return undefined;
@@ -250,13 +250,13 @@ S roll_centre(const Wheels<S>& wheels) {
 // height. n upward, through  c + ω × v / ω².
 template <class S>
 struct Axis {
-    Vector<S> n, through;
+    Triple<S> n, through;
 };
 template <class S>
 std::optional<Axis<S>> steering_axis(const Wheels<S>& wheels, std::size_t w) {
     using std::abs;
     if (wheels.response.steering.empty()) return std::nullopt;
-    const Vector<S> omega = wheels.turned_by(wheels.response.steering, wheels[w].body),
+    const Triple<S> omega = wheels.turned_by(wheels.response.steering, wheels[w].body),
                     v = wheels.moved_by(wheels.response.steering, wheels.centre(w));
     const S rate = omega.norm();
     if (!(v.norm() <= S(nowhere) * rate) || !(abs(omega.z()) > S(1e-6) * rate)) return std::nullopt;
@@ -265,20 +265,20 @@ std::optional<Axis<S>> steering_axis(const Wheels<S>& wheels, std::size_t w) {
 }
 // Vector from the patch to the intersection of the axis with the road.
 template <class S>
-Vector<S> on_the_road(const Wheels<S>& wheels, std::size_t w, const Axis<S>& axis) {
-    const Vector<S> patch = wheels.patch(w).at;
+Triple<S> on_the_road(const Wheels<S>& wheels, std::size_t w, const Axis<S>& axis) {
+    const Triple<S> patch = wheels.patch(w).at;
     return axis.through + axis.n * ((patch.z() - axis.through.z()) / axis.n.z()) - patch;
 }
 // Unit vectors in the road plane that follow the steered wheel: across it outwards, and along it
 // forwards.
 template <class S>
-Vector<S> across(const Wheels<S>& wheels, std::size_t w) {
-    const Vector<S> e = wheels.spin(w);
-    return Vector<S>(e.x(), e.y(), S(0)).normalized();
+Triple<S> across(const Wheels<S>& wheels, std::size_t w) {
+    const Triple<S> e = wheels.spin(w);
+    return Triple<S>(e.x(), e.y(), S(0)).normalized();
 }
 template <class S>
-Vector<S> along(const Wheels<S>& wheels, std::size_t w) {
-    return S(wheels.side(w)) * across(wheels, w).cross(Vector<S>(S(0), S(0), S(1)));
+Triple<S> along(const Wheels<S>& wheels, std::size_t w) {
+    return S(wheels.side(w)) * across(wheels, w).cross(Triple<S>(S(0), S(0), S(1)));
 }
 
 // Body roll by 1 rad towards this wheel of an axle, the wheels on the road: this wheel rises by
@@ -338,7 +338,7 @@ S stiffness(const Wheels<S>& wheels, std::size_t w, int cause) {
 // angle at which the links, not the springs, carry a longitudinal force.
 template <class S>
 S forward_per_travel(const Wheels<S>& wheels, const Placed<S>& at) {
-    const Vector<S> d = wheels.moved_by(raised(wheels, 0), at);
+    const Triple<S> d = wheels.moved_by(raised(wheels, 0), at);
     return ratio<S>(d.x(), d.z(), nowhere);
 }
 // Point at which a driving force acts on the links: the patch where an axle housing carries the
@@ -369,7 +369,7 @@ S steer_gradient(const Wheels<S>& wheels, std::size_t w) {
 template <class S>
 S shortening(const Wheels<S>& wheels, const Placed<S>& i, const Placed<S>& j) {
     const MotionsOf<S> motions = raised(wheels, 0);
-    const Vector<S> D = j.at - i.at, dD = wheels.moved_by(motions, j) - wheels.moved_by(motions, i);
+    const Triple<S> D = j.at - i.at, dD = wheels.moved_by(motions, j) - wheels.moved_by(motions, i);
     return -(D.dot(dD) / D.norm());
 }
 

@@ -28,8 +28,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Smallest size of a row, of the largest row of its kind.
-constexpr double smallest_row = 1e-6;
+// Smallest size of a row, of the largest row of its kind. The derivative of a characteristic is of
+// second order: by the energy leg its rounding is 1e-12 of the largest.
+constexpr double smallest_row = 1e-6, smallest_characteristic = 1e-4;
 
 std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
                                       std::span<const Model> rates) {
@@ -282,7 +283,10 @@ std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
         largest(c) = std::max(largest(c), sizes[c]);
     }
     for (std::size_t c = 0; c < sizes.size(); ++c)
-        sizes[c] = std::max(sizes[c], smallest_row * largest(c));
+        sizes[c] =
+            std::max(sizes[c], largest(c) * (all.outputs[c].kind() == ChannelKind::characteristic
+                                                 ? smallest_characteristic
+                                                 : smallest_row));
     return sizes;
 }
 

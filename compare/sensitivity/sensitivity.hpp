@@ -77,8 +77,8 @@ struct SideGradients {
 
 // Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
 // the output over all numbers and stations of the side, each number by its step. The largest entry
-// counts as at least a millionth of the largest of all rows of motions (mm, deg), of forces and
-// moments (N, N·m), or of the characteristics of its unit.
+// counts as at least a millionth of the largest of all rows of motions (mm, deg), or of forces and
+// moments (N, N·m); of a characteristic, a ten-thousandth of the largest of its unit.
 inline constexpr double gradients_agree = 1e-8;
 
 struct Gradients {

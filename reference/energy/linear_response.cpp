@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 
 #include "models/overloaded.hpp"
@@ -100,8 +101,10 @@ Responses responses(const Model& model, const Branch& branch, const StateTangent
 // ---- Derivatives of the responses.
 
 constexpr double difference = 2e-5;  // h [m, rad]
+constexpr double longest = 1e4;      // of a response that reactions alone carry [N, N·m]
 constexpr int most_shorter = 3;      // steps of a thirtieth, where a knot of a law is within 2h
-constexpr double alike = 1e-4;       // differences with h and 2h that no knot separates
+constexpr double rounding_of_terms = 64 * std::numeric_limits<double>::epsilon();
+constexpr double alike = 1e-4;  // differences with h and 2h that no knot separates
 
 // The state displaced by s of a response: the curvatures of its parts, and what number_rate() reads.
 struct Displaced {
@@ -112,7 +115,7 @@ struct Displaced {
 // Change of the gradient, moments about the origins of the bodies, and of Φ.
 struct Change {
     VectorXd b, Phi;
-    VectorXd size = {};  // of the terms of b
+    VectorXd size = {};  // of the terms of b, which may cancel
     bool crosses_a_knot = false;
 };
 
@@ -121,16 +124,22 @@ struct Change {
 Change change_by(const Model& model, const Branch& branch, const Displaced& at, const Model& rate,
                  const VectorXd& x, const VectorXd& lambda) {
     const NumberRate number = number_rate(model, branch, rate, at.tangent, at.parts);
-    Change change{number.b, number.Phi_rate, {}};
+    Change change{number.b, number.Phi_rate, number.rounding / rounding_of_terms};
     const auto motion = [&](BodyId b) -> Vector6 {
         return b == ground ? Vector6(Vector6::Zero()) : Vector6(x.segment<6>(6 * b));
     };
     const auto add = [&](const PartCurvature& part, const Vector12& moved, Vector12 g) {
+        const Vector12 size = part.H.cwiseAbs() * moved.cwiseAbs() + g.cwiseAbs();
         for (const int end : {0, 6})
             g.segment<3>(end + 3) +=
                 0.5 * moved.segment<3>(end + 3).cross(part.g.segment<3>(end + 3));
-        if (part.i != ground) change.b.segment<6>(6 * part.i) += g.head<6>();
-        if (part.j != ground) change.b.segment<6>(6 * part.j) += g.tail<6>();
+        const auto add_end = [&](BodyId body, const auto& of_g, const auto& of_size) {
+            if (body == ground) return;
+            change.b.segment<6>(6 * body) += of_g;
+            change.size.segment<6>(6 * body) += of_size;
+        };
+        add_end(part.i, g.head<6>(), size.head<6>());
+        add_end(part.j, g.tail<6>(), size.tail<6>());
     };
     const auto moved = [&](const PartCurvature& part) {
         Vector12 both;
@@ -191,9 +200,9 @@ std::vector<Change> differences(const Model& model, const Branch& branch,
         const VectorXd near = (up.b - down.b) / (2 * h), far = (far_up.b - far_down.b) / (4 * h);
         result.b = (4 * near - far) / 3;
         result.Phi = (8 * (up.Phi - down.Phi) - (far_up.Phi - far_down.Phi)) / (12 * h);
-        result.size = up.b.cwiseAbs();
+        result.size = up.size;
         result.crosses_a_knot =
-            largest(near - far) > alike * largest(near) + 1e-11 / h * largest(up.b);
+            largest(near - far) > alike * largest(near) + rounding_of_terms / h * largest(up.size);
     }
     return all;
 }
@@ -234,7 +243,7 @@ ResponseRates response_rates(const Model& model, const Branch& branch, const Equ
             size = std::max(size, along.x.segment<3>(b).norm());
         const Prescribed rate = rate_of(model, disturbances[t]);
         std::vector<Change> changes;
-        double h = size > 0 ? difference / size : 1;
+        double h = size > 0 ? std::min(difference / size, longest) : longest;
         for (int shorter = 0; shorter <= most_shorter; ++shorter, h /= 30) {
             changes = differences(model, branch, tangent, along, rate, rates, by_number, h);
             if (std::ranges::none_of(changes, &Change::crosses_a_knot)) break;
@@ -245,7 +254,7 @@ ResponseRates response_rates(const Model& model, const Branch& branch, const Equ
             const Change& change = changes[p];
             const Answer answered =
                 answer(tangent, change.b, change.Phi.isZero(0) ? VectorXd() : change.Phi,
-                       1e-11 / h * change.size);
+                       rounding_of_terms / h * change.size);
             if (answered.outcome != Outcome::converged) {
                 result = {answered.outcome, answered.what, {}};
                 continue;

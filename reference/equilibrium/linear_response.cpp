@@ -123,7 +123,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
 ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,
                              std::span<const Disturbance> disturbances,
                              std::span<const Model> rates) {
-    constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
+    constexpr double rounding_of_terms = 64 * std::numeric_limits<double>::epsilon();
     const StateTangent tangent = tangent_at(model, branch, state);
     const System& system = tangent.system;
     Responses base = responses(tangent, branch, state.load, disturbances);
@@ -134,7 +134,7 @@ ResponseRates response_rates(const Model& model, const Branch& branch, const Equ
     for (const Model& rate : rates) {
         ResponseRate& by = all.by.emplace_back();
         const NumberRate number = number_rate(system, rate, state.load, tangent.x);
-        const double rounding = last_digits * largest_entry(tangent.at.J) * number.motion;
+        const double rounding = rounding_of_terms * largest_entry(tangent.at.J) * number.motion;
         const auto answered = [&](const Eigen::VectorXd& E_rate, double rounding_of) {
             const Answered one = answer_to(tangent, E_rate, rounding_of);
             if (one.outcome != Outcome::converged) by = {one.outcome, one.what, {}};
@@ -148,7 +148,8 @@ ResponseRates response_rates(const Model& model, const Branch& branch, const Equ
         add_turning_wrenches(system, tangent.x, dx, disturbances, E_rate);
         for (Eigen::Index t = 0; t < to.X.cols() && by.outcome == Outcome::converged; ++t) {
             // The parts of a change that cancel may be as large as D dx.
-            const double size = last_digits * D[static_cast<std::size_t>(t)].cwiseAbs().maxCoeff() *
+            const double size = rounding_of_terms *
+                                D[static_cast<std::size_t>(t)].cwiseAbs().maxCoeff() *
                                 (dx.norm() + number.motion);
             const Eigen::VectorXd step = answered(E_rate.col(t), rounding + size);
             if (by.outcome == Outcome::converged)
