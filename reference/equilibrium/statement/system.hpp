@@ -221,6 +221,10 @@ template <class Source>
 concept AddsOffsets = requires(const Source& source) {
     source.offset(std::size_t{});
 };
+template <class Source>
+concept HasOneOfOneBody = requires(const Source& source) {
+    source.of_one_body();
+};
 template <class T, class Source, class Sink>
 void assemble(const System& system, const T& a, const T& held, const Pieces& pieces,
               const Source& source, Sink& sink) {
@@ -247,7 +251,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         if (!wants(source, Term::element, e)) continue;
         const auto [i, j] = bodies_of(model.elastics[e].kind);
         const Part part{.i = i, .j = j, .term = Term::element, .number = e};
-        if constexpr (requires { source.of_one_body(); })
+        if constexpr (HasOneOfOneBody<Source>)
             if (i == ground || j == ground) {
                 const auto one = source.of_one_body();
                 add_element(part, one, one.narrowed(a), one.narrowed(held));
