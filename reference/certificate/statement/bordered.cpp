@@ -390,7 +390,7 @@ MatrixXd inverse(const MatrixXd& J) { return inverted(J).Y; }
 // also ends in small steps, at coordinates of 1e7 and more. The last two steps share an inverse, unless they do
 // not decrease: then a knot may lie between, and the inverse belong to its other side. Near a limit
 // point this is rounding.
-Approximate newton(const Problem& problem, const VectorXd& from, double a, double least_rcond) {
+Approximate newton(const Problem& problem, const VectorXd& from, double a) {
     constexpr int most = 12, last = 2, most_anew = 3;
     constexpr double close = 1e-7, near = 1;  // relative to the model's size
     const double rounding = problem.system.apart.empty() ? 1e-13 : 1e-15;
@@ -412,7 +412,6 @@ Approximate newton(const Problem& problem, const VectorXd& from, double a, doubl
         if (!share) {
             Inverted inverse = inverted(square(of.J, problem.size()));
             at.Y = std::move(inverse.Y), at.rcond = inverse.rcond, at.since = 0;
-            if (!(at.rcond > least_rcond)) return {at.y, at.Y, false};
         }
         const VectorXd dy = -at.Y * Eigen::Map<const VectorXd>(of.E.data(), problem.size());
         if (!dy.allFinite()) return {at.y, at.Y, false};
@@ -442,16 +441,11 @@ Worth worth(const Problem& problem, const VectorXd& y, double a) {
 Approach approach(const System& system, const VectorXd& z, double a) {
     const double rounding = rounding_is_nothing(system);
     const auto from = [&](const VectorXd& start, double nothing) {
-        // Where the inverse in Newton's method shows that J is regular, there is no border.
-        const Border none{MatrixXd(system.n(), 0), MatrixXd(system.n(), 0)};
-        Problem problem{system, none, z, false, {}, {}};
-        Approximate found = newton(problem, start, a, surely_regular * nothing);
-        if (!(found.rcond > 0)) {
-            problem.border = border_at(system, start, a, nothing);
-            VectorXd y = VectorXd::Zero(problem.size());
-            y.head(system.n()) = start;
-            found = newton(problem, y, a);
-        }
+        Problem problem{system, border_at(system, start, a, nothing), z, false, {}, {}};
+        VectorXd y = VectorXd::Zero(problem.size());
+        y.head(system.n()) = start;
+        Approximate found = newton(problem, y, a);
+        // Without a border the inverse shows that J is regular, also after the steps since.
         Worth there;
         if (found.settled && found.y.allFinite())
             there = problem.border.count() == 0 &&

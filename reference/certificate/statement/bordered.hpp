@@ -78,9 +78,7 @@ struct Approximate {
     double rcond = 0;  // of the equilibrated Jacobian that Y inverts; 0 where there is no solution
     double since = 0;  // movement since, relative to the model's size
 };
-// Gives up where a reciprocal condition number is not above `least_rcond`.
-Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a,
-                   double least_rcond = 0);
+Approximate newton(const Problem& problem, const Eigen::VectorXd& y, double a);
 
 // Validity of a border at y. `sound`: all its motions and rows are structurally idle or redundant
 // there, no idle motion is loaded (`pushed`) and no redundant row has a gap (`open`) beyond
