@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace elastocheck::compare {
@@ -39,8 +40,11 @@ std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> cha
 }
 
 bool reaches(const std::vector<double>& over, double x) {
-    return !over.empty() && x >= std::min(over.front(), over.back()) &&
-           x <= std::max(over.front(), over.back());
+    if (over.empty()) return false;
+    // A driven end, and the start of a branch, have this value in every leg up to rounding.
+    const double rounding = 1e-9 * std::abs(over.back() - over.front());
+    return x >= std::min(over.front(), over.back()) - rounding &&
+           x <= std::max(over.front(), over.back()) + rounding;
 }
 
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,

@@ -24,7 +24,7 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
 // Values of a leg that place points: its parameter, or a channel; empty where the channel is not
 // monotonic.
 std::vector<double> placed_by(const Curve& curve, std::optional<std::size_t> channel);
-// Whether x lies within the range of a monotonic sequence.
+// Whether x lies within the range of a monotonic sequence, up to 1e-9 of it.
 bool reaches(const std::vector<double>& over, double x);
 
 }  // namespace elastocheck::compare

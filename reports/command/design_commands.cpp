@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/design/confirm.hpp"
 #include "compare/design/fit.hpp"
 #include "compare/design/solve_for.hpp"
 #include "reports/command/delivery.hpp"
@@ -45,34 +46,6 @@ struct SolveForRequest {
     Running running;
     bool as_json = false;
 };
-
-// The legs differ by at most this, as a share of the movement of the figure over the ranges.
-constexpr double legs_agree = 1e-6;
-
-// The figures at the result by the energy leg and by the series.
-void confirm(SolvedFor& solved, const Scene& scene, const std::vector<compare::Figure>& figures) {
-    int judges = 0;
-    std::string& why = solved.not_confirmed;
-    for (const auto leg : {compare::Leg::energy, compare::Leg::series}) {
-        const auto found = compare::figure_values(scene, figures, leg);
-        for (std::size_t k = 0; k < figures.size(); ++k) {
-            const double value = found.value[static_cast<Index>(k)];
-            WishRow& row = solved.rows[k];
-            (leg == compare::Leg::energy ? row.energy : row.series) = value;
-            const double apart = std::abs(value - row.after);
-            if (!found.not_applicable && why.empty() && std::isfinite(value) &&
-                !(apart <= legs_agree * solved.solution.movement[static_cast<Index>(k)]))
-                why = fmt::format("{}: the {} differs by {:.2g} {}", row.output,
-                                  leg == compare::Leg::energy ? "energy leg" : "series", apart,
-                                  row.unit);
-        }
-        if (found.not_applicable) continue;
-        ++judges;
-        if (why.empty()) why = found.why_not;
-    }
-    if (why.empty() && judges == 0) why = "no other leg applies to the scene";
-    solved.confirmed = why.empty();
-}
 
 // Exit code 0: the wishes are met and confirmed; 1: they cannot be met; 3: a leg has no values or
 // does not confirm them.
@@ -129,7 +102,15 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
                                .before = solution.before[i],
                                .after = solution.after[i]});
     }
-    confirm(solved, scene(solution.p), figures);
+    std::vector<std::string> units;
+    for (const WishRow& row : solved.rows) units.push_back(row.unit);
+    const compare::Confirmation by =
+        compare::confirm(scene(solution.p), figures, units, solution.after, solution.movement);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const auto i = static_cast<Index>(k);
+        solved.rows[k].energy = by.energy[i], solved.rows[k].series = by.series[i];
+    }
+    solved.confirmed = by.confirmed, solved.not_confirmed = by.why_not;
     delivery.print_text(solve_for_text(solved));
     if (!request.output.empty()) {
         write_changed_scene(request.scene, request.output,

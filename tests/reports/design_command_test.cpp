@@ -1,4 +1,4 @@
-// The commands solve-for, fit and tolerances.
+// The commands solve-for, optimise, fit and tolerances.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -97,6 +97,136 @@ TEST(SolveForCommand, DoesNotOverwriteAFileOfAnother) {
         " --vary springs.first.rate=10:60 --want centre_z@up:3000=437.5 -o " + mine);
     EXPECT_NE(said.code, 0);
     EXPECT_EQ(text_of(mine), "elastocheck: 1\n");
+}
+
+// ---- optimise
+
+// Two upright springs: z = 400 + F / (k_1 + k_2) mm. z ≤ 437.5 over the branch asks for k_1 + k_2 ≥
+// 80 at its end alone; the smallest change of 30 and 45 over equal ranges is 2.5 each, a change of
+// √2 2.5 / 50 of the ranges. 1 mm more needs 80 - 77.92 less.
+TEST(OptimiseCommand, WritesTheSceneThatKeepsACurveWithinItsBand) {
+    const Folder folder;
+    const std::string goals = folder.write(
+        "goals.yaml",
+        "vary:\n"
+        "  springs.first.rate: [10, 60]\n"
+        "  springs.second.rate: [20, 70]\n"
+        "goals:\n"
+        "  - {figure: centre_z, branch: up, from: 0, to: 3000, points: 9, at_most: "
+        "437.5}\n"
+        "  - {figure: centre_x, branch: up, from: 0, to: 3000, points: 3, within: [-1, "
+        "1]}\n");
+    const std::string file = (folder.path / "new.yaml").string();
+    const std::string line = "optimise " + springs + " " + goals + " --quiet";
+    expect_says(
+        line + " -o " + file, 0,
+        {.out = {"4 of 4 starts end within the bands.",
+                 "The bands are met with a change of 7.07 % of the ranges",
+                 "centre_z <= 437.5 mm at up = 3000 N: relaxing it by 0.1 mm reduces the "
+                 "change by 0.302 % of the ranges",
+                 "centre_x at up from 0 to 3000 N: within its band, but none of the numbers "
+                 "moves it",
+                 "springs.first.rate: it moves centre_z, for example, and not centre_x",
+                 "confirm the values", "Proved: all "},
+         .err = {"Written: "}});
+    const std::string text = text_of(file);
+    EXPECT_TRUE(text.starts_with("# Changed by elastocheck optimise: "));
+    EXPECT_TRUE(contains(text, "# springs.first.rate was 30"));
+    const Said said = expect_says(line + " --json", 0);
+    const json result = json::parse(said.out);
+    EXPECT_EQ(result["schema"], "elastocheck/optimise/1");
+    EXPECT_NEAR(result["numbers"]["rows"][0][3].get<double>(), 32.5, 1e-4);
+    EXPECT_NEAR(result["numbers"]["rows"][1][3].get<double>(), 47.5, 1e-4);
+    ASSERT_EQ(result["prices"]["rows"].size(), 1u);
+    EXPECT_EQ(expect_says(line + " --json --jobs 1", 0).out.size(), said.out.size());
+}
+
+// The least k_1 + k_2 with z ≤ 440 is 75 again; with z ≤ 437.5 at the limit of the second it is all
+// in the first.
+TEST(OptimiseCommand, MinimisesAFigureAndNamesAConflict) {
+    const Folder folder;
+    const std::string vary =
+        "vary: {springs.first.rate: [10, 60], springs.second.rate: [20, 46]}\n";
+    const auto run = [&](const std::string& goals, int code, const Parts& parts) {
+        expect_says("optimise " + springs + " " + folder.write("goals.yaml", vary + goals) +
+                        " --starts 2 --quiet",
+                    code, parts);
+    };
+    run("goals: [{figure: centre_z@up:3000, at_most: 437.5}]\nminimise: centre_z@down:-3000\n", 0,
+        {.out = {"centre_z at down = -3000 N: 362.5 mm from 360", "lowers centre_z at down"}});
+    run("goals: [{figure: centre_z@up:3000, at_most: 425}]\n", 1,
+        {.out = {"The bands cannot be met; these numbers come nearest.",
+                 "Out of reach: centre_z <= 425 mm at up = 3000 N.",
+                 "springs.first.rate above 60; springs.second.rate above 46"}});
+    run("goals:\n"
+        "  - {figure: centre_z@up:3000, at_most: 437.5}\n"
+        "  - {figure: centre_z@up:1500, at_least: 421}\n",
+        1,
+        {.out = {"In conflict: centre_z <= 437.5 mm at up = 3000 N; centre_z >= 421 mm at up = "
+                 "1500 N.",
+                 "No limit of a number causes this"}});
+}
+
+// Over travel a curve lies on both branches; between its points it stays within its band, too.
+TEST(OptimiseCommand, KeepsToeOfAStrutWithinABandOverItsTravel) {
+    const Folder folder;
+    const std::string goals =
+        folder.write("goals.yaml",
+                     "vary: {points.tie_rod_inner.z: [-0.05, 0.02]}\n"
+                     "goals:\n"
+                     "  - {figure: toe, over: travel, from: -80, to: 80, points: 5, within: [-0.1, "
+                     "0.1]}\n");
+    const Said said =
+        expect_says("optimise " + strut + " " + goals + " --starts 1 --quiet --json", 0);
+    const json result = json::parse(said.out);
+    EXPECT_EQ(result["met"], true);
+    EXPECT_EQ(result["confirmed"], true);
+    EXPECT_EQ(result["prices"]["rows"][0][0], "toe <= 0.1 deg at travel = -80 mm");
+    EXPECT_NEAR(result["numbers"]["rows"][0][3].get<double>(), -0.0125, 1e-4);
+    EXPECT_FALSE(result.contains("between"));
+}
+
+TEST(OptimiseCommand, RefusesAMistakeWithItsLine) {
+    const Folder folder;
+    const std::string vary = "vary: {springs.first.rate: [10, 60]}\n";
+    const auto complaint = [&](const std::string& text, const std::string& where,
+                               const std::string& part) {
+        expect_says("optimise " + springs + " " + folder.write("goals.yaml", text) + " --quiet", 2,
+                    {.err = {"goals.yaml:" + where, part}});
+    };
+    complaint("vary: {springs.frist.rate: [10, 60]}\n", "1: vary.springs.frist.rate: ",
+              "the scene has no number 'springs.frist.rate', did you mean 'springs.first.rate'?");
+    complaint("vary:\n  springs.first.rate: [60, 10]\n", "2: ", "not below the upper");
+    complaint("vary:\n  springs.first.rate: [40, 60]\n", "2: ", "is 30 in the scene");
+    complaint("vary:\n  springs.first.rate: 40\n", "2: ", "expected a list of 2 limits");
+    complaint(vary, "1: ", "neither goals nor a figure");
+    complaint("goals: []\n", "1: vary: ", "missing");
+    complaint(vary + "goals:\n  - {figure: center_z, within: [1, 2]}\n",
+              "3: goals.figure: ", "the scene has no output 'center_z', did you mean 'centre_z'?");
+    complaint(vary + "goals:\n  - {figure: centre_z@upp:3, within: [1, 2]}\n",
+              "3: ", "the scene has no branch 'upp', did you mean 'up'?");
+    complaint(vary + "goals:\n  - {figure: centre_z@up:4000, within: [1, 2]}\n",
+              "3: ", "branch 'up' goes from 0 to 3000 N");
+    complaint(vary + "goals:\n  - {figure: centre_z, witin: [1, 2]}\n",
+              "3: ", "unknown field 'witin', did you mean 'within'?");
+    complaint(vary + "goals:\n  - {figure: centre_z}\n", "3: ", "allowed: either within");
+    complaint(vary + "goals:\n  - {figure: centre_z, within: [1, 2], at_most: 3}\n",
+              "3: ", "allowed: either within");
+    complaint(vary + "goals:\n  - {figure: centre_z, within: [2, 1]}\n",
+              "3: ", "not below the upper");
+    complaint(vary + "goals:\n  - {figure: centre_z, within: [1, 2], branch: up}\n",
+              "3: ", "only of a curve");
+    complaint(vary + "goals:\n  - {figure: centre_z, within: [1, 2], from: 3}\n", "3: ", "missing");
+    complaint(vary +
+                  "goals:\n  - {figure: centre_x, over: centre_z, from: 0, to: 500, within: [1, "
+                  "2]}\n",
+              "3: ", "no branch reaches centre_z = 0");
+    complaint(vary + "minimise: center_z\n", "2: minimise: ", "did you mean 'centre_z'");
+    // What no number moves: with the reason.
+    complaint(vary + "goals:\n  - {figure: centre_x@up:3000, within: [3, 4]}\n",
+              "3: goals: ", "springs.first.rate: it moves centre_z, for example, and not centre_x");
+    complaint(vary + "minimise: centre_x@up:3000\n",
+              "2: minimise: ", "none of the numbers moves it");
 }
 
 // ---- fit

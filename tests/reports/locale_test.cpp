@@ -92,6 +92,11 @@ const Line lines[] = {
     {"solve-for",
      "$E solve-for $SCENES/parallel_springs.yaml --vary springs.first.rate=10.5:60.5 --want "
      "centre_z@up:1500.5=419.5 -o new.yaml --quiet"},
+    {"optimise",
+     "printf 'vary: {springs.first.rate: [10.5, 60.5]}\\ngoals: [{figure: centre_z@up:1500.5, "
+     "at_most: 419.5}]\\n' > g.yaml && $E optimise $SCENES/parallel_springs.yaml g.yaml -o "
+     "new.yaml "
+     "--quiet"},
     {"fit",
      "$E solve $SCENES/parallel_springs.yaml --steps 4 --channels centre_z -o rig.csv && $E fit "
      "$SCENES/parallel_springs.yaml --measured rig.csv --vary springs.first.rate=10.5:60.5 --quiet "

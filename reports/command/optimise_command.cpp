@@ -1,0 +1,224 @@
+// `elastocheck optimise`: numbers of a scene with which figures and curves stay within bands.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "compare/design/confirm.hpp"
+#include "compare/design/optimise.hpp"
+#include "compare/proofs/certify.hpp"
+#include "models/reader/document/yaml.hpp"
+#include "reports/command/delivery.hpp"
+#include "reports/command/grammar/command.hpp"
+#include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/design_options.hpp"
+#include "reports/command/options/goals_file.hpp"
+#include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
+#include "reports/files/files.hpp"
+#include "reports/files/terminal.hpp"
+#include "reports/tables/studies/optimise_tables.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// Points that are added where a curve leaves its band between its points, and the search repeated.
+constexpr int most_rounds = 3;
+constexpr double between_within = 1e-6;  // outside of a band, as a share of the movement
+
+struct OptimiseRequest {
+    std::string scene, file, output;
+    Settings settings;
+    int starts = 4;
+    Running running;
+    bool as_json = false;
+};
+
+// The points of the curves between theirs at which they are furthest outside of their bands, one a
+// gap; each curve of which any is, receives them.
+std::optional<Between> add_points_outside(const Scene& scene, const VectorXd& scale,
+                                          std::vector<Goal>& goals, bool add) {
+    std::optional<Between> worst;
+    Index first = 0;
+    for (Goal& goal : goals) {
+        const double within = between_within * scale[first];
+        first += static_cast<Index>(goal.points.size());
+        if (goal.points.size() < 2) continue;
+        const auto candidates = points_between(goal);
+        std::vector<compare::Figure> figures;
+        for (const GoalPoint& point : candidates) figures.push_back(point.figure);
+        const VectorXd values =
+            compare::figure_values(scene, figures, compare::Leg::equilibrium).value;
+        std::vector<GoalPoint> added;
+        const std::size_t in_gap = candidates.size() / (goal.points.size() - 1);
+        for (std::size_t k = 0; k < candidates.size(); k += in_gap) {
+            double most = within;
+            std::size_t at = k + in_gap;
+            for (std::size_t i = k; i < k + in_gap; ++i) {
+                const double value = values[static_cast<Index>(i)];
+                const double excess = std::max(goal.low - value, value - goal.high);
+                if (!(excess <= most)) most = excess, at = i;
+            }
+            if (at == k + in_gap) continue;
+            added.push_back(candidates[at]);
+            if (!worst || !(most <= worst->excess))
+                worst = Between{most, goal.output + " at " + candidates[at].place};
+        }
+        if (!add) continue;
+        std::ranges::copy(added, std::back_inserter(goal.points));
+        std::ranges::stable_sort(goal.points, {},
+                                 [](const GoalPoint& point) { return point.figure.at; });
+    }
+    return worst;
+}
+
+// Interval proofs of the equilibrium leg's states on the branches of the goals.
+compare::CertifyStudy certificate(const Scene& scene, const std::vector<compare::Figure>& figures,
+                                  int threads) {
+    Model model = compile(compare::trim(scene).scene);
+    std::erase_if(model.branches, [&](const Branch& branch) {
+        return std::ranges::find(figures, branch.name, &compare::Figure::branch) == figures.end();
+    });
+    return compare::certify(model, {.solvers = {{.leg = compare::Leg::equilibrium}},
+                                    .tolerance = compare::claim(compare::claimed_accuracy),
+                                    .threads = threads,
+                                    .progress = progress});
+}
+
+// Exit code 0: the bands are met at the least cost that was found, confirmed and proved; 1: they
+// cannot be met; 3: a figure has no value, or the result is not confirmed, not proved or not
+// converged.
+int optimise(const OptimiseRequest& request, const Delivery& delivery) {
+    if (!request.output.empty()) check_may_write_scene(request.output);
+    const LoadedScene loaded = load_scene(request.scene, request.settings);
+    GoalsFile file = read_goals(read_whole(request.file, largest_baseline), request.file,
+                                loaded.scene, loaded.model);
+    const Varied& varied = file.varied;
+    const auto scene = scene_at(request.scene, request.settings, varied.numbers);
+    const int threads = threads_of(request.running);
+    GoalFigures all = figures_of(file);
+    const auto search = [&](const std::vector<VectorXd>& starts) {
+        return compare::optimise(
+            compare::differenced_figures(scene, all.figures, varied.numbers, threads), all.goals,
+            starts, progress);
+    };
+    const auto starts = compare::starts_of(all.goals, request.starts);
+    compare::Optimum optimum = search(starts);
+    if (!optimum.before.allFinite() || !optimum.gradient.rate.allFinite()) {
+        progress("");
+        const auto why =
+            compare::figure_values(loaded.scene, all.figures, compare::Leg::equilibrium).why_not;
+        print_error("{}\n",
+                    why.empty()
+                        ? "no rate at the start: a figure has no value at a slightly changed number"
+                        : "no value at the start: " + why);
+        return could_not_judge;
+    }
+    // A goal that does not move is refused, unless it is met.
+    for (std::size_t g = 0; g < optimum.still.size(); ++g) {
+        if (!optimum.still[g]) continue;
+        bool met = g < file.goals.size();
+        std::size_t last = 0;
+        for (std::size_t k = 0; k < all.goals.goal.size(); ++k) {
+            if (all.goals.goal[k] != static_cast<int>(g)) continue;
+            const auto i = static_cast<Index>(k);
+            met = met && optimum.before[i] >= all.goals.low[i] &&
+                  optimum.before[i] <= all.goals.high[i];
+            last = k;
+        }
+        const std::string reasons = fmt::format(
+            "{}",
+            fmt::join(compare::why_still(scene, all.figures[last], varied.numbers, varied.start),
+                      "\n  "));
+        const bool is_goal = g < file.goals.size();
+        if (!met)
+            reader::fail(request.file, is_goal ? file.goals[g].line : file.minimised_line,
+                         is_goal ? "goals" : "minimise",
+                         fmt::format("{}: none of the numbers moves it:\n  {}",
+                                     all.figures[last].name, reasons));
+        file.goals[g].not_moved = reasons;
+    }
+    const auto searches = optimum.searches;
+    std::optional<Between> between;
+    for (int round = 0; optimum.met; ++round) {
+        const bool again = round < most_rounds;
+        between = add_points_outside(scene(optimum.p), optimum.scale, file.goals, again);
+        if (!between || !again) break;
+        all = figures_of(file);
+        compare::Optimum next = search({optimum.p});
+        if (!next.met) next = search(starts);
+        optimum = std::move(next);
+    }
+    OptimisedScene result{.numbers = varied.numbers,
+                          .goals = file.goals,
+                          .minimised = {},
+                          .minimised_unit = {},
+                          .limits = all.goals,
+                          .optimum = std::move(optimum),
+                          .searches = searches,
+                          .confirmation = {},
+                          .between = between,
+                          .certificate = {}};
+    std::vector<std::string> units;
+    for (const Goal& goal : file.goals) units.insert(units.end(), goal.points.size(), goal.unit);
+    if (file.minimised) {
+        result.minimised = file.minimised->figure.name + " at " + file.minimised->place;
+        result.minimised_unit = symbol(file.minimised->output.unit);
+        units.push_back(result.minimised_unit);
+    }
+    const Scene changed = scene(result.optimum.p);
+    result.confirmation =
+        compare::confirm(changed, all.figures, units, result.optimum.after, result.optimum.scale);
+    if (result.optimum.met) result.certificate = certificate(changed, all.figures, threads);
+    progress("");
+    delivery.print_text(optimise_text(result));
+    if (!request.output.empty()) {
+        write_changed_scene(
+            request.scene, request.output,
+            fmt::format("optimise: {}{}", result.optimum.met ? "" : "nearest to ", request.file),
+            request.settings, varied, result.optimum.p);
+        print_error("Written: {}\n", request.output);
+    }
+    if (delivery.as_json) {
+        nlohmann::ordered_json document = document_head(optimise_schema, delivery.command);
+        document.update(optimise_json(result));
+        print_document(document);
+    }
+    if (!result.confirmation.confirmed) return could_not_judge;
+    if (!result.optimum.met) return limit_broken;
+    return result.optimum.converged && result.certificate->conclusive() ? fine : could_not_judge;
+}
+
+}  // namespace
+
+Command optimise_command() {
+    const auto request = std::make_shared<OptimiseRequest>();
+    return {"optimise",
+            "Change numbers of a scene within limits so that figures and curves stay within bands, "
+            "with the smallest change or the least value of a figure; the prices of the bounds "
+            "that hold, and proofs of the result",
+            {scene_option(request->scene),
+             {"GOALS", Text{&request->file, a_file("*.yaml")},
+              "file with the numbers, their limits and the bands, such as vary: "
+              "{points.tie_rod_inner.z: [260, 340]} and goals: [{figure: toe, over: travel, from: "
+              "-80, to: 80, within: [-0.1, 0.1]}]",
+              true},
+             {"--starts", Integer{&request->starts, 1, 1000},
+              "points to search from: the scene, and others within the limits, the same on every "
+              "run (default: 4)"},
+             {"-o,--output", Text{&request->output, a_file("*.yaml")},
+              "write the scene with the changed numbers; the old ones are in comments"},
+             set_option(request->settings),
+             jobs_option(request->running),
+             quiet_option(request->running),
+             json_option(request->as_json)},
+            [request](const std::string& line) {
+                return optimise(*request, {.as_json = request->as_json, .command = line});
+            }};
+}
+
+}  // namespace elastocheck::reports
