@@ -20,6 +20,10 @@ constexpr double least_singular = 1e-6;  // of the largest: below, a combination
 constexpr double least_part = 1e-3;      // of a number in an undetermined combination
 constexpr double least_noise = 1e-9;     // of the range of a column: exact data
 constexpr int reweighted = 2;
+constexpr int most_robust_passes = 60;
+constexpr double numbers_stay = 1e-6;     // in steps, from one robust pass to the next
+constexpr double cauchy_width = 2.385;    // c
+constexpr double normal_median = 1.4826;  // standard deviation over median |.|
 
 std::vector<double> sums(const VectorXd& squares, const std::vector<int>& column) {
     std::vector<double> sum(static_cast<std::size_t>(*std::ranges::max_element(column)) + 1, 0);
@@ -38,6 +42,49 @@ std::vector<double> ranges(const Measured& measured, const std::vector<double>& 
     for (std::size_t c = 0; c < low.size(); ++c)
         low[c] = high[c] > low[c] ? high[c] - low[c] : std::max(std::abs(high[c]), 1.0);
     return low;
+}
+
+double median_of(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    if (values.size() % 2 == 1) return *middle;
+    return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+// s_c of the columns; `share` of the values are free, 1 - n/N.
+std::vector<double> noise_of(const VectorXd& residual, const Measured& measured,
+                             const std::vector<double>& counts, double share) {
+    std::vector<double> noise(counts.size());
+    if (measured.robust) {
+        std::vector<std::vector<double>> sizes(counts.size());
+        for (std::size_t k = 0; k < measured.column.size(); ++k)
+            sizes[static_cast<std::size_t>(measured.column[k])].push_back(
+                std::abs(residual[static_cast<Index>(k)]));
+        for (std::size_t c = 0; c < counts.size(); ++c)
+            noise[c] = normal_median * median_of(sizes[c]) / std::sqrt(share);
+        return noise;
+    }
+    const auto squares = sums(residual.cwiseAbs2(), measured.column);
+    for (std::size_t c = 0; c < counts.size(); ++c)
+        noise[c] = std::sqrt(squares[c] / (share * counts[c]));
+    return noise;
+}
+
+// √(ψ(u) / u) per value; without the robust loss one.
+VectorXd loss_weights(const VectorXd& u, bool robust) {
+    if (!robust) return VectorXd::Ones(u.size());
+    return (1 + (u / cauchy_width).array().square()).rsqrt();
+}
+
+// Factor of the covariance of a robust fit; NaN where the loss does not determine the numbers.
+double robust_factor(const VectorXd& u, Index n) {
+    const double N = static_cast<double>(u.size());
+    const Eigen::ArrayXd v = (u / cauchy_width).array().square();
+    const Eigen::ArrayXd psi = u.array() / (1 + v), slope = (1 - v) / (1 + v).square();
+    const double mean = slope.mean(), variance = (slope - mean).square().mean();
+    if (!(mean > 0)) return std::numeric_limits<double>::quiet_NaN();
+    const double K = 1 + static_cast<double>(n) / N * variance / (mean * mean);
+    return K * K * psi.square().sum() / (N - static_cast<double>(n)) / (mean * mean);
 }
 
 }  // namespace
@@ -86,14 +133,16 @@ Fitted fit(const Figures& figures, const Measured& measured) {
         found.rms_before.push_back(std::sqrt(rms[c] / counts[c]));
 
     found.noise = range;
-    VectorXd weight(N);
+    const auto noise_at = [&](Index k) {
+        return found.noise[static_cast<std::size_t>(measured.column[static_cast<std::size_t>(k)])];
+    };
+    VectorXd weight(N), loss = VectorXd::Ones(N), residual(N), u(N);
     Minimum nearest;
     Index determined = n;
-    for (int pass = 0; pass <= reweighted; ++pass) {
-        for (Index k = 0; k < N; ++k)
-            weight[k] =
-                1 /
-                found.noise[static_cast<std::size_t>(measured.column[static_cast<std::size_t>(k)])];
+    bool stays = !measured.robust;
+    const int passes = measured.robust ? most_robust_passes : reweighted;
+    for (int pass = 0; pass <= passes; ++pass) {
+        for (Index k = 0; k < N; ++k) weight[k] = loss[k] / noise_at(k);
         const LeastSquares problem{
             [&](const VectorXd& at) -> VectorXd {
                 return (figures.value(number_at(at)) - measured.value).cwiseProduct(weight);
@@ -102,21 +151,35 @@ Fitted fit(const Figures& figures, const Measured& measured) {
                 return weight.asDiagonal() * figures.gradient(number_at(at)).rate *
                        measured.step.asDiagonal();
             }};
+        const VectorXd before_pass = x;
         nearest = minimise(problem, x, box);
         x = nearest.x;
         found.iterations += nearest.iterations;
-        found.calculated = nearest.residual.cwiseQuotient(weight) + measured.value;
-        const auto squares = sums((found.calculated - measured.value).cwiseAbs2(), measured.column);
+        residual = nearest.residual.cwiseQuotient(weight);
+        found.calculated = residual + measured.value;
         const double share = 1 - static_cast<double>(n) / static_cast<double>(N);
         found.freedom = static_cast<int>(share * *std::ranges::min_element(counts));
         if (N <= n) break;
-        for (std::size_t c = 0; c < counts.size(); ++c) {
-            const double free = share * counts[c];
-            found.noise[c] = std::max(std::sqrt(squares[c] / free), least_noise * range[c]);
+        if (measured.robust && pass > reweighted &&
+            (x - before_pass).cwiseAbs().maxCoeff() <= numbers_stay) {
+            stays = true;
+            break;
         }
+        found.noise = noise_of(residual, measured, counts, share);
+        for (std::size_t c = 0; c < counts.size(); ++c)
+            found.noise[c] = std::max(found.noise[c], least_noise * range[c]);
+        for (Index k = 0; k < N; ++k) u[k] = residual[k] / noise_at(k);
+        loss = loss_weights(u, measured.robust);
+    }
+    found.outliers.assign(counts.size(), 0);
+    for (Index k = 0; N > n && k < N; ++k) {
+        u[k] = residual[k] / noise_at(k);
+        if (std::abs(u[k]) > outlying)
+            ++found
+                  .outliers[static_cast<std::size_t>(measured.column[static_cast<std::size_t>(k)])];
     }
     found.p = number_at(x).cwiseMax(measured.low).cwiseMin(measured.high);
-    found.converged = nearest.converged;
+    found.converged = nearest.converged && (stays || N <= n);
     for (Index i = 0; i < n; ++i)
         found.at_limit.push_back(x[i] <= box.low[i] || x[i] >= box.high[i]);
     if (!nearest.jacobian.allFinite()) {
@@ -127,9 +190,7 @@ Fitted fit(const Figures& figures, const Measured& measured) {
 
     // The covariance, of the weights of the last residuals.
     const FigureGradient gradient = figures.gradient(found.p);
-    for (Index k = 0; k < N; ++k)
-        weight[k] =
-            1 / found.noise[static_cast<std::size_t>(measured.column[static_cast<std::size_t>(k)])];
+    for (Index k = 0; k < N; ++k) weight[k] = 1 / noise_at(k);
     const MatrixXd J = weight.asDiagonal() * gradient.rate * measured.step.asDiagonal(),
                    error = weight.asDiagonal() * gradient.error * measured.step.asDiagonal();
     const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
@@ -141,16 +202,40 @@ Fitted fit(const Figures& figures, const Measured& measured) {
     const MatrixXd V = svd.matrixV();
     found.undetermined = V.rightCols(n - determined);
     found.interval = VectorXd::Zero(n);
+    const double factor = measured.robust && found.freedom > 0 ? robust_factor(u, determined) : 1;
     for (Index i = 0; i < n; ++i) {
         double variance = 0;
         for (Index k = 0; k < determined; ++k) variance += std::pow(V(i, k) / S[k], 2);
         const bool open = found.undetermined.cols() > 0 &&
                           found.undetermined.row(i).cwiseAbs().maxCoeff() > least_part;
-        found.interval[i] = open || found.freedom < 1 ? unlimited
-                                                      : student_95(found.freedom) *
-                                                            std::sqrt(variance) * measured.step[i];
+        const bool none = open || found.freedom < 1 || !std::isfinite(factor);
+        found.interval[i] =
+            none ? unlimited
+                 : student_95(found.freedom) * std::sqrt(factor * variance) * measured.step[i];
     }
     return found;
+}
+
+std::vector<Proposal> proposals(const FigureGradient& gradient, const VectorXd& value,
+                                const VectorXd& extent, const VectorXd& step,
+                                const MatrixXd& undetermined) {
+    std::vector<Proposal> all;
+    for (Index k = 0; k < undetermined.cols(); ++k) {
+        const VectorXd change =
+            step.cwiseProduct(undetermined.col(k)) / undetermined.col(k).cwiseAbs().maxCoeff();
+        const VectorXd movement = gradient.rate * change,
+                       unsure = gradient.error * change.cwiseAbs();
+        Proposal best;
+        for (Index j = 0; j < movement.size(); ++j) {
+            const double size = std::abs(movement[j]), rounding = 1e-10 * (1 + std::abs(value[j]));
+            if (!std::isfinite(size) || !(extent[j] > rounding) ||
+                !(size > 3 * unsure[j] + rounding) || !(size / extent[j] > best.share))
+                continue;
+            best = {.figure = j, .movement = movement[j], .share = size / extent[j]};
+        }
+        all.push_back(best);
+    }
+    return all;
 }
 
 }  // namespace elastocheck::compare

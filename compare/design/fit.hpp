@@ -10,6 +10,17 @@
 // V S⁻² Vᵀ, and the intervals are ± t √C_ii, t of Student's distribution with the least number of
 // degrees of freedom of a column, N_c - n N_c / N.
 //
+// A robust fit gives gross outliers little weight. It minimises Cauchy's loss of u = (f - y) / s_c,
+//
+//   ρ(u) = c²/2 log(1 + (u/c)²),   c = 2.385 (95 % efficient on normal errors),
+//
+// by least squares with the weights ψ(u) / u = 1 / (1 + (u/c)²), ψ = ρ', repeated until the numbers
+// stay; s_c is 1.4826 median |f - y| of the column / √(1 - n/N), which half of the values may not
+// spoil. Its covariance is that of an M-estimate (Huber, Robust Statistics, 1981, section 7.6):
+// V S⁻² Vᵀ times
+//
+//   K² [Σ ψ² / (N - n)] / [mean ψ']²,   K = 1 + (n/N) var ψ' / [mean ψ']²
+//
 // A combination v_k of the numbers with S_k ≤ 1e-6 S_1, or within the error of J, is not determined
 // by the data: it keeps its start value, and a number with a part in it has no interval.
 #pragma once
@@ -28,6 +39,7 @@ struct Measured {
     Eigen::VectorXd start;      // per number, in its unit
     Eigen::VectorXd low, high;  // limits, infinite where there are none
     Eigen::VectorXd step;       // per number (step_of)
+    bool robust = false;
 };
 
 struct Fitted {
@@ -37,6 +49,7 @@ struct Fitted {
     Eigen::VectorXd calculated;       // figures at p
     std::vector<double> noise;        // s_c per column
     std::vector<double> rms_before;   // of f - y per column, at the start
+    std::vector<int> outliers;        // per column: values with |f - y| > outlying s_c
     std::vector<bool> at_limit;       // per number: its interval is not valid
     Eigen::VectorXd singular_values;  // S, in falling order
     // columns: the undetermined combinations, as changes of the numbers in steps
@@ -47,9 +60,26 @@ struct Fitted {
     std::string why_not = {};  // reason why there is no fit
 };
 
+inline constexpr double outlying = 4;
+
 // t with P(|T| ≤ t) = 0.95, of Student's distribution with this many degrees of freedom.
 double student_95(int freedom);
 
 Fitted fit(const Figures& figures, const Measured& measured);
+
+// A figure that tells an undetermined combination apart from its opposite.
+struct Proposal {
+    Eigen::Index figure = -1;  // -1: none moves with the combination, beyond the error of its rate
+    // of the figure, with the combination whose largest change is one step; in its unit
+    double movement = 0;
+    double share = 0;  // |movement| / extent
+};
+
+// Per undetermined combination (a column), of these figures the one whose gradient has the largest
+// component along it, as a share of the figure's extent. Figures without a rate, and those without
+// an extent, are left out.
+std::vector<Proposal> proposals(const FigureGradient& gradient, const Eigen::VectorXd& value,
+                                const Eigen::VectorXd& extent, const Eigen::VectorXd& step,
+                                const Eigen::MatrixXd& undetermined);
 
 }  // namespace elastocheck::compare

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "tests/reports/command.hpp"
 
@@ -275,9 +276,54 @@ TEST(FitCommand, NamesWhatTheDataDoNotDetermineWithExitCodeThree) {
     expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rate'", 3,
                 {.out = {"not determined",
                          "The data do not determine this change: "
-                         "springs.first.rate"}});
+                         "springs.first.rate",
+                         // forces of the springs, of which none was measured
+                         "which was not measured, tells it apart"}});
     expect_says("fit " + springs + " --measured " + csv + " --vary 'springs.*.rtae'", 2,
                 {.err = {"--vary: the scene has no number"}});
+}
+
+// The travel is driven and the links are rigid, so that its curves do not contain the rate of the
+// coil: a load that moves the wheel does.
+TEST(FitCommand, ProposesTheLoadCaseThatWouldDetermineANumber) {
+    const Folder folder;
+    const std::string wishbone = scenes + "/double_wishbone_rigid.yaml";
+    const auto lines = parts_of(
+        expect_says("solve " + wishbone + " --steps 4 --channels toe,camber", 0).out, '\n');
+    std::string rig = lines[0] + "\n";
+    for (const auto& line : lines)
+        if (line.starts_with("travel,")) rig += line + "\n";
+    const Said said =
+        expect_says("fit " + wishbone + " --measured " + folder.write("rig.csv", rig) +
+                        " --vary springs.coil.rate --json",
+                    3);
+    const json result = json::parse(said.out);
+    ASSERT_EQ(result["proposals"].size(), 1u);
+    const std::string at = result["proposals"][0]["at"];
+    EXPECT_TRUE(at.starts_with("lateral = ") || at.starts_with("vertical = ")) << at;
+    EXPECT_GT(result["proposals"][0]["share_of_extent"].get<double>(), 1e-3);
+}
+
+// One value in eight is 30 mm off.
+TEST(FitCommand, GivesGrossOutliersLittleWeightIfRobust) {
+    const Folder folder;
+    std::string rig = "branch,load_N,centre_z_mm\n";
+    for (int k = 1; k <= 24; ++k) {
+        const double z = 400 + 125.0 * k / 80 + (k % 8 == 3 ? 30 : 0) + (k % 2 == 0 ? 0.01 : -0.01);
+        rig += "up," + std::to_string(125 * k) + "," + std::to_string(z) + "\n";
+    }
+    const std::string line = "fit " + springs + " --measured " + folder.write("rig.csv", rig) +
+                             " --vary springs.first.rate --json";
+    const auto fitted = [&](const std::string& option) {
+        const json result = json::parse(expect_says(line + option, 0).out);
+        return std::pair(result["numbers"]["rows"][0], result["outputs"]["rows"][0]);
+    };
+    const auto [plain, outputs] = fitted("");
+    EXPECT_GT(std::abs(plain[3].get<double>() - 35), 3);
+    const auto [robust, marked] = fitted(" --robust");
+    EXPECT_NEAR(robust[3].get<double>(), 35, robust[5].get<double>());
+    EXPECT_LE(robust[5].get<double>(), 0.05);
+    EXPECT_EQ(marked[5].get<double>(), 3);
 }
 
 // ---- tolerances

@@ -144,14 +144,27 @@ Table columns_table(const FittedScene& fit) {
                  {"unit", "", "", true, words},
                  {"values", "", "", false, whole},
                  {"rms before", "", "of calculated less measured values", false, three},
-                 {"noise", "", "estimated standard deviation of the measurements", false, three}},
+                 {"noise", "", "estimated standard deviation of the measurements", false, three},
+                 {"outliers", "", "values with a residual of more than four times the noise", false,
+                  whole}},
                 {}};
     for (std::size_t c = 0; c < fit.columns.size(); ++c)
         table.rows.push_back(
             {fit.columns[c].name, std::string(symbol(fit.columns[c].unit)),
              static_cast<double>(std::ranges::count(fit.measured.column, static_cast<int>(c))),
-             fit.fitted.rms_before[c], fit.fitted.noise[c]});
+             fit.fitted.rms_before[c], fit.fitted.noise[c],
+             static_cast<double>(fit.fitted.outliers[c])});
     return table;
+}
+
+std::string proposal_text(const ProposedOutput& proposed) {
+    if (proposed.output.empty())
+        return "No output of the scene moves with it: no load case of its branches tells it apart.";
+    return fmt::format(
+        "{} at {}, which was not measured, tells it apart: the change moves it by {:.3g} {}, "
+        "{:.3g} "
+        "% of its extent.",
+        proposed.output, proposed.place, proposed.movement, proposed.unit, 100 * proposed.share);
 }
 
 double condition(const compare::Fitted& fitted) {
@@ -236,8 +249,9 @@ std::string fit_text(const FittedScene& fit) {
     if (fitted.freedom < 1)
         fmt::format_to(out, "Not more values than numbers: no interval can be given.\n");
     for (Index k = 0; k < fitted.undetermined.cols(); ++k)
-        fmt::format_to(out, "The data do not determine this change: {}\n",
-                       combination(fit, fitted.undetermined.col(k)));
+        fmt::format_to(out, "The data do not determine this change: {}\n  {}\n",
+                       combination(fit, fitted.undetermined.col(k)),
+                       proposal_text(fit.proposed[static_cast<std::size_t>(k)]));
     fmt::format_to(out, "Condition of the numbers, in steps of 1 mm or 1 %: {:.1e}\n",
                    condition(fitted));
     for (const auto& left : fit.left_out) fmt::format_to(out, "Left out: {}\n", left);
@@ -253,12 +267,25 @@ json fit_json(const FittedScene& fit) {
                                           fit.measured.step[static_cast<Index>(n)];
         undetermined.push_back(change);
     }
+    json proposals = json::array();
+    for (const ProposedOutput& one : fit.proposed) {
+        if (one.output.empty())
+            proposals.push_back(nullptr);
+        else
+            proposals.push_back({{"output", one.output},
+                                 {"unit", one.unit},
+                                 {"at", one.place},
+                                 {"movement", one.movement},
+                                 {"share_of_extent", one.share}});
+    }
     return {{"converged", fit.fitted.converged},
+            {"robust", fit.measured.robust},
             {"freedom", fit.fitted.freedom},
             {"condition", condition(fit.fitted)},
             {"numbers", table_json(fitted_table(fit))},
             {"outputs", table_json(columns_table(fit))},
             {"undetermined", undetermined},
+            {"proposals", proposals},
             {"left_out", fit.left_out}};
 }
 

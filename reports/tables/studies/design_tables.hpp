@@ -40,12 +40,18 @@ nlohmann::ordered_json solve_for_json(const SolvedFor& solved);
 
 // ---- fit
 
+// An output that was not measured and tells an undetermined combination apart.
+struct ProposedOutput {
+    std::string output, unit, place;  // without output: none moves with the combination
+    double movement = 0, share = 0;   // compare::Proposal
+};
 struct FittedScene {
     std::vector<Number> numbers;
     compare::Measured measured;
     std::vector<compare::Channel> columns;
     std::vector<std::string> left_out;
     compare::Fitted fitted;
+    std::vector<ProposedOutput> proposed = {};  // per undetermined combination
 };
 std::string fit_text(const FittedScene& fit);
 nlohmann::ordered_json fit_json(const FittedScene& fit);
