@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,7 +13,9 @@
 #include <vector>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/design/fit.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/read_scene.hpp"
 #include "elastocheck/trim.hpp"
 #include "models/compile/parts.hpp"
 #include "tests/engines/simbody/engine.hpp"
@@ -287,6 +290,74 @@ TEST(SimbodyCandidate, TellsEveryBodyAtEveryStepFromEndToEnd) {
         const auto asked = compare::requested_parameters(compare::sides_of(model, *branch, 4), 1);
         EXPECT_EQ(told, asked) << name;
     }
+}
+
+// Curves of another engine on a scene with a hardpoint 2 mm from its place and a coil of another
+// rate. What the laws of the bushings differ by (`known`) is a thousandth of what is found.
+TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
+    const std::string file = scenes + "/mcpherson.yaml";
+    const std::vector<std::string> paths{"points.tie_rod_inner.z", "springs.K1_coil.rate"};
+    const auto settings = [&](const Eigen::VectorXd& p) {
+        return std::vector<Setting>{setting(paths[0], p[0]), setting(paths[1], p[1])};
+    };
+    std::vector<Number> numbers;
+    for (const auto& path : paths)
+        for (const Number& number : support::scene("mcpherson").numbers)
+            if (number.path == path) numbers.push_back(number);
+    ASSERT_EQ(numbers.size(), 2u);
+    const Eigen::Vector2d start(numbers[0].value, numbers[1].value);
+    const Eigen::VectorXd truth = start + Eigen::Vector2d(2e-3, 1000);
+
+    const support::Folder folder;
+    const std::string changed =
+        folder.write("changed.yaml", rewrite_scene(text_of(file), file, settings(truth)));
+    const std::string states = (folder.path / "states.jsonl").string();
+    const auto said = says(candidate + " " + changed + " 6 " + states);
+    ASSERT_EQ(said.code, 0) << said.err;
+    const Model model = compile(read_scene(changed));
+    const auto channels = compare::channels(model);
+    const std::vector<std::string> outputs{"toe", "camber", "wheel_centre_y", "wheel_centre_z"};
+    std::vector<compare::Figure> figures;
+    compare::Measured measured{
+        .value = {},
+        .column = {},
+        .start = start,
+        .low = Eigen::VectorXd::Constant(2, -std::numeric_limits<double>::infinity()),
+        .high = Eigen::VectorXd::Constant(2, std::numeric_limits<double>::infinity()),
+        .step = Eigen::Vector2d(compare::step_of(numbers[0]), compare::step_of(numbers[1]))};
+    std::vector<double> values;
+    std::istringstream lines(text_of(states));
+    for (std::string line; std::getline(lines, line);) {
+        const auto told = nlohmann::json::parse(line);
+        Equilibrium state;
+        state.load = told.at("load");
+        for (const Body& body : model.bodies) {
+            const auto& pose = told.at("bodies").at(body.name);
+            const auto r = pose.at("position").get<std::vector<double>>(),
+                       p = pose.at("orientation").get<std::vector<double>>();
+            state.poses.push_back({{r[0], r[1], r[2]}, Eigen::Quaterniond(p[0], p[1], p[2], p[3])});
+        }
+        for (std::size_t c = 0; c < outputs.size(); ++c) {
+            const auto& channel =
+                channels[static_cast<std::size_t>(compare::find_channel(channels, outputs[c]))];
+            figures.push_back({.name = outputs[c], .branch = told.at("branch"), .at = state.load});
+            measured.column.push_back(static_cast<int>(c));
+            values.push_back(compare::evaluate(model, std::span(&channel, 1), state).front());
+        }
+    }
+    measured.value =
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    const auto found =
+        compare::fit(compare::differenced_figures(
+                         [&](const Eigen::VectorXd& p) { return read_scene(file, settings(p)); },
+                         figures, numbers),
+                     measured);
+    EXPECT_TRUE(found.converged);
+    EXPECT_NEAR(found.p[0], truth[0], 1e-6);
+    EXPECT_NEAR(found.p[1], truth[1], 1e-3 * 1000);
+    for (const double noise : found.noise) EXPECT_LE(noise, known);
+    fmt::print("a fit to the candidate's curves: {:.1e} mm, {:.1e} % of the rate from the truth\n",
+               1e3 * std::abs(found.p[0] - truth[0]), 100 * std::abs(found.p[1] / truth[1] - 1));
 }
 
 TEST(SimbodyCandidate, SaysWhatIsWrongAndWritesNothing) {
