@@ -14,7 +14,7 @@
 namespace elastocheck::reports {
 
 // Each is in NAME_command.cpp; inspect, compare, converge and trade are in study_commands.cpp;
-// solve-for, fit and tolerances in design_commands.cpp, study in variants/.
+// solve-for, optimise, fit and tolerances in design/, study in variants/.
 Command certify_command();
 Command compare_command();
 Command converge_command();

@@ -187,6 +187,29 @@ TEST(OptimiseCommand, KeepsToeOfAStrutWithinABandOverItsTravel) {
     EXPECT_FALSE(result.contains("between"));
 }
 
+// The wheel centre is furthest out at 8 mm of travel, between the two points of the curve.
+TEST(OptimiseCommand, AddsPointsWhereACurveLeavesItsBandBetweenItsPoints) {
+    const Folder folder;
+    const std::string goals =
+        folder.write("goals.yaml",
+                     "vary: {points.arm_rear.z: [-0.16, -0.12], points.arm_front.z: [-0.18, "
+                     "-0.13]}\n"
+                     "goals:\n"
+                     "  - {figure: wheel_centre_y, over: travel, from: -10, to: 30, points: 2, "
+                     "at_most: 1100.02}\n");
+    const json result = json::parse(
+        expect_says("optimise " + strut + " " + goals + " --starts 1 --quiet --json", 0).out);
+    EXPECT_EQ(result["met"], true);
+    EXPECT_GE(result["goals"]["rows"][0][3].get<double>(), 3);
+    EXPECT_NEAR(result["goals"]["rows"][0][7].get<double>(), 1100.02, 1e-6);
+    EXPECT_GT(result["cost"].get<double>(), 0);
+    const std::string bound = result["prices"]["rows"][0][0];
+    EXPECT_TRUE(bound.starts_with("wheel_centre_y <= 1100.02 mm at travel = ")) << bound;
+    if (result.contains("between")) {
+        EXPECT_LE(result["between"]["excess"].get<double>(), 1e-3);
+    }
+}
+
 TEST(OptimiseCommand, RefusesAMistakeWithItsLine) {
     const Folder folder;
     const std::string vary = "vary: {springs.first.rate: [10, 60]}\n";

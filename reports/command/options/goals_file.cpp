@@ -59,6 +59,10 @@ Band band_of(const Cursor& at) {
     return band;
 }
 
+std::string place_on(const Along& along, double at) {
+    return fmt::format("{} = {:g} {}", along.name, along.factor * at, along.unit);
+}
+
 // The branches on which an output comes to these values, in the scene as it is: of several the
 // first.
 std::vector<std::string> branches_reaching(const Cursor& at, const std::string& output,
@@ -96,9 +100,10 @@ void add_curve(const Cursor& at, const Scene& scene, const Model& model, Goal& g
     const NamedFigure first = figure_at(branch ? *branch : at, goal.output + "@" + on, model);
     const auto over = at.optional("over");
     if (!over) {
-        const char* unit =
-            symbol(compare::unit_of(std::ranges::find(model.branches, on, &Branch::name)->unit));
-        goal.where = fmt::format("{} from {:g} to {:g} {}", on, from, to, unit);
+        const compare::Unit unit =
+            compare::unit_of(std::ranges::find(model.branches, on, &Branch::name)->unit);
+        goal.along = {on, symbol(unit), compare::in_unit(unit)};
+        goal.where = fmt::format("{} from {:g} to {:g} {}", on, from, to, goal.along.unit);
         for (const double value : values) {
             NamedFigure one = figure_at(at, fmt::format("{}@{}:{}", goal.output, on, value), model);
             goal.points.push_back({one.figure, one.place});
@@ -115,7 +120,7 @@ void add_curve(const Cursor& at, const Scene& scene, const Model& model, Goal& g
     for (std::size_t k = 0; k < values.size(); ++k)
         goal.points.push_back(
             {{.name = goal.output, .branch = branches[k], .at = values[k], .over = output},
-             fmt::format("{} = {:g} {}", output, values[k], unit)});
+             place_on(goal.along, values[k])});
 }
 
 Goal read_goal(const Cursor& at, const Scene& scene, const Model& model) {
@@ -233,7 +238,7 @@ std::vector<GoalPoint> points_between(const Goal& goal) {
             // The sides of a branch, and branches to either side, meet at zero.
             GoalPoint point = std::abs(a.figure.at) > std::abs(b.figure.at) ? a : b;
             point.figure.at = a.figure.at + (b.figure.at - a.figure.at) * i / (between_points + 1);
-            point.place = "between " + a.place + " and " + b.place;
+            point.place = place_on(goal.along, point.figure.at);
             all.push_back(point);
         }
     }

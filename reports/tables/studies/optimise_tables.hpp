@@ -19,12 +19,18 @@ struct GoalPoint {
     compare::Figure figure;
     std::string place;  // "jounce = 3000 N", "travel = 80 mm"
 };
+// What the points of a curve lie on: "travel" in mm, or a branch by its parameter.
+struct Along {
+    std::string name, unit;
+    double factor = 1;  // from Figure::at to the unit
+};
 // A band of an output at one point, or at the points of a curve.
 struct Goal {
     std::string output, unit;
     std::string where;              // the place of its point, or "travel from -80 to 80 mm"
     double low = 0, high = 0;       // infinite: no bound
     std::vector<GoalPoint> points;  // in the order of their places
+    Along along = {};               // of a curve
     int line = 0;                   // of the file
     std::string not_moved = {};     // reason why no number moves it; the search leaves it out
 };
