@@ -360,7 +360,7 @@ TEST(NightlyFit, FindsAHardpointThatIsTwoMillimetresAwayAmongTwentyFourCoordinat
         add(curves, "braking", sign * 3000, 4, outputs);
         add(curves, "aligning", sign * 150, 4, outputs);
     }
-    const Figures figures = differenced_figures(of.scene, curves.figures, of.numbers, 2);
+    const Figures figures = exact_figures(of.scene, of.rates, curves.figures, 2);
     const auto wrong =
         static_cast<Index>(std::ranges::find(paths, "points.tie_rod_inner.z") - paths.begin());
     VectorXd truth = of.start;

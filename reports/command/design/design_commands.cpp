@@ -180,14 +180,14 @@ VectorXd extents_of(const Scene& scene, const std::vector<compare::Figure>& figu
 // What to measure so that each undetermined combination is determined.
 std::vector<ProposedOutput> propose(const FittedScene& fit, const Model& model,
                                     const MeasuredFigures& data, const compare::SceneAt& scene,
-                                    int threads) {
+                                    const compare::RatesAt& rates, int threads) {
     const auto& open = fit.fitted.undetermined;
     std::vector<ProposedOutput> proposed(static_cast<std::size_t>(open.cols()));
     for (const bool kinematic : {true, false}) {
         if (std::ranges::none_of(proposed, &std::string::empty, &ProposedOutput::output)) break;
         const auto named = unmeasured(model, data, kinematic);
         const auto figures = figures_of(named);
-        const auto of = compare::differenced_figures(scene, figures, fit.numbers, threads);
+        const auto of = compare::exact_figures(scene, rates, figures, threads);
         const VectorXd value = of.value(fit.fitted.p);
         const auto found = compare::proposals(of.gradient(fit.fitted.p), value,
                                               extents_of(scene(fit.fitted.p), figures, value),
@@ -236,7 +236,7 @@ int fit(const FitRequest& request, const Delivery& delivery) {
                     start.why_not);
         return could_not_judge;
     }
-    result.proposed = propose(result, loaded.model, data, scene, threads);
+    result.proposed = propose(result, loaded.model, data, scene, rates, threads);
     delivery.print_text(fit_text(result));
     if (!request.output.empty()) {
         write_changed_scene(request.scene, request.output,
