@@ -247,7 +247,7 @@ figures: {height: centre_z@up:3000}
                 3, {.out = {"1 no scene"}});
 }
 
-// ---- Interruption, threads, shards, extension: one content.
+// ---- Threads, shards, interruption, extension: one content.
 
 const std::string mcpherson = R"(elastocheck_study: 1
 scene: mcpherson.yaml
@@ -270,7 +270,7 @@ std::string content(const Said& said) {
     return std::regex_search(said.out, match, line) ? match[1].str() : "none: " + said.err;
 }
 
-TEST_F(StudyCommand, HasOneContentOnAnyThreadsInShardsAndAfterBeingKilled) {
+TEST_F(StudyCommand, HasOneContentOnAnyThreadsAndInShards) {
     const std::string one = content(study(mcpherson, "-o one --jobs 1"));
     ASSERT_EQ(one.size(), 16u) << one;
     EXPECT_EQ(content(run("-o two --jobs 2")), one);
@@ -284,23 +284,37 @@ TEST_F(StudyCommand, HasOneContentOnAnyThreadsInShardsAndAfterBeingKilled) {
         {.err = {"256 variants are missing: 256 of 512 to 767\n"}});
     expect_said(run("-o elsewhere --shard 3/3"), 0);
     EXPECT_EQ(content(run("-o parts --merge elsewhere/ledger-3-of-3.sqlite")), one);
+}
 
-    // Killed at random moments, then finished by the same command.
+// Killed when it has recorded some variants and computes others, then finished by the same command.
+TEST_F(StudyCommand, KilledAtAnyMomentGoesOnToTheSameContent) {
+    const std::string whole = content(study(linear, "-o whole --count 6000"));
+    ASSERT_EQ(whole.size(), 16u) << whole;
     std::mt19937 random(1);
-    std::uniform_real_distribution<double> moment(0.05, 0.6);
-    int killed = 0;
-    for (int round = 0; round < 6; ++round) {
-        const std::string jobs = round % 2 == 0 ? "1" : "2";
+    std::uniform_real_distribution<double> moment(0, 0.1);
+    static const std::regex rows("^([0-9]+) of 6000");
+    int killed = 0, part = 0;
+    for (int round = 0; round < 8; ++round) {
+        const std::string kill = round % 3 == 2 ? "TERM" : "KILL",
+                          jobs = round % 2 == 0 ? "1" : "2";
         killed +=
             support::says("cd " + path.string() +
-                          " && { exec " ELASTOCHECK_COMMAND
-                          " study study.yaml --quiet -o killed --jobs " +
-                          jobs + " >/dev/null & } && sleep " + std::to_string(moment(random)) +
-                          "; kill -" + (round % 3 == 2 ? "TERM" : "KILL") + " $!; wait $!")
+                          " && size() { stat -c %s out/ledger.sqlite 2>/dev/null || echo 0; }; "
+                          "before=$(size); { exec env --default-signal " ELASTOCHECK_COMMAND
+                          " study study.yaml --quiet -o out --count 6000 --jobs " +
+                          jobs +
+                          " >/dev/null & }; for k in $(seq 1000); do [ $(size) -gt $((before + "
+                          "8192)) ] && break; sleep 0.01; done; sleep " +
+                          std::to_string(moment(random)) + "; kill -" + kill + " $!; wait $!")
                 .code > 128;
+        const Said shown = run("-o out --count 6000 --show");
+        std::smatch match;
+        if (std::regex_search(shown.out, match, rows))
+            part += std::stoi(match[1]) > 0 && std::stoi(match[1]) < 6000;
     }
-    EXPECT_GT(killed, 0);
-    EXPECT_EQ(content(run("-o killed")), one);
+    EXPECT_GT(killed, 1);
+    EXPECT_GT(part, 0) << "never killed in the middle";
+    EXPECT_EQ(content(run("-o out --count 6000")), whole);
 }
 
 TEST_F(StudyCommand, ExtendsWithoutRepeating) {
