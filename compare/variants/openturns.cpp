@@ -31,11 +31,10 @@ const Module& module() {
 
 const Functions& functions() {
     if (module().functions == nullptr)
-        throw std::invalid_argument(
-            fmt::format("a study needs OpenTURNS, an optional component ({}); install "
-                        "libopenturns-dev and build "
-                        "again, as ./dev study does",
-                        module().trouble));
+        throw std::invalid_argument(fmt::format(
+            "a study needs OpenTURNS, an optional component ({}); install the package "
+            "elastocheck-study, or libopenturns-dev and build again, as ./dev study does",
+            module().trouble));
     return *module().functions;
 }
 
