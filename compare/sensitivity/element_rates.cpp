@@ -165,7 +165,8 @@ DualVector driven_part(const Branch& branch, const Branch& branch_rate, int elem
 StateOfElement state_of(const Model& model, const Branch& branch, const Equilibrium& state,
                         std::size_t at, const Model& rate, const StateRate& state_rate) {
     const Moved moved{state, state_rate};
-    const DualVector driven = driven_part(branch, rate.branches.front(), static_cast<int>(at), state.load);
+    const DualVector driven =
+        driven_part(branch, rate.branches.front(), static_cast<int>(at), state.load);
     StateOfElement now;
     const auto of_spring = [&](const AxialSpring& spring) {
         const auto& d = std::get<AxialSpring>(rate.elastics[at].kind);

@@ -32,7 +32,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
 // first. The Hessian and the mixed derivatives of V + λᵀΦ are exact; their derivative along a
 // response, of third order, is an extrapolated central difference of them:
 //
-//   d/ds ≈ (8 (f(h) - f(-h)) - (f(2h) - f(-2h))) / 12h,   h a motion of 2e-5 m or rad
+//   d/ds ≈ (8 (f(h) - f(-h)) - (f(2h) - f(-2h))) / 12h,   h a motion of 1e-4 m or rad, less near a knot
 //
 // Outcomes and throws as those above and as those of sensitivity().
 ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,

@@ -24,6 +24,19 @@ TEST(SensitivityCommand, RejectsAnUnknownNameWithTheNearest) {
     expect_says(asks + "--branch upp", 2, {.err = {"--branch", "did you mean 'up'"}});
 }
 
+// A characteristic is a derivative itself; its gradient is compared between the legs too.
+TEST(SensitivityCommand, DifferentiatesCharacteristicsAtChosenStations) {
+    const std::string asks = "sensitivity " + scenes +
+                             "/mcpherson.yaml --of bump_steer,wheel_rate,K1_coil.force "
+                             "--to points.tie_rod_inner.z --branch jounce ";
+    expect_says(asks + "--at jounce:1500,jounce:500", 0,
+                {.out = {"jounce: derivatives at 500 and 1500 N", "deg/m per m", "N/mm per m",
+                         "K1_coil.force", "the legs agree within 1e-08"}});
+    expect_says(asks + "--at jonce:1500", 2, {.err = {"--at", "did you mean 'jounce'"}});
+    expect_says(asks + "--at jounce:9000", 2, {.err = {"--at", "goes from 0 to 3000 N"}});
+    expect_says(asks + "--at jounce", 2, {.err = {"allowed: BRANCH:VALUE"}});
+}
+
 TEST(SensitivityCommand, WritesEveryDerivative) {
     const Folder folder;
     const std::string file = (folder.path / "derivatives.csv").string();
