@@ -38,6 +38,12 @@ struct OptimiseRequest {
     bool as_json = false;
 };
 
+VectorXd values_of(const Scene& scene, const std::vector<GoalPoint>& points) {
+    std::vector<compare::Figure> figures;
+    for (const GoalPoint& point : points) figures.push_back(point.figure);
+    return compare::figure_values(scene, figures, compare::Leg::equilibrium).value;
+}
+
 // The points of the curves between theirs at which they are furthest outside of their bands, one a
 // gap; each curve of which any is, receives them.
 std::optional<Between> add_points_outside(const Scene& scene, const VectorXd& scale,
@@ -48,11 +54,16 @@ std::optional<Between> add_points_outside(const Scene& scene, const VectorXd& sc
         const double within = between_within * scale[first];
         first += static_cast<Index>(goal.points.size());
         if (goal.points.size() < 2) continue;
-        const auto candidates = points_between(goal);
-        std::vector<compare::Figure> figures;
-        for (const GoalPoint& point : candidates) figures.push_back(point.figure);
-        const VectorXd values =
-            compare::figure_values(scene, figures, compare::Leg::equilibrium).value;
+        auto candidates = points_between(goal, BranchOf::before);
+        VectorXd values = values_of(scene, candidates);
+        // Between the last point of a branch and the first of the next, either may be the one.
+        if (!values.allFinite()) {
+            const auto others = points_between(goal, BranchOf::after);
+            const VectorXd other_values = values_of(scene, others);
+            for (std::size_t k = 0; k < others.size(); ++k)
+                if (const auto i = static_cast<Index>(k); !std::isfinite(values[i]))
+                    candidates[k] = others[k], values[i] = other_values[i];
+        }
         std::vector<GoalPoint> added;
         const std::size_t in_gap = candidates.size() / (goal.points.size() - 1);
         for (std::size_t k = 0; k < candidates.size(); k += in_gap) {
@@ -62,11 +73,13 @@ std::optional<Between> add_points_outside(const Scene& scene, const VectorXd& sc
                 const double value = values[static_cast<Index>(i)];
                 const double excess = std::max(goal.low - value, value - goal.high);
                 if (!(excess <= most)) most = excess, at = i;
+                if (std::isnan(most)) break;
             }
             if (at == k + in_gap) continue;
-            added.push_back(candidates[at]);
-            if (!worst || !(most <= worst->excess))
-                worst = Between{most, goal.output + " at " + candidates[at].place};
+            if (std::isfinite(most)) added.push_back(candidates[at]);
+            if (!worst || (!std::isnan(worst->excess) && !(most <= worst->excess)))
+                worst = Between{most, goal.output + " at " + candidates[at].place +
+                                          (std::isnan(most) ? " (no value there)" : "")};
         }
         if (!add) continue;
         std::ranges::copy(added, std::back_inserter(goal.points));
@@ -146,11 +159,20 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
     std::optional<Between> between;
     for (int round = 0; optimum.met; ++round) {
         const bool again = round < most_rounds;
+        const std::vector<Goal> goals = file.goals;
         between = add_points_outside(scene(optimum.p), optimum.scale, file.goals, again);
-        if (!between || !again) break;
+        if (!between || !again || !std::isfinite(between->excess)) {
+            file.goals = goals;
+            break;
+        }
         all = figures_of(file);
         compare::Optimum next = search({optimum.p});
         if (!next.met) next = search(starts);
+        if (next.best < 0) {  // an added point has no value in the scene as it is
+            file.goals = goals;
+            all = figures_of(file);
+            break;
+        }
         optimum = std::move(next);
     }
     OptimisedScene result{.numbers = varied.numbers,
@@ -190,6 +212,7 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
     }
     if (!result.confirmation.confirmed) return could_not_judge;
     if (!result.optimum.met) return limit_broken;
+    if (between && !std::isfinite(between->excess)) return could_not_judge;
     return result.optimum.converged && result.certificate->conclusive() ? fine : could_not_judge;
 }
 

@@ -113,6 +113,7 @@ void add_curve(const Cursor& at, const Scene& scene, const Model& model, Goal& g
     const std::string output = over->text("an output of the scene");
     const NamedFigure abscissa = figure_at(*over, output, model);
     const char* unit = symbol(abscissa.output.unit);
+    goal.along = {.name = output, .unit = unit};
     goal.where =
         fmt::format("{} from {:g} to {:g} {}{}", output, from, to, unit, branch ? " on " + on : "");
     const auto branches = branch ? std::vector<std::string>(values.size(), on)
@@ -230,13 +231,12 @@ GoalFigures figures_of(const GoalsFile& file) {
     return all;
 }
 
-std::vector<GoalPoint> points_between(const Goal& goal) {
+std::vector<GoalPoint> points_between(const Goal& goal, BranchOf branch) {
     std::vector<GoalPoint> all;
     for (std::size_t k = 0; k + 1 < goal.points.size(); ++k) {
         const GoalPoint &a = goal.points[k], &b = goal.points[k + 1];
         for (int i = 1; i <= between_points; ++i) {
-            // The sides of a branch, and branches to either side, meet at zero.
-            GoalPoint point = std::abs(a.figure.at) > std::abs(b.figure.at) ? a : b;
+            GoalPoint point = branch == BranchOf::before ? a : b;
             point.figure.at = a.figure.at + (b.figure.at - a.figure.at) * i / (between_points + 1);
             point.place = place_on(goal.along, point.figure.at);
             all.push_back(point);

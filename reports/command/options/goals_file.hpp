@@ -32,7 +32,8 @@ struct GoalFigures {
 };
 GoalFigures figures_of(const GoalsFile& file);
 
-// Points between those of the curves, three in each gap.
-std::vector<GoalPoint> points_between(const Goal& goal);
+// Points between those of a curve, three in each gap, on the branch of the point before or after.
+enum class BranchOf { before, after };
+std::vector<GoalPoint> points_between(const Goal& goal, BranchOf branch);
 
 }  // namespace elastocheck::reports
