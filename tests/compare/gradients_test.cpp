@@ -82,8 +82,8 @@ long agreed(const std::string& scene, int points, double& worst) {
 TEST(Gradients, TheLegsAgreeOnAllNumbersOfASample) {
     double worst = 0;
     long compared = 0;
-    for (const auto& scene : {"mcpherson", "pinned_bar", "semi_trailing_arm", "four_bar"})
-        compared += agreed(scene, 1, worst);
+    compared += agreed("mcpherson", 1, worst);
+    for (const auto& scene : {"pinned_bar", "four_bar"}) compared += agreed(scene, 2, worst);
     EXPECT_GT(compared, 10000);
     RecordProperty("worst", fmt::format("{:.1e}", worst));
 }
