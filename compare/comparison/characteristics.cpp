@@ -376,7 +376,7 @@ S shortening(const Wheels<S>& wheels, const Placed<S>& i, const Placed<S>& j) {
 // ---- Catalogue: owner, name, unit, definition with its sign, meaning of undefined, formula.
 
 // Owner of a characteristic; those after the wheels only where a scene has what they need.
-enum class Of {
+enum class Owner {
     every_wheel,
     wheel_on_tyre,
     steered_wheel,    // some branch drives a joint other than a jack, ...
@@ -407,7 +407,7 @@ S in(const Wheels<S>&, double value) {
 }
 
 struct Entry {
-    Of of;
+    Owner of;
     const char* name;
     Unit unit;
     const char* definition;
@@ -427,27 +427,27 @@ constexpr const char* no_rate =
     "the travel of the wheel is unresisted or blocked, or an element is at a kink of its law";
 
 const std::array table{
-    Entry{Of::every_wheel, "bump_steer", Unit::deg_per_m,
+    Entry{Owner::every_wheel, "bump_steer", Unit::deg_per_m,
           "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
           "positive towards toe-in in jounce",
           never, [](const auto& x, std::size_t w) { return x.toe(w, raised(x, w)); }},
-    Entry{Of::every_wheel, "bump_camber", Unit::deg_per_100mm,
+    Entry{Owner::every_wheel, "bump_camber", Unit::deg_per_100mm,
           "change of camber over travel of the wheel centre, all wheels rising by the same amount; "
           "positive where the top leans out in jounce",
           never, [](const auto& x, std::size_t w) { return x.camber(w, raised(x, w)); }},
-    Entry{Of::every_wheel, "track_gradient", Unit::mm_per_100mm,
+    Entry{Owner::every_wheel, "track_gradient", Unit::mm_per_100mm,
           "lateral displacement of the contact patch over travel, all wheels rising by the same "
           "amount; positive outwards in jounce",
           never,
           [](const auto& x, std::size_t w) {
               return in(x, x.side(w)) * x.moved_by(raised(x, w), x.patch(w)).y();
           }},
-    Entry{Of::every_wheel, "recession_gradient", Unit::mm_per_100mm,
+    Entry{Owner::every_wheel, "recession_gradient", Unit::mm_per_100mm,
           "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
           "same amount; positive to the back in jounce",
           never,
           [](const auto& x, std::size_t w) { return -x.moved_by(raised(x, w), x.centre(w)).x(); }},
-    Entry{Of::every_wheel, "front_view_swing_arm", Unit::mm,
+    Entry{Owner::every_wheel, "front_view_swing_arm", Unit::mm,
           "lateral distance from the wheel centre to the instant centre of the carrier seen from "
           "the front, all wheels rising by the same amount; positive inboard",
           "the carrier does not rotate as seen from the front: the arm is infinite",
@@ -457,7 +457,7 @@ const std::array table{
               return ratio(in(x, x.side(w)) * v.z(), x.turned_by(by, x[w].body).x(), nowhere);
           },
           true},
-    Entry{Of::every_wheel, "side_view_swing_arm", Unit::mm,
+    Entry{Owner::every_wheel, "side_view_swing_arm", Unit::mm,
           "longitudinal distance from the wheel centre to the instant centre of the carrier seen "
           "from the side, all wheels rising by the same amount; positive ahead of the wheel",
           "the carrier does not rotate as seen from the side: the arm is infinite",
@@ -467,11 +467,11 @@ const std::array table{
               return ratio(v.z(), x.turned_by(by, x[w].body).y(), nowhere);
           },
           true},
-    Entry{Of::every_wheel, "wheel_rate", Unit::newton_per_mm,
+    Entry{Owner::every_wheel, "wheel_rate", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, all "
           "wheels with the same load",
           no_rate, [](const auto& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
-    Entry{Of::every_wheel, "lateral_force_steer", Unit::deg_per_kN,
+    Entry{Owner::every_wheel, "lateral_force_steer", Unit::deg_per_kN,
           "change of toe over a force at the contact patch towards the middle of the vehicle (as "
           "on the "
           "outer wheel in a "
@@ -480,42 +480,42 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               return inward(x, w) * x.toe(w, held(x, w, at_patch + 1));
           }},
-    Entry{Of::every_wheel, "lateral_force_camber", Unit::deg_per_kN,
+    Entry{Owner::every_wheel, "lateral_force_camber", Unit::deg_per_kN,
           "change of camber over the same force, likewise; positive where the top leans out", never,
           [](const auto& x, std::size_t w) {
               return inward(x, w) * x.camber(w, held(x, w, at_patch + 1));
           }},
-    Entry{Of::every_wheel, "lateral_stiffness", Unit::newton_per_mm,
+    Entry{Owner::every_wheel, "lateral_stiffness", Unit::newton_per_mm,
           "lateral force at the contact patch over its lateral displacement, wheel centres held at "
           "their "
           "height",
           gives_nothing,
           [](const auto& x, std::size_t w) { return stiffness(x, w, at_patch + 1); }},
-    Entry{Of::every_wheel, "braking_force_steer", Unit::deg_per_kN,
+    Entry{Owner::every_wheel, "braking_force_steer", Unit::deg_per_kN,
           "change of toe over a force to the back at the contact patch, wheel centres held at "
           "their height; "
           "positive towards "
           "toe-in",
           never, [](const auto& x, std::size_t w) { return -x.toe(w, held(x, w, at_patch)); }},
-    Entry{Of::every_wheel, "braking_force_camber", Unit::deg_per_kN,
+    Entry{Owner::every_wheel, "braking_force_camber", Unit::deg_per_kN,
           "change of camber over the same force, likewise; positive where the top leans out", never,
           [](const auto& x, std::size_t w) { return -x.camber(w, held(x, w, at_patch)); }},
-    Entry{Of::every_wheel, "longitudinal_stiffness", Unit::newton_per_mm,
+    Entry{Owner::every_wheel, "longitudinal_stiffness", Unit::newton_per_mm,
           "longitudinal force at the contact patch over its longitudinal displacement, wheel "
           "centres held at "
           "their height",
           gives_nothing, [](const auto& x, std::size_t w) { return stiffness(x, w, at_patch); }},
-    Entry{Of::every_wheel, "traction_force_steer", Unit::deg_per_kN,
+    Entry{Owner::every_wheel, "traction_force_steer", Unit::deg_per_kN,
           "change of toe over a force forward at the wheel centre, wheel centres held at their "
           "height; "
           "positive towards toe-in",
           never, [](const auto& x, std::size_t w) { return x.toe(w, held(x, w, at_centre)); }},
-    Entry{Of::every_wheel, "longitudinal_stiffness_at_centre", Unit::newton_per_mm,
+    Entry{Owner::every_wheel, "longitudinal_stiffness_at_centre", Unit::newton_per_mm,
           "longitudinal force at the wheel centre over its longitudinal displacement, wheel "
           "centres held at "
           "their height",
           gives_nothing, [](const auto& x, std::size_t w) { return stiffness(x, w, at_centre); }},
-    Entry{Of::every_wheel, "aligning_torque_steer", Unit::deg_per_100Nm,
+    Entry{Owner::every_wheel, "aligning_torque_steer", Unit::deg_per_100Nm,
           "change of toe over a moment about the vertical that turns the wheel towards toe-in, "
           "wheel centres "
           "held at their "
@@ -524,28 +524,28 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               return in(x, -x.side(w)) * x.toe(w, held(x, w, moment_on + 2));
           }},
-    Entry{Of::every_wheel, "aligning_torque_camber", Unit::deg_per_100Nm,
+    Entry{Owner::every_wheel, "aligning_torque_camber", Unit::deg_per_100Nm,
           "change of camber over the same moment, likewise; positive where the top leans out",
           never,
           [](const auto& x, std::size_t w) {
               return in(x, -x.side(w)) * x.camber(w, held(x, w, moment_on + 2));
           }},
-    Entry{Of::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
+    Entry{Owner::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
           "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
           [](const auto& x, std::size_t w) { return ride_rate(x, w); }},
-    Entry{Of::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
+    Entry{Owner::wheel_on_rack, "steer_gradient", Unit::deg_per_mm,
           "change of toe over the displacement of the steering joint, wheel centres held at their "
           "height; "
           "positive towards "
           "toe-in",
           not_steered, [](const auto& x, std::size_t w) { return steer_gradient(x, w); }},
-    Entry{Of::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
+    Entry{Owner::wheel_on_column, "steer_gradient", Unit::deg_per_deg,
           "change of toe over the angle of the steering joint, wheel centres held at their height; "
           "positive "
           "towards toe-in",
           not_steered, [](const auto& x, std::size_t w) { return steer_gradient(x, w); }},
     Entry{
-        Of::steered_wheel, "caster_steered", Unit::deg,
+        Owner::steered_wheel, "caster_steered", Unit::deg,
         "angle to the vertical seen from the side of the axis about which the carrier turns when "
         "the steering moves, wheel centres held at their height; positive where its top leans back",
         does_not_steer,
@@ -554,7 +554,7 @@ const std::array table{
             using std::atan2;
             return axis ? atan2(-axis->n.x(), axis->n.z()) : in(x, undefined);
         }},
-    Entry{Of::steered_wheel, "kingpin_inclination_steered", Unit::deg,
+    Entry{Owner::steered_wheel, "kingpin_inclination_steered", Unit::deg,
           "angle to the vertical seen from the front of the same axis; positive where its top "
           "leans inwards",
           does_not_steer,
@@ -563,7 +563,7 @@ const std::array table{
               using std::atan2;
               return axis ? atan2(in(x, -x.side(w)) * axis->n.y(), axis->n.z()) : in(x, undefined);
           }},
-    Entry{Of::steered_wheel, "scrub_radius_steered", Unit::mm,
+    Entry{Owner::steered_wheel, "scrub_radius_steered", Unit::mm,
           "distance across the wheel from the contact patch to the intersection of the same axis "
           "with the road, positive inboard",
           does_not_steer,
@@ -571,7 +571,7 @@ const std::array table{
               const auto axis = steering_axis(x, w);
               return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
           }},
-    Entry{Of::steered_wheel, "mechanical_trail_steered", Unit::mm,
+    Entry{Owner::steered_wheel, "mechanical_trail_steered", Unit::mm,
           "distance along the wheel from the contact patch to the intersection of the same axis "
           "with the road, positive in front",
           does_not_steer,
@@ -580,13 +580,13 @@ const std::array table{
               return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
           }},
     Entry{
-        Of::front_wheel, "anti_dive", Unit::percent,
+        Owner::front_wheel, "anti_dive", Unit::percent,
         "brake_share · wheelbase / cg_height · forward over vertical displacement of the contact "
         "patch: share of the load transfer under braking that the links carry; positive where "
         "they resist dive",
         no_vertical,
         [](const auto& x, std::size_t w) { return anti(x, x.patch(w), &Vehicle::brake_share, 1); }},
-    Entry{Of::front_wheel, "anti_lift", Unit::percent,
+    Entry{Owner::front_wheel, "anti_lift", Unit::percent,
           "drive_share · wheelbase / cg_height · forward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist lift of the front "
           "when the axle drives",
@@ -594,7 +594,7 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               return anti(x, driven_at(x, w), &Vehicle::drive_share, 1);
           }},
-    Entry{Of::rear_wheel, "anti_lift", Unit::percent,
+    Entry{Owner::rear_wheel, "anti_lift", Unit::percent,
           "brake_share · wheelbase / cg_height · rearward over vertical displacement of the "
           "contact patch: share of the load transfer under braking that the links carry; positive "
           "where they resist lift of the rear",
@@ -602,7 +602,7 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               return anti(x, x.patch(w), &Vehicle::brake_share, -1);
           }},
-    Entry{Of::rear_wheel, "anti_squat", Unit::percent,
+    Entry{Owner::rear_wheel, "anti_squat", Unit::percent,
           "drive_share · wheelbase / cg_height · rearward over vertical displacement of the wheel "
           "centre (of a rigid axle the patch); positive where the links resist squat when the axle "
           "drives",
@@ -611,12 +611,12 @@ const std::array table{
               return anti(x, driven_at(x, w), &Vehicle::drive_share, -1);
           }},
     Entry{
-        Of::wheels, "roll_centre_height", Unit::mm,
+        Owner::wheels, "roll_centre_height", Unit::mm,
         "height above the contact patches of the intersection of the lines that are perpendicular, "
         "seen from the front, to the motion of the patches: of both wheels for an axle that rolls, "
         "with the middle plane of the vehicle for one wheel; positive above the road",
         "no finite roll centre", [](const auto& x, std::size_t) { return roll_centre(x); }},
-    Entry{Of::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
+    Entry{Owner::wheel_of_axle, "roll_steer", Unit::deg_per_deg,
           "change of toe over the roll of the car body towards this wheel, wheels on the road; "
           "positive "
           "towards toe-in",
@@ -624,7 +624,7 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               return x.response.tied ? in(x, undefined) : x.toe(w, rolled_towards(x, w));
           }},
-    Entry{Of::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
+    Entry{Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where "
           "the top "
           "leans out",
@@ -632,13 +632,13 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               return x.response.tied ? in(x, undefined) : x.camber(w, rolled_towards(x, w));
           }},
-    Entry{Of::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
+    Entry{Owner::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, "
           "with the opposite force on the other wheel",
           no_rate,
           [](const auto& x, std::size_t w) { return wheel_rate(x, w, Pattern::opposite); }},
     Entry{
-        Of::spring, "motion_ratio", Unit::none,
+        Owner::spring, "motion_ratio", Unit::none,
         "shortening of the spring over travel of the wheel centres, all rising by the same amount",
         never,
         [](const auto& x, std::size_t k) {
@@ -647,7 +647,7 @@ const std::array table{
             return shortening(x, x.point(spring.i, d.i), x.point(spring.j, d.j));
         }},
     Entry{
-        Of::damper, "motion_ratio", Unit::none,
+        Owner::damper, "motion_ratio", Unit::none,
         "shortening of the damper over travel of the wheel centres, all rising by the same amount",
         never,
         [](const auto& x, std::size_t k) {
@@ -662,46 +662,46 @@ bool turns(const Model& model, int joint) {
 }
 
 // Number of owners of a kind.
-std::size_t count(const Model& model, Of of) {
+std::size_t count(const Model& model, Owner of) {
     const auto if_so = [&](bool so) { return so ? model.wheels.size() : 0; };
     switch (of) {
-        case Of::every_wheel: return model.wheels.size();
-        case Of::wheel_on_tyre: return model.wheels.size();
-        case Of::steered_wheel: return if_so(steering_joint(model) >= 0);
-        case Of::wheel_on_rack:
+        case Owner::every_wheel: return model.wheels.size();
+        case Owner::wheel_on_tyre: return model.wheels.size();
+        case Owner::steered_wheel: return if_so(steering_joint(model) >= 0);
+        case Owner::wheel_on_rack:
             return if_so(steering_joint(model) >= 0 && !turns(model, steering_joint(model)));
-        case Of::wheel_on_column:
+        case Owner::wheel_on_column:
             return if_so(steering_joint(model) >= 0 && turns(model, steering_joint(model)));
-        case Of::front_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::front);
-        case Of::rear_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::rear);
-        case Of::wheel_of_axle: return if_so(is_axle(model));
-        case Of::wheels: return 1;
-        case Of::spring: return model.elastics.size();
-        case Of::damper: return model.dampers.size();
+        case Owner::front_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::front);
+        case Owner::rear_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::rear);
+        case Owner::wheel_of_axle: return if_so(is_axle(model));
+        case Owner::wheels: return 1;
+        case Owner::spring: return model.elastics.size();
+        case Owner::damper: return model.dampers.size();
     }
     return 0;
 }
 
 // Name of the k-th owner; empty where this one has no such characteristic.
-std::optional<std::string> owner(const Model& model, Of of, std::size_t k) {
+std::optional<std::string> owner(const Model& model, Owner of, std::size_t k) {
     switch (of) {
-        case Of::wheel_on_tyre:
+        case Owner::wheel_on_tyre:
             if (!(model.wheels[k].tyre_rate > 0)) return std::nullopt;
             [[fallthrough]];
-        case Of::every_wheel:
-        case Of::steered_wheel:
-        case Of::wheel_on_rack:
-        case Of::wheel_on_column:
-        case Of::front_wheel:
-        case Of::rear_wheel:
-        case Of::wheel_of_axle: return model.wheels[k].name;
-        case Of::wheels: return "";
-        case Of::spring:
+        case Owner::every_wheel:
+        case Owner::steered_wheel:
+        case Owner::wheel_on_rack:
+        case Owner::wheel_on_column:
+        case Owner::front_wheel:
+        case Owner::rear_wheel:
+        case Owner::wheel_of_axle: return model.wheels[k].name;
+        case Owner::wheels: return "";
+        case Owner::spring:
             if (member<ScalarLaw>(model.elastics[k].kind) == nullptr ||
                 model.elastics[k].written_as == WrittenAs::stop)
                 return std::nullopt;
             return model.elastics[k].name;
-        case Of::damper: return model.dampers[k].name;
+        case Owner::damper: return model.dampers[k].name;
     }
     return std::nullopt;
 }
@@ -770,8 +770,8 @@ std::vector<double> rates_of(const Model& model, std::span<const Characteristic>
 }
 
 bool needs_free(const Characteristic& what) {
-    const Of of = table[what.entry].of;
-    return of == Of::wheel_on_tyre || table[what.entry].unit == Unit::newton_per_mm;
+    const Owner of = table[what.entry].of;
+    return of == Owner::wheel_on_tyre || table[what.entry].unit == Unit::newton_per_mm;
 }
 
 bool is_swing_arm(const Characteristic& what) { return table[what.entry].swing_arm; }

@@ -18,8 +18,8 @@ constexpr int points_per_branch = 11;
 // Rounds to nine decimals, so that round-off of a build does not change the text of a baseline.
 // Adding zero turns -0 into 0.
 double rounded(double value) {
-    constexpr double digits = 1e9;  // mm, deg, N, N·m
-    return std::round(value * digits) / digits + 0.0;
+    constexpr double decimals = 1e9;  // mm, deg, N, N·m
+    return std::round(value * decimals) / decimals + 0.0;
 }
 
 auto key(const Series& s) { return std::tie(s.branch, s.quantity, s.channel); }

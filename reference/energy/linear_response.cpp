@@ -63,7 +63,7 @@ std::string name_of(const Model& model, const Disturbance& disturbance) {
 
 struct Responses {
     Response response;
-    std::vector<Answer> answers;  // x and λ, per disturbance
+    std::vector<Answer> answers;  // per disturbance
 };
 Responses responses(const Model& model, const Branch& branch, const StateTangent& tangent,
                     std::span<const Disturbance> disturbances) {
@@ -175,7 +175,7 @@ Displaced displaced(const Model& model, const StateTangent& tangent, const Answe
     Chart chart = chart_about(tangent.state.poses);
     move_to(chart, s * along.x);
     at.tangent.state.poses = poses(chart);
-    at.tangent.lambda += s * along.lambda;
+    at.tangent.lambda += s * multiplier_rates(tangent, along);
     at.tangent.prescribed = sum(tangent.prescribed, s, rate);
     at.parts = parts_of(model, at.tangent);
     return at;
@@ -192,9 +192,9 @@ std::vector<Change> differences(const Model& model, const Branch& branch,
     for (std::size_t p = 0; p < rates.size(); ++p) {
         Change& result = all.emplace_back();
         if (by_number[p].outcome != Outcome::converged) continue;
+        const VectorXd lambda = multiplier_rates(tangent, by_number[p]);
         const auto change = [&](std::size_t k) {
-            return change_by(model, branch, states[k], rates[p], by_number[p].x,
-                             by_number[p].lambda);
+            return change_by(model, branch, states[k], rates[p], by_number[p].x, lambda);
         };
         const Change up = change(0), down = change(1), far_up = change(2), far_down = change(3);
         const VectorXd near = (up.b - down.b) / (2 * h), far = (far_up.b - far_down.b) / (4 * h);
