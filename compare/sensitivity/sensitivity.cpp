@@ -28,8 +28,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Smallest size of a row, of the largest row of its kind. The derivative of a characteristic is of
-// second order: by the energy leg its rounding is 1e-12 of the largest.
+// Smallest size of a row: of the largest row of its kind; of a characteristic, in its unit.
 constexpr double smallest_row = 1e-6, smallest_characteristic = 1e-4;
 
 std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
@@ -264,13 +263,13 @@ std::vector<double> on_this_side(std::vector<double> values, const BranchSide& s
 // The largest entry of every output's row by the first leg, each number by its step.
 std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
     std::vector<double> sizes(all.outputs.size(), 0);
-    // motions, forces, and the characteristics of each unit
-    std::map<int, double> kinds;
+    double motions = 0, forces = 0;
+    const auto is_characteristic = [&](std::size_t c) {
+        return all.outputs[c].kind() == ChannelKind::characteristic;
+    };
     const auto largest = [&](std::size_t c) -> double& {
-        const Channel& output = all.outputs[c];
-        if (output.kind() == ChannelKind::characteristic)
-            return kinds[2 + static_cast<int>(output.unit)];
-        return kinds[output.unit == Unit::newton || output.unit == Unit::newton_metre ? 1 : 0];
+        const Unit unit = all.outputs[c].unit;
+        return unit == Unit::newton || unit == Unit::newton_metre ? forces : motions;
     };
     for (std::size_t c = 0; c < sizes.size(); ++c) {
         if (!side.why_output[c].empty()) continue;
@@ -280,13 +279,11 @@ std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
                                               all.numbers[k].step);
                 if (entry > sizes[c]) sizes[c] = entry;
             }
-        largest(c) = std::max(largest(c), sizes[c]);
+        if (!is_characteristic(c)) largest(c) = std::max(largest(c), sizes[c]);
     }
     for (std::size_t c = 0; c < sizes.size(); ++c)
-        sizes[c] =
-            std::max(sizes[c], largest(c) * (all.outputs[c].kind() == ChannelKind::characteristic
-                                                 ? smallest_characteristic
-                                                 : smallest_row));
+        sizes[c] = std::max(
+            sizes[c], is_characteristic(c) ? smallest_characteristic : smallest_row * largest(c));
     return sizes;
 }
 
@@ -306,8 +303,14 @@ Disagreement compared(const Gradients& all, const SideGradients& side) {
                     ++worst.compared;
                     const double off = std::abs(a - b) * all.numbers[k].step,
                                  share = off == 0 ? 0 : off / sizes[c];
-                    if (share <= worst.share || std::isnan(worst.share)) continue;
-                    worst.share = share;
+                    const double allowed =
+                        other.leg == Leg::energy &&
+                                all.outputs[c].kind() == ChannelKind::characteristic
+                            ? differences_agree
+                            : gradients_agree;
+                    if (share / allowed <= worst.share / worst.allowed || std::isnan(worst.share))
+                        continue;
+                    worst.share = share, worst.allowed = allowed;
                     worst.where = fmt::format("{} by {} at {:g} {}: {} {:.12g}, {} {:.12g}",
                                               all.outputs[c].name, all.numbers[k].path,
                                               in_unit(side.unit) * side.a[s], symbol(side.unit),
@@ -346,7 +349,7 @@ bool Gradients::conclusive() const {
     for (const SideGradients& side : sides) {
         for (const LegGradients& leg : side.legs)
             if (!leg.failure.empty() && !leg.not_applicable) return false;
-        if (!(side.worst.share <= gradients_agree)) return false;
+        if (!side.worst.agrees()) return false;
         any = any || side.worst.compared > 0;
     }
     return any;

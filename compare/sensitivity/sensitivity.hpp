@@ -53,11 +53,22 @@ struct OneSided {
     bool empty() const { return growing.size() == 0; }
 };
 
-// Largest difference of two legs.
+// Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
+// the output over all numbers and stations of the side, each number by its step. The largest entry
+// counts as at least a millionth of the largest of all rows of motions (mm, deg), or of forces and
+// moments (N, N·m); that of a characteristic as at least a ten-thousandth of its unit.
+inline constexpr double gradients_agree = 1e-8;
+// The same of characteristics by the energy leg, whose third derivatives are extrapolated
+// differences of its Hessian (reference/energy/linear_response.hpp).
+inline constexpr double differences_agree = 1e-6;
+
+// Difference of two legs that is the largest share of what is allowed.
 struct Disagreement {
-    double share = 0;   // of the largest entry of the output's row
+    double share = 0;  // of the largest entry of the output's row
+    double allowed = gradients_agree;
     std::string where;  // "toe by points.a.z at 100 N: equilibrium 1.2, energy 1.3"
     long compared = 0;
+    bool agrees() const { return share <= allowed; }
 };
 
 struct SideGradients {
@@ -74,12 +85,6 @@ struct SideGradients {
     std::vector<std::string> why_output;  // per output, likewise: not determined on this branch
     Disagreement worst;
 };
-
-// Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
-// the output over all numbers and stations of the side, each number by its step. The largest entry
-// counts as at least a millionth of the largest of all rows of motions (mm, deg), or of forces and
-// moments (N, N·m); of a characteristic, a ten-thousandth of the largest of its unit.
-inline constexpr double gradients_agree = 1e-8;
 
 struct Gradients {
     std::vector<Channel> outputs;

@@ -100,7 +100,7 @@ Responses responses(const Model& model, const Branch& branch, const StateTangent
 
 // ---- Derivatives of the responses.
 
-constexpr double difference = 1e-4;  // h [m, rad]
+constexpr double difference = 1e-3;  // h [m, rad]
 constexpr double longest = 1e4;      // of a response that reactions alone carry [N, N·m]
 constexpr int most_shorter = 3;      // steps of a thirtieth, where a knot of a law is within 2h
 constexpr double rounding_of_terms = 64 * std::numeric_limits<double>::epsilon();

@@ -71,8 +71,7 @@ long agreed(const std::string& scene, int points, double& worst) {
         for (const auto& leg : side.legs)
             EXPECT_TRUE(leg.failure.empty() || leg.not_applicable)
                 << scene << ", " << side.name << ": " << name(leg.leg) << ": " << leg.failure;
-        EXPECT_LE(side.worst.share, gradients_agree)
-            << scene << ", " << side.name << ": " << side.worst.where;
+        EXPECT_TRUE(side.worst.agrees()) << scene << ", " << side.name << ": " << side.worst.where;
         worst = std::max(worst, side.worst.share);
         compared += side.worst.compared;
     }

@@ -52,7 +52,13 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     bool boolean(bool value) override { return add_scalar(value ? "true" : "false"); }
     bool number_integer(number_integer_t value) override { return add_number(value); }
     bool number_unsigned(number_unsigned_t value) override { return add_number(value); }
-    bool number_float(number_float_t, const string_t& text) override { return add_number(text); }
+    // The parser hands over the number with the decimal point of the locale.
+    bool number_float(number_float_t, const string_t& text) override {
+        string_t number = text;
+        if (const auto at = number.find_first_not_of("0123456789+-eE"); at != number.npos)
+            number[at] = '.';
+        return add_number(number);
+    }
     bool string(string_t& text) override { return add_scalar(text, true); }
     bool binary(binary_t&) override { return false; }  // not in JSON text
     bool start_object(std::size_t) override { return begin(Value::Kind::map); }

@@ -172,14 +172,14 @@ std::string sensitivity_text(const Gradients& all, int most) {
         fmt::format_to(out,
                        "{} entries compared between the legs, largest difference {:.1e} of the "
                        "largest of its row{}{}\n\n",
-                       side.worst.compared, side.worst.share,
-                       side.worst.share <= compare::gradients_agree ? "" : ": ",
-                       side.worst.share <= compare::gradients_agree ? "" : side.worst.where);
+                       side.worst.compared, side.worst.share, side.worst.agrees() ? "" : ": ",
+                       side.worst.agrees() ? "" : side.worst.where);
     }
     fmt::format_to(out, "{}\n",
                    all.conclusive()
-                       ? fmt::format("the legs agree within {:g} of the largest of each row",
-                                     compare::gradients_agree)
+                       ? fmt::format("the legs agree within {:g} of the largest of each row, the "
+                                     "energy leg in characteristics within {:g}",
+                                     compare::gradients_agree, compare::differences_agree)
                        : "NOT CONCLUSIVE: the legs disagree, one did not converge, or nothing was "
                          "compared");
     return text;
@@ -205,6 +205,7 @@ json sensitivity_json(const Gradients& all) {
                          {"branch", side.branch},
                          {"compared", side.worst.compared},
                          {"worst", side.worst.share},
+                         {"allowed", side.worst.allowed},
                          {"where", side.worst.where},
                          {"legs", by}});
     }

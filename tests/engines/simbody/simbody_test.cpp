@@ -351,9 +351,9 @@ TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
         compare::fit(compare::exact_figures(
                          [&](const Eigen::VectorXd& p) { return read_scene(file, settings(p)); },
                          [&](const Eigen::VectorXd& p) {
-                             std::vector<std::string> paths;
-                             for (const auto& number : numbers) paths.push_back(number.path);
-                             return model_rates(file, settings(p), paths);
+                             std::vector<std::string> varied;
+                             for (const auto& number : numbers) varied.push_back(number.path);
+                             return model_rates(file, settings(p), varied);
                          },
                          figures),
                      measured);
