@@ -28,8 +28,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Smallest size of a row: of the largest row of its kind; of a characteristic, in its unit.
-constexpr double smallest_row = 1e-6, smallest_characteristic = 1e-4;
+// Smallest size of a row, of the largest row of its kind, and in its unit; of a characteristic, in
+// its unit.
+constexpr double smallest_row = 1e-6, smallest_effect = 1e-6, smallest_characteristic = 1e-4;
 
 std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
                                       std::span<const Model> rates) {
@@ -282,8 +283,9 @@ std::vector<double> row_sizes(const Gradients& all, const SideGradients& side) {
         if (!is_characteristic(c)) largest(c) = std::max(largest(c), sizes[c]);
     }
     for (std::size_t c = 0; c < sizes.size(); ++c)
-        sizes[c] = std::max(
-            sizes[c], is_characteristic(c) ? smallest_characteristic : smallest_row * largest(c));
+        sizes[c] = std::max(sizes[c], is_characteristic(c)
+                                          ? smallest_characteristic
+                                          : std::max(smallest_effect, smallest_row * largest(c)));
     return sizes;
 }
 

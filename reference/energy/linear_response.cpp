@@ -100,9 +100,10 @@ Responses responses(const Model& model, const Branch& branch, const StateTangent
 
 // ---- Derivatives of the responses.
 
-constexpr double difference = 1e-3;  // h [m, rad]
-constexpr double longest = 1e4;      // of a response that reactions alone carry [N, N·m]
-constexpr int most_shorter = 3;      // steps of a thirtieth, where a knot of a law is within 2h
+// h [m, rad]; the rounding of the Hessian, not h⁴, is what limits the differences
+constexpr double difference = 1e-2;
+constexpr double longest = 1e4;  // of a response that reactions alone carry [N, N·m]
+constexpr int most_shorter = 3;  // steps of a thirtieth, where a knot of a law is within 2h
 constexpr double rounding_of_terms = 64 * std::numeric_limits<double>::epsilon();
 constexpr double alike = 1e-4;  // differences with h and 2h that no knot separates
 

@@ -104,6 +104,9 @@ const Line lines[] = {
     {"tolerances",
      "echo 'springs.first.rate: {normal: {sd: 0.25}}' > t.yaml && $E tolerances "
      "$SCENES/parallel_springs.yaml t.yaml --of centre_z@up:1500.5 --quiet"},
+    {"study",
+     "$E study $SCENES/../studies/mcpherson.yaml --count 16 -o studied --csv rows.csv --quiet && "
+     "rm -r studied"},
     {"completion", "$E completion bash; $E man"},
     // Errors are reported with line and number.
     {"inspect",
