@@ -10,9 +10,9 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/definitions/definitions.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/outputs/rates.hpp"
 #include "elastocheck/channels.hpp"
 #include "models/reader/document/suggestions.hpp"
