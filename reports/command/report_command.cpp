@@ -209,33 +209,37 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
     std::vector<std::string> branches;
     for (const auto& branch : sweep->branches) branches.push_back(branch["name"].text());
     const KeyOutputs key = key_outputs(loaded.model);
-    auto outputs = key.at_design;
-    outputs.insert(outputs.end(), key.at_ends.begin(), key.at_ends.end());
-    if (outputs.empty()) return;
     // numbers of the suspension, not of what acts on it
     auto rates = all_model_rates(file, settings);
     std::erase_if(rates, [](const ModelRate& rate) {
         return std::ranges::any_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
                                    [&](const char* group) { return rate.path.starts_with(group); });
     });
-    const auto all = gradients_of(file, settings, loaded, outputs, std::move(rates),
-                                  {.points = 1, .branches = branches});
-    auto rows = compare::effect_rows(all);
-    std::erase_if(rows, [&](const compare::EffectRow& row) {
-        const bool of_design = std::ranges::find(key.at_design, row.output,
-                                                 &compare::Channel::name) != key.at_design.end();
-        return (of_design != (row.at == 0) && !key.at_design.empty()) ||
-               (key.at_design.empty() && row.at == 0);
-    });
+    std::vector<compare::EffectRow> rows;
     double apart = 0;
     long compared = 0;
-    for (const auto& side : all.sides)
-        apart = std::max(apart, side.worst.share), compared += side.worst.compared;
-    document["sensitivity"] = {{"conclusive", all.conclusive()},
+    bool conclusive = true;
+    // a characteristic costs several times an angle, and is shown at one station
+    const auto add = [&](const std::vector<compare::Channel>& outputs, bool of_design) {
+        if (outputs.empty()) return;
+        compare::GradientOptions options{.points = 1, .branches = branches};
+        if (of_design) options.stations[branches.front()] = {0};
+        if (of_design) options.branches = {branches.front()};
+        const auto all = gradients_of(file, settings, loaded, outputs, rates, options);
+        for (auto& row : compare::effect_rows(all))
+            if ((row.at == 0) == of_design) rows.push_back(std::move(row));
+        for (const auto& side : all.sides)
+            apart = std::max(apart, side.worst.share), compared += side.worst.compared;
+        conclusive = conclusive && all.conclusive();
+    };
+    add(key.at_design, true);
+    add(key.at_ends, false);
+    if (rows.empty()) return;
+    document["sensitivity"] = {{"conclusive", conclusive},
                                {"compared", compared},
                                {"apart", apart},
                                {"effects", table_json(rows)}};
-    if (!all.conclusive()) reasons.emplace_back("the derivatives of the legs do not agree");
+    if (!conclusive) reasons.emplace_back("the derivatives of the legs do not agree");
 }
 
 json solve_scene(const std::string& file, const ReportRequest& request, int threads,
