@@ -30,7 +30,7 @@ using Eigen::MatrixXd;
 
 // Smallest size of a row, of the largest row of its kind, and in its unit; of a characteristic, in
 // its unit.
-constexpr double smallest_row = 1e-6, smallest_effect = 1e-6, smallest_characteristic = 1e-3;
+constexpr double smallest_row = 1e-6, smallest_effect = 1e-5, smallest_characteristic = 1e-3;
 
 std::vector<StateRate> sensitivity_by(Leg leg, const BranchSide& side, const Equilibrium& state,
                                       std::span<const Model> rates) {

@@ -56,7 +56,7 @@ struct OneSided {
 // Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
 // the output over all numbers and stations of the side, each number by its step. The largest entry
 // counts as at least a millionth of the largest of all rows of motions (mm, deg), or of forces and
-// moments (N, N·m), and of its unit; that of a characteristic as at least a thousandth of its unit.
+// moments (N, N·m), and 1e-5 of its unit; that of a characteristic as at least a thousandth of its unit.
 inline constexpr double gradients_agree = 1e-8;
 // The same of characteristics by the energy leg, whose third derivatives are extrapolated
 // differences of its Hessian (reference/energy/linear_response.hpp).
