@@ -400,38 +400,34 @@ Beside beside(const CandidateJudgement& judgement, const Comparison& comparison,
             b.branch.push_back(branch.branch);
         }
     }
+    // Reference values at the same points.
+    const auto concatenated = [&](const auto& values_of) {
+        std::vector<double> values;
+        for (const auto& branch : judgement.branches) {
+            const auto& reading = branch.equal_parameter.columns.empty() ? branch.equal_abscissa
+                                                                         : branch.equal_parameter;
+            if (reading.columns.empty()) continue;
+            for (std::size_t k = 0; k < reading.at.size(); ++k)
+                if (std::isfinite(reading.candidate[c][k]) && std::isfinite(reading.truth[c][k]))
+                    values.push_back(values_of(reading)[k]);
+        }
+        return values;
+    };
     // Other outputs of this unit that the candidate gives too, since their reference values are
     // available.
     for (std::size_t d = 0; d < judgement.columns.size(); ++d) {
         const std::size_t channel = judgement.columns[d].channel;
         if (d == c || comparison.channels[channel].unit != comparison.channels[b.channel].unit)
             continue;
-        std::vector<double> values;
-        for (const auto& branch : judgement.branches) {
-            const auto& reading = branch.equal_parameter.columns.empty() ? branch.equal_abscissa
-                                                                         : branch.equal_parameter;
-            if (reading.columns.empty()) continue;
-            for (std::size_t k = 0; k < reading.at.size(); ++k)
-                if (std::isfinite(reading.candidate[c][k]) && std::isfinite(reading.truth[c][k]))
-                    values.push_back(reading.truth[d][k]);
-        }
-        b.others.push_back(std::move(values));
+        b.others.push_back(
+            concatenated([d](const auto& reading) -> const auto& { return reading.truth[d]; }));
         b.other_channels.push_back(channel);
     }
+    const std::string& figure = comparison.channels[b.channel].name;
     for (std::size_t d = 0; d < judgement.defined.size(); ++d) {
-        if (definitions_of(std::span(&judgement.defined[d], 1), comparison.channels[b.channel].name)
-                .empty())
-            continue;
-        std::vector<double> values;
-        for (const auto& branch : judgement.branches) {
-            const auto& reading = branch.equal_parameter.columns.empty() ? branch.equal_abscissa
-                                                                         : branch.equal_parameter;
-            if (reading.columns.empty()) continue;
-            for (std::size_t k = 0; k < reading.at.size(); ++k)
-                if (std::isfinite(reading.candidate[c][k]) && std::isfinite(reading.truth[c][k]))
-                    values.push_back(reading.defined[d][k]);
-        }
-        b.definitions.push_back(std::move(values));
+        if (definitions_of(std::span(&judgement.defined[d], 1), figure).empty()) continue;
+        b.definitions.push_back(
+            concatenated([d](const auto& reading) -> const auto& { return reading.defined[d]; }));
         b.definition_names.push_back(judgement.defined[d].name);
     }
     return b;

@@ -119,7 +119,7 @@ constexpr Definition list[] = {
      of_wheel<[](W now, W drawn) {
          return drawn.toe() + std::atan2(now.lateral().x(), now.side * now.lateral().y());
      }>},
-    {"toe", "axle", Unit::deg, "sum of the toe of both wheels", "total toe", toe_of_axle},
+    {"toe", "axle", Unit::deg, "sum of the toe of both wheels", "total toe", toe_of_axle, true},
     {"camber", "lateral", Unit::deg,
      "inclination of an axis that is lateral in the design position, plus the drawn camber",
      "programs whose wheel carrier is drawn without camber",
@@ -178,12 +178,8 @@ constexpr Definition list[] = {
     {"roll_centre_height", "planes", Unit::mm,
      "intersection of the lines from the patches to the instant centres, where the planes of both "
      "wishbones meet in the transverse plane of the drawn wheel centre; above the patches",
-     "drawings in front view; tables of manufacturers", roll_centre_by_planes},
+     "drawings in front view; tables of manufacturers", roll_centre_by_planes, true},
 };
-
-bool is_of_axle(const Definition& definition) {
-    return definition.value == &roll_centre_by_planes || definition.value == &toe_of_axle;
-}
 
 }  // namespace
 
@@ -194,18 +190,17 @@ std::vector<Channel> definition_channels(const Model& model) {
     const Equilibrium design = design_state(model);
     for (const Definition& definition : list)
         for (std::size_t w = 0; w < model.wheels.size(); ++w) {
-            if (is_of_axle(definition) && w > 0) break;
+            if (definition.of_axle && w > 0) break;
             const double value = definition.value(model, w, design);
             if (value == undefined || std::isnan(value)) continue;
             const std::string& wheel = model.wheels[w].name;
-            channels.push_back(
-                {.name = fmt::format("{}{}{}@{}", is_of_axle(definition) ? "" : wheel,
-                                     is_of_axle(definition) || wheel.empty() ? "" : ".",
-                                     definition.figure, definition.name),
-                 .unit = definition.unit,
-                 .main = false,
-                 .reads = Defined{definition.value, w},
-                 .definition = definition.formula});
+            channels.push_back({.name = fmt::format("{}{}{}@{}", definition.of_axle ? "" : wheel,
+                                                    definition.of_axle || wheel.empty() ? "" : ".",
+                                                    definition.figure, definition.name),
+                                .unit = definition.unit,
+                                .main = false,
+                                .reads = Defined{definition.value, w},
+                                .definition = definition.formula});
         }
     return channels;
 }

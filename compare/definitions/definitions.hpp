@@ -21,6 +21,7 @@ struct Definition {
     const char* used_by;  // where it is found; names for it elsewhere
     // SI; `undefined` where the scene has no such part. `wheel`: position in Model::wheels.
     double (*value)(const Model& model, std::size_t wheel, const Equilibrium& state);
+    bool of_axle = false;  // of both wheels together, not of each
 };
 std::span<const Definition> definitions();
 
