@@ -276,8 +276,7 @@ FigureGradient figure_gradient(const Scene& scene, std::span<const ModelRate> ra
                                std::span<const Figure> figures, int threads) {
     const auto rows = static_cast<Index>(figures.size()),
                columns = static_cast<Index>(rates.size());
-    FigureGradient result{
-        MatrixXd::Constant(rows, columns, nan), MatrixXd::Zero(rows, columns), {}};
+    FigureGradient result{MatrixXd::Constant(rows, columns, nan), {}};
     const Trimmed trimmed = trim(scene);
     if (trimmed.record && !trimmed.record->reached()) {
         result.why_not = "trim: " + trimmed.record->detail;
@@ -321,8 +320,7 @@ Figures exact_figures(SceneAt scene_at, RatesAt rates_at, std::vector<Figure> fi
             return figure_gradient(scene_at(p), rates_at(p), figures, threads);
         } catch (const std::runtime_error& error) {
             const auto rows = static_cast<Index>(figures.size());
-            return FigureGradient{MatrixXd::Constant(rows, p.size(), nan),
-                                  MatrixXd::Zero(rows, p.size()), error.what()};
+            return FigureGradient{MatrixXd::Constant(rows, p.size(), nan), error.what()};
         }
     };
     return {value, gradient};

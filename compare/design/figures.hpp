@@ -34,7 +34,6 @@ struct Figure {
 // number in the file.
 struct FigureGradient {
     Eigen::MatrixXd rate;
-    Eigen::MatrixXd error;     // estimate; zero where the rate is exact
     std::string why_not = {};  // reason of the first rate that is NaN
 };
 

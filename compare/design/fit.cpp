@@ -191,14 +191,12 @@ Fitted fit(const Figures& figures, const Measured& measured) {
     // The covariance, of the weights of the last residuals.
     const FigureGradient gradient = figures.gradient(found.p);
     for (Index k = 0; k < N; ++k) weight[k] = 1 / noise_at(k);
-    const MatrixXd J = weight.asDiagonal() * gradient.rate * measured.step.asDiagonal(),
-                   error = weight.asDiagonal() * gradient.error * measured.step.asDiagonal();
+    const MatrixXd J = weight.asDiagonal() * gradient.rate * measured.step.asDiagonal();
     const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
     found.singular_values = VectorXd::Zero(n);
     found.singular_values.head(svd.singularValues().size()) = svd.singularValues();
     const VectorXd& S = found.singular_values;
-    const double least = std::max(least_singular * S[0], 3 * error.norm());
-    determined = (S.array() > least).count();
+    determined = (S.array() > least_singular * S[0]).count();
     const MatrixXd V = svd.matrixV();
     found.undetermined = V.rightCols(n - determined);
     found.interval = VectorXd::Zero(n);
@@ -223,13 +221,12 @@ std::vector<Proposal> proposals(const FigureGradient& gradient, const VectorXd& 
     for (Index k = 0; k < undetermined.cols(); ++k) {
         const VectorXd change =
             step.cwiseProduct(undetermined.col(k)) / undetermined.col(k).cwiseAbs().maxCoeff();
-        const VectorXd movement = gradient.rate * change,
-                       unsure = gradient.error * change.cwiseAbs();
+        const VectorXd movement = gradient.rate * change;
         Proposal best;
         for (Index j = 0; j < movement.size(); ++j) {
             const double size = std::abs(movement[j]), rounding = 1e-10 * (1 + std::abs(value[j]));
             if (!std::isfinite(size) || !(extent[j] > rounding) ||
-                !(size > 3 * unsure[j] + rounding) || !(size / extent[j] > best.share))
+                !(size > rounding) || !(size / extent[j] > best.share))
                 continue;
             best = {.figure = j, .movement = movement[j], .share = size / extent[j]};
         }

@@ -21,8 +21,7 @@
 //
 //   K² [Σ ψ² / (N - n)] / [mean ψ']²,   K = 1 + (n/N) var ψ' / [mean ψ']²
 //
-// A combination v_k of the numbers with S_k ≤ 1e-6 S_1, or within the error of J, is not determined
-// by the data: it keeps its start value, and a number with a part in it has no interval.
+// A combination v_k of the numbers with S_k ≤ 1e-6 S_1 is not determined by the data: it keeps its start value, and a number with a part in it has no interval.
 #pragma once
 
 #include <Eigen/Core>
@@ -69,7 +68,7 @@ Fitted fit(const Figures& figures, const Measured& measured);
 
 // A figure that tells an undetermined combination apart from its opposite.
 struct Proposal {
-    Eigen::Index figure = -1;  // -1: none moves with the combination, beyond the error of its rate
+    Eigen::Index figure = -1;  // -1: none moves with the combination
     // of the figure, with the combination whose largest change is one step; in its unit
     double movement = 0;
     double share = 0;  // |movement| / extent

@@ -369,8 +369,7 @@ Optimum optimise(const Figures& figures, const Goals& goals, const std::vector<V
                     .box = {}};
     problem.box = {(goals.least - goals.start).cwiseQuotient(problem.range),
                    (goals.most - goals.start).cwiseQuotient(problem.range)};
-    const VectorXd movement = (optimum.gradient.rate * problem.range.asDiagonal()).rowwise().norm(),
-                   unsure = (optimum.gradient.error * problem.range.asDiagonal()).rowwise().norm();
+    const VectorXd movement = (optimum.gradient.rate * problem.range.asDiagonal()).rowwise().norm();
     const auto count = static_cast<std::size_t>(
         goals.goal.empty() ? 0 : *std::ranges::max_element(goals.goal) + 1);
     std::vector<double> largest(count, 0);
@@ -378,7 +377,7 @@ Optimum optimise(const Figures& figures, const Goals& goals, const std::vector<V
     for (Index j = 0; j < m; ++j) {
         const auto goal = static_cast<std::size_t>(goals.goal[static_cast<std::size_t>(j)]);
         const double rounding = 1e-10 * (1 + std::abs(optimum.before[j]));
-        if (movement[j] > 3 * unsure[j] + rounding) optimum.still[goal] = false;
+        if (movement[j] > rounding) optimum.still[goal] = false;
         largest[goal] = std::max(largest[goal], movement[j]);
     }
     for (Index j = 0; j < m; ++j) {

@@ -62,7 +62,7 @@ struct Optimum {
     Eigen::VectorXd p;              // of the best search
     Eigen::VectorXd before, after;  // figures at the start and at p
     FigureGradient gradient;        // at the start
-    // per goal: no number moves a figure of it at the start, beyond the error of the rates
+    // per goal: no number moves a figure of it at the start
     std::vector<bool> still;
     Eigen::VectorXd scale;   // g per figure, in its unit
     bool met = false;        // no figure is outside of its band by more than `within_bands` g

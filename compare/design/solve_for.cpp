@@ -61,9 +61,7 @@ std::vector<std::string> why_still(const SceneAt& scene_at, const RatesAt& rates
         }
         for (Index k = 0; k < values.size(); ++k) {
             const double effect = std::abs(gradient.rate(k, i)) * step_of(number);
-            if (!(effect >
-                  3 * gradient.error(k, i) * step_of(number) + 1e-10 * (1 + std::abs(values[k]))))
-                continue;
+            if (!(effect > 1e-10 * (1 + std::abs(values[k])))) continue;
             const std::string& moved = all[static_cast<std::size_t>(k)].name;
             why = fmt::format("it moves {}, for example, and not {}", moved, figure.name);
             break;
@@ -82,11 +80,10 @@ Solution solve_for(const Figures& figures, const Wishes& wishes) {
     if (!found.before.allFinite()) return found;
     found.gradient = figures.gradient(found.p);
     found.movement = (found.gradient.rate * range.asDiagonal()).rowwise().norm();
-    const VectorXd unsure = (found.gradient.error * range.asDiagonal()).rowwise().norm();
     bool moves = true;
     for (Index j = 0; j < m; ++j) {
         const double rounding = 1e-10 * (1 + std::abs(found.before[j]));
-        found.still.push_back(!(found.movement[j] > 3 * unsure[j] + rounding));
+        found.still.push_back(!(found.movement[j] > rounding));
         moves = moves && !found.still.back();
     }
     if (!moves) return found;

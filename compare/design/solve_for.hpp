@@ -28,8 +28,7 @@ struct Solution {
     Eigen::VectorXd p;
     Eigen::VectorXd before, after;  // figures at the start and at p
     FigureGradient gradient;        // at the start
-    // per figure: no number moves it at the start, beyond the error of its rates; then nothing was
-    // solved
+    // per figure: no number moves it at the start; then nothing was solved
     std::vector<bool> still;
     // g_j: change of the figure over the ranges of the numbers, to first order
     Eigen::VectorXd movement;

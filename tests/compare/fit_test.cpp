@@ -48,7 +48,7 @@ Figures decay() {
                 }));
             },
             [rate](const VectorXd& p) {
-                return FigureGradient{rate(p), MatrixXd::Zero(20, 2)};
+                return FigureGradient{rate(p)};
             }};
 }
 
@@ -71,7 +71,7 @@ TEST(Fit, OfAStraightLineHasTheIntervalsOfTheTextbook) {
     J << VectorXd::Ones(12), t;
     const Figures line{[&](const VectorXd& p) { return VectorXd(J * p); },
                        [&](const VectorXd&) {
-                           return FigureGradient{J, MatrixXd::Zero(12, 2)};
+                           return FigureGradient{J};
                        }};
     const Fitted found =
         fit(line, measured(y, std::vector<int>(12, 0), VectorXd::Zero(2), VectorXd::Ones(2)));
@@ -179,20 +179,19 @@ TEST(Fit, PlainIsOffByOutliersWhereTheRobustOneIsWithinItsInterval) {
 // ---- Proposals.
 
 // Gradients (1, 1) measured; (1, -1) is not determined. Of an extent of 10, and of 1, the second
-// figure moves by 3 and 2 with it; the third only with the sum, the fourth not surely.
+// figure moves by 3 and 2 with it; the third only with the sum.
 TEST(Fit, ProposesTheFigureThatMovesMostWithAnUndeterminedCombination) {
-    const FigureGradient gradient{MatrixXd{{3, 0}, {1, -1}, {5, 5}, {9, -9}},
-                                  MatrixXd{{0, 0}, {0, 0}, {0, 0}, {9, 9}}};
-    const VectorXd value = VectorXd::Zero(4), step = VectorXd::Ones(2);
-    VectorXd extent(4);
-    extent << 10, 1, 1, 1;
+    const FigureGradient gradient{MatrixXd{{3, 0}, {1, -1}, {5, 5}}};
+    const VectorXd value = VectorXd::Zero(3), step = VectorXd::Ones(2);
+    VectorXd extent(3);
+    extent << 10, 1, 1;
     const MatrixXd open = std::sqrt(0.5) * MatrixXd{{1}, {-1}};
     const auto found = proposals(gradient, value, extent, step, open);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].figure, 1);
     EXPECT_NEAR(found[0].movement, 2, 1e-14);
     EXPECT_NEAR(found[0].share, 2, 1e-14);
-    EXPECT_EQ(proposals({gradient.rate.row(2), gradient.error.row(2)}, value.head(1),
+    EXPECT_EQ(proposals({gradient.rate.row(2)}, value.head(1),
                         extent.tail(1), step, open)[0]
                   .figure,
               -1);

@@ -31,7 +31,7 @@ Figures exact_figures_of(std::function<VectorXd(const VectorXd&)> value,
                          std::function<MatrixXd(const VectorXd&)> rate) {
     return {std::move(value), [rate](const VectorXd& p) {
                 const MatrixXd J = rate(p);
-                return FigureGradient{J, MatrixXd::Zero(J.rows(), J.cols())};
+                return FigureGradient{J};
             }};
 }
 const Figures radius =
