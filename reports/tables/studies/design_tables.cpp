@@ -21,31 +21,9 @@ using json = nlohmann::ordered_json;
 
 constexpr double least_share = 0.05;  // of a wish in a conflict
 
-const char* limit_of(int at_limit) {
-    return at_limit < 0 ? "at the lower" : at_limit > 0 ? "at the upper" : "";
-}
-
-Table numbers_table(const SolvedFor& solved) {
-    using enum Digits;
-    Table table{{{"number", "", "", true, words},
-                 {"unit", "", "", true, words},
-                 {"from", "", "", false, given},
-                 {"to", "", "", false, given},
-                 {"change", "", "", false, given},
-                 {"low", "", "lower limit", false, given},
-                 {"high", "", "upper limit", false, given},
-                 {"at limit", "", "the wishes would come nearer beyond this limit", true, words}},
-                {}};
-    const auto& [target, start, low, high] = solved.wishes;
-    const VectorXd& p = solved.solution.p;
-    for (std::size_t k = 0; k < solved.numbers.size(); ++k) {
-        const auto i = static_cast<Index>(k);
-        const auto& at_limit = solved.solution.at_limit;
-        table.rows.push_back({solved.numbers[k].path, solved.numbers[k].unit, start[i], p[i],
-                              p[i] - start[i], low[i], high[i],
-                              std::string(at_limit.empty() ? "" : limit_of(at_limit[k]))});
-    }
-    return table;
+ChangedNumbers changed_numbers(const SolvedFor& solved) {
+    return {solved.numbers,    solved.wishes.start, solved.solution.p,
+            solved.wishes.low, solved.wishes.high,  solved.solution.at_limit};
 }
 
 Table wishes_table(const SolvedFor& solved) {
@@ -76,24 +54,17 @@ Table wishes_table(const SolvedFor& solved) {
 
 // The wishes that conflict, and the limits.
 std::string conflict_text(const SolvedFor& solved) {
-    std::vector<std::string> wishes, limits;
+    std::vector<std::string> wishes;
     for (std::size_t k = 0; k < solved.rows.size(); ++k)
         if (solved.solution.conflict[static_cast<Index>(k)] > least_share)
             wishes.push_back(solved.rows[k].output + " at " + solved.rows[k].place);
-    for (std::size_t k = 0; k < solved.numbers.size(); ++k)
-        if (const int at = solved.solution.at_limit[k]; at != 0)
-            limits.push_back(fmt::format(
-                "{} {} {:g}", solved.numbers[k].path, at < 0 ? "below" : "above",
-                (at < 0 ? solved.wishes.low : solved.wishes.high)[static_cast<Index>(k)]));
     std::string text = wishes.size() > 1
                            ? fmt::format(
                                  "In conflict: {}. Within the limits the numbers move "
                                  "them only together.\n",
                                  fmt::join(wishes, "; "))
                            : fmt::format("Out of reach: {}.\n", fmt::join(wishes, "; "));
-    text += limits.empty()
-                ? "No limit of a number causes this: more or other numbers are needed.\n"
-                : fmt::format("The wishes would come nearer with {}.\n", fmt::join(limits, "; "));
+    text += limits_text(changed_numbers(solved), "wishes");
     return text;
 }
 
@@ -215,10 +186,46 @@ Table shares_table(const ToleratedScene& all, std::size_t most) {
 
 }  // namespace
 
+Table numbers_table(const ChangedNumbers& changed) {
+    using enum Digits;
+    const auto& [numbers, from, to, low, high, at_limit] = changed;
+    Table table{{{"number", "", "", true, words},
+                 {"unit", "", "", true, words},
+                 {"from", "", "", false, given},
+                 {"to", "", "", false, given},
+                 {"change", "", "", false, given},
+                 {"low", "", "lower limit", false, given},
+                 {"high", "", "upper limit", false, given},
+                 {"at limit", "", "the figures would come nearer beyond this limit", true, words}},
+                {}};
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+        const auto i = static_cast<Index>(k);
+        const int at = at_limit.empty() ? 0 : at_limit[k];
+        table.rows.push_back({numbers[k].path, numbers[k].unit, from[i], to[i], to[i] - from[i],
+                              low[i], high[i],
+                              std::string(at < 0   ? "at the lower"
+                                          : at > 0 ? "at the upper"
+                                                   : "")});
+    }
+    return table;
+}
+
+std::string limits_text(const ChangedNumbers& changed, const char* what) {
+    std::vector<std::string> limits;
+    for (std::size_t k = 0; k < changed.numbers.size(); ++k)
+        if (const int at = changed.at_limit[k]; at != 0)
+            limits.push_back(
+                fmt::format("{} {} {:g}", changed.numbers[k].path, at < 0 ? "below" : "above",
+                            (at < 0 ? changed.low : changed.high)[static_cast<Index>(k)]));
+    return limits.empty()
+               ? "No limit of a number causes this: more or other numbers are needed.\n"
+               : fmt::format("The {} would come nearer with {}.\n", what, fmt::join(limits, "; "));
+}
+
 std::string solve_for_text(const SolvedFor& solved) {
     const compare::Solution& solution = solved.solution;
-    std::string text =
-        reports::text(numbers_table(solved)) + "\n" + reports::text(wishes_table(solved)) + "\n";
+    std::string text = reports::text(numbers_table(changed_numbers(solved))) + "\n" +
+                       reports::text(wishes_table(solved)) + "\n";
     text += solution.met
                 ? "All wishes are met; of all such numbers within the limits, these "
                   "change least, as shares of their ranges.\n"
@@ -236,7 +243,7 @@ json solve_for_json(const SolvedFor& solved) {
             {"confirmed", solved.confirmed},
             {"not_confirmed", solved.not_confirmed},
             {"converged", solved.solution.converged},
-            {"numbers", table_json(numbers_table(solved))},
+            {"numbers", table_json(numbers_table(changed_numbers(solved)))},
             {"wishes", table_json(wishes_table(solved))}};
 }
 

@@ -17,6 +17,18 @@ inline constexpr const char* solve_for_schema = "elastocheck/solve-for/1";
 inline constexpr const char* fit_schema = "elastocheck/fit/1";
 inline constexpr const char* tolerances_schema = "elastocheck/tolerances/2";
 
+// ---- Results of a search
+
+// Numbers of a scene before and after a search within limits, in their units.
+struct ChangedNumbers {
+    const std::vector<Number>& numbers;
+    const Eigen::VectorXd &from, &to, &low, &high;
+    const std::vector<int>& at_limit;  // -1, 0, +1: held by this limit; empty: none is
+};
+compare::Table numbers_table(const ChangedNumbers& changed);
+// A line that names the limits beyond which `what` ("bands") would come nearer.
+std::string limits_text(const ChangedNumbers& changed, const char* what);
+
 // ---- solve-for
 
 // A figure with its wish, and its values at the result by the other legs; NaN where a leg does not

@@ -8,6 +8,7 @@
 
 #include "reports/tables/certify_tables.hpp"
 #include "reports/tables/render.hpp"
+#include "reports/tables/studies/design_tables.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -21,24 +22,9 @@ constexpr double least_share_shown = 0.05;  // of a band in a conflict
 
 double finite_bound(double bound) { return std::isfinite(bound) ? bound : compare::nan; }
 
-Table optimised_numbers_table(const OptimisedScene& scene) {
-    using enum Digits;
-    Table table{{{"number", "", "", true, words},
-                 {"unit", "", "", true, words},
-                 {"from", "", "", false, given},
-                 {"to", "", "", false, given},
-                 {"change", "", "", false, given},
-                 {"low", "", "lower limit", false, given},
-                 {"high", "", "upper limit", false, given}},
-                {}};
-    const compare::Goals& limits = scene.limits;
-    for (std::size_t k = 0; k < scene.numbers.size(); ++k) {
-        const auto i = static_cast<Index>(k);
-        table.rows.push_back({scene.numbers[k].path, scene.numbers[k].unit, limits.start[i],
-                              scene.optimum.p[i], scene.optimum.p[i] - limits.start[i],
-                              limits.least[i], limits.most[i]});
-    }
-    return table;
+ChangedNumbers changed_numbers(const OptimisedScene& scene) {
+    return {scene.numbers,      scene.limits.start, scene.optimum.p,
+            scene.limits.least, scene.limits.most,  scene.optimum.at_limit};
 }
 
 // The value of a goal that is nearest to leaving the band, or furthest outside.
@@ -194,7 +180,7 @@ void add_prices(const OptimisedScene& scene, std::back_insert_iterator<std::stri
 void add_conflict(const OptimisedScene& scene, std::back_insert_iterator<std::string> out) {
     const compare::Optimum& optimum = scene.optimum;
     const auto points = points_in_order(scene);
-    std::vector<std::string> bands, limits;
+    std::vector<std::string> bands;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const auto i = static_cast<Index>(k);
         if (!(optimum.conflict[i] > least_share_shown)) continue;
@@ -204,25 +190,17 @@ void add_conflict(const OptimisedScene& scene, std::back_insert_iterator<std::st
                                     above ? "<=" : ">=", above ? goal.high : goal.low, goal.unit,
                                     points[k].point->place));
     }
-    for (std::size_t k = 0; k < scene.numbers.size(); ++k)
-        if (const int at = optimum.at_limit[k]; at != 0)
-            limits.push_back(fmt::format(
-                "{} {} {:g}", scene.numbers[k].path, at < 0 ? "below" : "above",
-                (at < 0 ? scene.limits.least : scene.limits.most)[static_cast<Index>(k)]));
     fmt::format_to(out, "{}: {}.\n", bands.size() > 1 ? "In conflict" : "Out of reach",
                    fmt::join(bands, "; "));
-    if (limits.empty())
-        fmt::format_to(out,
-                       "No limit of a number causes this: more or other numbers are needed.\n");
-    else
-        fmt::format_to(out, "The bands would come nearer with {}.\n", fmt::join(limits, "; "));
+    fmt::format_to(out, "{}", limits_text(changed_numbers(scene), "bands"));
 }
 
 }  // namespace
 
 std::string optimise_text(const OptimisedScene& scene) {
     const compare::Optimum& optimum = scene.optimum;
-    std::string all = text(optimised_numbers_table(scene)) + "\n" + text(goals_table(scene)) + "\n";
+    std::string all =
+        text(numbers_table(changed_numbers(scene))) + "\n" + text(goals_table(scene)) + "\n";
     const auto out = std::back_inserter(all);
     for (const Goal& goal : scene.goals)
         if (!goal.not_moved.empty())
@@ -277,7 +255,7 @@ json optimise_json(const OptimisedScene& scene) {
                      {"optimality", optimum.optimality},
                      {"minimised", scene.minimised.empty() ? "change" : scene.minimised},
                      {"cost", optimum.cost},
-                     {"numbers", table_json(optimised_numbers_table(scene))},
+                     {"numbers", table_json(numbers_table(changed_numbers(scene)))},
                      {"goals", table_json(goals_table(scene))},
                      {"prices", table_json(prices_table(scene))},
                      {"searches", table_json(searches_table(scene))}};
