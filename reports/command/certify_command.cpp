@@ -10,6 +10,7 @@
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
+#include "reports/command/options/solving.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/certify_tables.hpp"
 #include "reports/tables/render.hpp"
@@ -23,19 +24,11 @@ struct CertifyRequest : SceneRequest {
     int points = compare::CertifyOptions{}.points;
 };
 
-compare::SolverSettings settings_of(const std::string& solver) {
-    for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series})
-        if (solver == name(leg)) return {.leg = leg};
-    compare::SolverSettings settings;
-    settings.recursion.method = *recursive::find_method(solver);
-    return settings;
-}
-
 int certify(const CertifyRequest& request, const Delivery& delivery) {
     compare::CertifyOptions options;
     options.tolerance = compare::claim(request.tolerance);  // throws before the work
     if (!request.folder.empty()) Staging::check(request.folder);
-    for (const auto& solver : request.solvers) options.solvers.push_back(settings_of(solver));
+    for (const auto& solver : request.solvers) options.solvers.push_back(certified_solver(solver));
     options.points = request.points;
     options.threads = threads_of(request.running);
     options.progress = progress;
@@ -60,14 +53,13 @@ int certify(const CertifyRequest& request, const Delivery& delivery) {
 
 Command certify_command() {
     const auto request = std::make_shared<CertifyRequest>();
-    std::vector<std::string> known{"equilibrium", "energy"};
-    for (const auto& method : recursive::methods) known.emplace_back(method.name);
     return {
         "certify",
         "Prove by interval arithmetic that computed states are equilibria and locally unique",
         {scene_option(request->scene),
          set_option(request->settings),
-         {"--method", TextList{&request->solvers, TextList::Form::commas, one_of(known)},
+         {"--method",
+          TextList{&request->solvers, TextList::Form::commas, one_of(certified_solvers())},
           "solver of the points: equilibrium, energy, series (default: these three), or a "
           "method of the recursion"},
          {"--tolerance", Text{&request->tolerance},

@@ -25,13 +25,6 @@ nlohmann::ordered_json document_head(const char* schema, const std::string& comm
         {"schema", schema}, {"reproduce", command}, {"provenance", provenance_json(provenance())}};
 }
 
-nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {
-    auto part = scene_document(loaded.scene, read_whole(file), loaded.model);
-    if (loaded.trim) add_trim(part, *loaded.trim);
-    if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
-    return part;
-}
-
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files) {
     write_folder(delivery.folder, files);
     std::string written;

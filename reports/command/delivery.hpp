@@ -45,10 +45,6 @@ void print_document(const nlohmann::ordered_json& document);
 // {schema, reproduce, provenance}: the head of a document other than result.json.
 nlohmann::ordered_json document_head(const char* schema, const std::string& command);
 
-// A scene of result.json without results: the compiled model, the trim, the reader's warnings.
-// `file` is the scene's.
-nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file);
-
 // Writes the files to the folder in one step, and names them on the terminal.
 void deliver_files(const Delivery& delivery, const std::vector<NamedContent>& files);
 

@@ -1,46 +1,14 @@
-#include "reports/command/templates.hpp"
-
-#include <fmt/format.h>
-
+// `elastocheck new`: prints a built-in scene to start from.
 #include <algorithm>
 #include <memory>
-#include <stdexcept>
-#include <string_view>
-#include <vector>
 
-#include "models/reader/document/suggestions.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/templates.hpp"
 #include "reports/files/terminal.hpp"
-#include "scenes_embedded.hpp"  // generated: name and text of every scene of models/scenes
 
 namespace elastocheck::reports {
-namespace {
-
-// JsonCursor `name` of a scene file.
-std::string_view title(std::string_view scene) {
-    constexpr std::string_view field = "\nname: ";
-    const auto begin = scene.find(field);
-    if (begin == scene.npos) return {};
-    scene.remove_prefix(begin + field.size());
-    return scene.substr(0, scene.find('\n'));
-}
-
-}  // namespace
-
-std::vector<std::string> templates() {
-    std::vector<std::string> names;
-    for (const auto& scene : embedded_scenes) names.emplace_back(scene.name);
-    return names;
-}
-
-std::string_view template_text(const std::string& name) {
-    for (const auto& scene : embedded_scenes)
-        if (scene.name == name) return scene.text;
-    return {};
-}
-
 namespace {
 
 constexpr const char* templates_schema = "elastocheck/templates/1";
@@ -49,32 +17,29 @@ constexpr const char* templates_schema = "elastocheck/templates/1";
 // std::invalid_argument for an unknown name, with the nearest known one. As JSON: schema, and
 // templates, the named one with its text.
 int new_scene(const std::string& name, bool as_json) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    std::size_t longest = 0;
-    for (const auto& scene : embedded_scenes) {
-        longest = std::max(longest, scene.name.size());
-        list.push_back({{"template", scene.name}, {"name", title(scene.text)}});
-        if (scene.name != name) continue;
+    if (!name.empty()) {
+        const std::string_view text = template_named(name);
         if (as_json)
             print_document(
                 {{"schema", templates_schema},
                  {"templates",
-                  {{{"template", name}, {"name", title(scene.text)}, {"text", scene.text}}}}});
+                  {{{"template", name}, {"name", template_title(text)}, {"text", text}}}}});
         else
-            print("{}", scene.text);
+            print("{}", text);
         return fine;
     }
-    const std::vector<std::string> names = templates();
-    if (!name.empty())
-        throw std::invalid_argument(fmt::format("new: there is no template {}{}",
-                                                reader::quote(name),
-                                                reader::did_you_mean(name, names, "there are")));
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    std::size_t longest = 0;
+    for (const auto& each : templates()) {
+        longest = std::max(longest, each.size());
+        list.push_back({{"template", each}, {"name", template_title(template_text(each))}});
+    }
     if (as_json) {
         print_document({{"schema", templates_schema}, {"templates", list}});
         return fine;
     }
-    for (const auto& scene : embedded_scenes)
-        print("{:<{}}  {}\n", scene.name, longest, title(scene.text));
+    for (const auto& each : templates())
+        print("{:<{}}  {}\n", each, longest, template_title(template_text(each)));
     print("\nelastocheck new NAME > my.yaml\n");
     return fine;
 }

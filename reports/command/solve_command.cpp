@@ -1,21 +1,15 @@
 // `elastocheck solve`: solves one scene by one leg or method and writes its curves as CSV.
-#include <fmt/format.h>
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
-#include "compare/comparison/characteristics.hpp"
-#include "compare/comparison/elements.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/definitions/definitions.hpp"
 #include "compare/outputs/rates.hpp"
 #include "elastocheck/channels.hpp"
-#include "models/reader/document/suggestions.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
 #include "reports/command/delivery.hpp"
@@ -24,6 +18,7 @@
 #include "reports/command/options/limits.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/recursion_options.hpp"
+#include "reports/command/options/solving.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -37,33 +32,15 @@ using compare::Channel;
 
 // `folder` is the CSV file.
 struct SolveRequest : SceneRequest {
-    std::string method = name(compare::Leg::equilibrium);
-    RecursionRequest recursion;
-    bool keep_all = false, error_bound = false;
-    int every = 1;
+    SolverRequest solver;
+    bool keep_all = false;
     std::vector<std::string> channels;  // names, or patterns with *; none: all
     std::string rates;                  // CSV of the derivatives, by the series; empty: none
     std::string states;                 // JSON lines of poses, in the candidate format; empty: none
 };
 
-// Names of the legs and of the methods of the recursion.
-std::vector<std::string> solvers() {
-    std::vector<std::string> names;
-    for (const auto leg : compare::legs) names.emplace_back(name(leg));
-    for (const auto& method : recursive::methods) names.emplace_back(method.name);
-    return names;
-}
-
-compare::SolverSettings solver_of(const SolveRequest& request) {
-    RecursionRequest with_method = request.recursion;
-    const auto leg = std::ranges::find(compare::legs, request.method,
-                                       [](auto l) { return std::string(name(l)); });
-    if (leg == compare::legs.end()) with_method.method = request.method;
-    compare::SolverSettings solver;
-    solver.recursion = recursion(with_method);
-    solver.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
-    solver.every = request.every;
-    solver.error_bound = request.error_bound;
+compare::SolverSettings checked_solver_of(const SolveRequest& request) {
+    const compare::SolverSettings solver = solver_of(request.solver);
     if (!request.rates.empty() &&
         !std::holds_alternative<recursive::Series>(solver.recursion.method.kind))
         throw std::invalid_argument("--rates: only with --method series");
@@ -94,94 +71,12 @@ void write_rates(const Model& model, const std::vector<Channel>& requested,
     csv.finish();
 }
 
-// The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
-// without a match, with the nearest name.
-std::vector<Channel> chosen(const std::vector<Channel>& all,
-                            const std::vector<std::string>& patterns) {
-    if (patterns.empty()) return all;
-    std::vector<Channel> list;
-    std::vector<std::string> names;
-    for (const auto& channel : all) names.push_back(channel.name);
-    for (const auto& pattern : patterns) {
-        bool fits = false;
-        for (const auto& channel : all) {
-            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0)
-                continue;
-            fits = true;
-            if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
-        }
-        if (!fits)
-            throw std::invalid_argument(
-                fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
-                            reader::did_you_mean(pattern, names, "outputs")));
-    }
-    return list;
-}
-
-// Forces of bushings, springs and links, and characteristics, whose cost is comparable to a step of
-// a leg, are written only if requested by name.
-std::vector<Channel> requested_channels(const Model& model,
-                                        const std::vector<std::string>& patterns) {
-    auto all = compare::channels(model);
-    if (patterns.empty()) return all;
-    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
-    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
-    std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
-    return chosen(all, patterns);
-}
-
-// Largest differences between two states in the main outputs, in words: "2.2 mm (wheel_centre_z)
-// and 0.0068 deg (toe)".
-std::string differences(const Model& model, const Branch& branch, const Equilibrium& state,
-                        const Equilibrium& truth) {
-    auto main = compare::channels(model);
-    std::erase_if(main, [](const Channel& c) { return !c.main || !c.kinematic(); });
-    const auto is = compare::evaluate(model, branch, main, state),
-               right = compare::evaluate(model, branch, main, truth);
-    std::string text;
-    for (const auto unit : {compare::Unit::mm, compare::Unit::deg}) {
-        const Channel* worst = nullptr;
-        double off = 0;
-        for (std::size_t c = 0; c < main.size(); ++c) {
-            const double by = compare::worse(std::abs(is[c] - right[c]), off);
-            if (main[c].unit != unit || (worst != nullptr && by == off)) continue;
-            worst = &main[c], off = by;
-        }
-        if (worst != nullptr)
-            text += fmt::format("{}{:.2g} {} ({})", text.empty() ? "" : " and ", off, symbol(unit),
-                                worst->name);
-    }
-    return text;
-}
-
-// Error of a method at the end of a branch side: its state there against one solve of the
-// equilibrium leg at the same parameter.
-std::string error_at_end(const Model& model, compare::BranchSide side, const Equilibrium& state) {
-    const compare::Unit unit = compare::unit_of(side.branch.unit);
-    const std::string where =
-        fmt::format("at {:g} {}, the end", compare::in_unit(unit) * side.branch.to, symbol(unit));
-    side.branch.steps = 1;
-    std::optional<Equilibrium> truth;
-    const EquilibriumPath path = compare::walk(side, {.leg = compare::Leg::equilibrium},
-                                               [&](const Equilibrium& found) { truth = found; });
-    if (path.outcome != Outcome::converged || !truth)
-        return fmt::format("its error {} is not known: equilibrium leg: {}: {}", where,
-                           name(path.outcome), path.detail);
-    return fmt::format("off by {} {}, from the equilibrium leg there",
-                       differences(model, side.branch, state, *truth), where);
-}
-
-// The last recorded parameter is the end but for rounding.
-bool is_end(const Branch& side, double load) {
-    return std::abs(load - side.to) <= 1e-12 * std::abs(side.to);
-}
-
 // Writes each row when its point is found, except for the branch side that is solved in reverse.
 // Invalid requests are rejected before the work. Returns the exit code; for a branch that does not
 // converge, the rows reach to its last point. The CSV goes to the file of `delivery` or to standard
 // output; the document contains every point, so all are stored for it.
 int solve(const SolveRequest& request, const Delivery& delivery) {
-    compare::SolverSettings solver = solver_of(request);
+    compare::SolverSettings solver = checked_solver_of(request);
     const auto leg = solver.leg;
     const recursive::Options& how = solver.recursion;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
@@ -191,11 +86,12 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
                                           request.keep_all ? Detail::everything : Detail::required);
     const Model& model = loaded.model;
     const auto channels = requested_channels(model, request.channels);
-    check_every(model, how.steps, request.every);
+    check_every(model, how.steps, request.solver.every);
     if (delivery.as_json)
-        check_memory(model, {.steps = how.steps, .every = request.every, .written = true});
+        check_memory(model, {.steps = how.steps, .every = request.solver.every, .written = true});
     else
-        check_memory_of_rows(model, {.steps = how.steps, .every = request.every}, channels.size());
+        check_memory_of_rows(model, {.steps = how.steps, .every = request.solver.every},
+                             channels.size());
     if (!request.rates.empty()) write_rates(model, channels, request, solver);
 
     std::optional<AtomicFile> csv;
@@ -215,7 +111,7 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         leg == compare::Leg::recursive
             ? compare::tolerance_of_method(how.method, recursive::diagnose(model).length)
             : std::nullopt;
-    solver.error_bound = request.error_bound || promise;
+    solver.error_bound = request.solver.error_bound || promise;
     // A method with equal steps has no error bound: its error at the end is reported.
     const bool approximate = leg == compare::Leg::recursive && recursive::has_steps(how.method);
     for (const auto& branch : model.branches) {
@@ -277,16 +173,16 @@ Command solve_command() {
     const auto given = std::make_shared<SolveRequest>();
     std::vector<Option> options = given->options();
     options.push_back(keep_all_option(given->keep_all));
-    add_recursion_options(options, given->recursion);
+    add_recursion_options(options, given->solver.recursion);
     options.insert(
         options.end(),
-        {{"--method", Text{&given->method, one_of(solvers())},
+        {{"--method", Text{&given->solver.method, one_of(solvers())},
           "equilibrium (default) or energy; a fast method: published (or recursive), closed, "
           "balanced, tangent, chord, midpoint, adaptive or series"},
-         {"--account", Flag{&given->error_bound},
+         {"--account", Flag{&given->solver.error_bound},
           "report the extrapolated singular point and error estimates; adaptive and series always "
           "do"},
-         {"--arc-length", Flag{&given->recursion.arc_length},
+         {"--arc-length", Flag{&given->solver.recursion.arc_length},
           "series: continuation by arc length, through limit points"},
          {"--rates", Text{&given->rates, a_file("*.csv")},
           "series: write derivatives of travel and outputs to this CSV file"},
@@ -294,7 +190,7 @@ Command solve_command() {
           "write the poses of the bodies to this file (JSON lines)"},
          {"--channels", TextList{&given->channels, TextList::Form::commas},
           "outputs to write, in this order: NAME,... as in the CSV's head; * matches any letters"},
-         every_option(given->every),
+         every_option(given->solver.every),
          {"-o,--output", Text{&given->folder, a_file("*.csv")}, "write the CSV to this file"}});
     return {"solve", "Solve a scene with one method and print the curves as CSV",
             std::move(options),

@@ -16,6 +16,7 @@
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/design_options.hpp"
+#include "reports/command/options/fitting.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
@@ -135,108 +136,18 @@ struct FitRequest {
     bool as_json = false;
 };
 
-// Outputs at the ends of the branches, without those that were measured on the branch: positions
-// and angles, or all others.
-std::vector<NamedFigure> unmeasured(const Model& model, const MeasuredFigures& data,
-                                    bool kinematic) {
-    std::vector<NamedFigure> all;
-    for (const Branch& branch : model.branches)
-        for (const auto& output : compare::figure_outputs(model)) {
-            if (output.kinematic() != kinematic ||
-                std::ranges::any_of(data.figures, [&](const compare::Figure& figure) {
-                    return figure.name == output.name && figure.branch == branch.name;
-                }))
-                continue;
-            const compare::Unit unit = compare::unit_of(branch.unit);
-            for (const double end : {double(branch.from), double(branch.to)})
-                if (end != 0)
-                    all.push_back({{.name = output.name, .branch = branch.name, .at = end},
-                                   output,
-                                   fmt::format("{} = {:g} {}", branch.name,
-                                               compare::in_unit(unit) * end, symbol(unit))});
-        }
-    return all;
-}
-
-// Per figure: how far its output moves from the start of a branch to an end, of all branches the
-// largest.
-VectorXd extents_of(const Scene& scene, const std::vector<compare::Figure>& figures,
-                    const VectorXd& value) {
-    std::vector<compare::Figure> starts = figures;
-    for (auto& figure : starts) figure.at = 0;
-    const VectorXd start = compare::figure_values(scene, starts, compare::Leg::equilibrium).value;
-    std::map<std::string, double> largest;
-    for (std::size_t k = 0; k < figures.size(); ++k) {
-        const auto i = static_cast<Index>(k);
-        const double moved = std::abs(value[i] - start[i]);
-        if (double& most = largest[figures[k].name]; moved > most) most = moved;
-    }
-    VectorXd extent(value.size());
-    for (std::size_t k = 0; k < figures.size(); ++k)
-        extent[static_cast<Index>(k)] = largest[figures[k].name];
-    return extent;
-}
-
-// What to measure so that each undetermined combination is determined.
-std::vector<ProposedOutput> propose(const FittedScene& fit, const Model& model,
-                                    const MeasuredFigures& data, const compare::SceneAt& scene,
-                                    const compare::RatesAt& rates, int threads) {
-    const auto& open = fit.fitted.undetermined;
-    std::vector<ProposedOutput> proposed(static_cast<std::size_t>(open.cols()));
-    for (const bool kinematic : {true, false}) {
-        if (std::ranges::none_of(proposed, &std::string::empty, &ProposedOutput::output)) break;
-        const auto named = unmeasured(model, data, kinematic);
-        const auto figures = figures_of(named);
-        const auto of = compare::exact_figures(scene, rates, figures, threads);
-        const VectorXd value = of.value(fit.fitted.p);
-        const auto found = compare::proposals(of.gradient(fit.fitted.p), value,
-                                              extents_of(scene(fit.fitted.p), figures, value),
-                                              fit.measured.step, open);
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            if (found[k].figure < 0 || !proposed[k].output.empty()) continue;
-            const NamedFigure& one = named[static_cast<std::size_t>(found[k].figure)];
-            proposed[k] = {one.output.name, symbol(one.output.unit), one.place, found[k].movement,
-                           found[k].share};
-        }
-    }
-    return proposed;
-}
-
 // Exit code 0: the data determine all numbers; 3: not all, or there is no fit.
 int fit(const FitRequest& request, const Delivery& delivery) {
     if (!request.output.empty()) check_may_write_scene(request.output);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
     const Varied varied = parse_varied(request.vary, loaded.scene);
-    const ColumnMap map =
-        request.map.empty() ? ColumnMap{} : read_column_map(read_whole(request.map), request.map);
-    const MeasuredFigures data = read_measured(read_whole(request.measured, largest_measurement),
-                                               request.measured, map, loaded.model);
-    FittedScene result{.numbers = varied.numbers,
-                       .measured = {.value = data.value,
-                                    .column = data.column,
-                                    .start = varied.start,
-                                    .low = varied.low,
-                                    .high = varied.high,
-                                    .step = VectorXd(varied.start.size()),
-                                    .robust = request.robust},
-                       .columns = data.columns,
-                       .left_out = data.left_out,
-                       .fitted = {}};
-    for (Index k = 0; k < varied.start.size(); ++k)
-        result.measured.step[k] = compare::step_of(varied.numbers[static_cast<std::size_t>(k)]);
-    const auto scene = scene_at(request.scene, request.settings, varied.numbers);
-    const auto rates = rates_at(request.scene, request.settings, varied.numbers);
-    const int threads = threads_of(request.running);
-    result.fitted =
-        compare::fit(compare::exact_figures(scene, rates, data.figures, threads), result.measured);
+    const FittedScene result = fitted({request.scene, request.settings, request.measured,
+                                       request.map, request.robust, threads_of(request.running)},
+                                      loaded, varied);
     if (!result.fitted.why_not.empty()) {
-        const auto start =
-            compare::figure_values(loaded.scene, data.figures, compare::Leg::equilibrium);
-        print_error("no fit: {}{}{}\n", result.fitted.why_not, start.why_not.empty() ? "" : ": ",
-                    start.why_not);
+        print_error("no fit: {}\n", result.fitted.why_not);
         return could_not_judge;
     }
-    result.proposed = propose(result, loaded.model, data, scene, rates, threads);
     delivery.print_text(fit_text(result));
     if (!request.output.empty()) {
         write_changed_scene(request.scene, request.output,

@@ -1,6 +1,7 @@
 // Gradients of a scene file: its numbers' rates, its trim, and the legs' sensitivities.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,5 +17,17 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
                                 const LoadedScene& loaded,
                                 std::span<const compare::Channel> outputs,
                                 std::vector<ModelRate> rates, compare::GradientOptions options);
+
+// What `sensitivity` is asked for, as on its command line.
+struct GradientsRequest {
+    std::vector<std::string> of, to, branches;  // names or patterns with *; none: the defaults
+    std::vector<std::string> at;                // BRANCH:VALUE
+    int points = 4;                             // stations of a branch without one in `at`
+};
+// Throws std::invalid_argument for a name without a match, with the nearest, and for a station that
+// is not on its branch.
+compare::Gradients gradients_of(const std::string& file, const Settings& settings,
+                                const LoadedScene& loaded, const GradientsRequest& request,
+                                const std::function<void(const std::string&)>& progress);
 
 }  // namespace elastocheck::reports

@@ -43,8 +43,8 @@ void check_memory(const Model& model, const RunSize& run) {
     double points = 0;
     for (const auto& branch : model.branches) points += points_of(branch, run);
     const auto branches = static_cast<double>(std::max<std::size_t>(1, model.branches.size()));
-    check(points, run.legs * bytes_per_row(compare::channels(model).size(), run.written),
-          run.every * points / branches,
+    const std::size_t channels = run.channels > 0 ? run.channels : compare::channels(model).size();
+    check(points, run.legs * bytes_per_row(channels, run.written), run.every * points / branches,
           fmt::format("{:.0f} points on {} branches, by {} of the legs,", points,
                       model.branches.size(), run.legs));
 }

@@ -2,6 +2,8 @@
 // reports/files/limits.hpp.
 #pragma once
 
+#include <cstddef>
+
 #include "elastocheck/model.hpp"
 #include "models/reader/document/limits.hpp"
 
@@ -17,7 +19,8 @@ struct RunSize {
     int steps = 0;  // of each branch; 0: the branch's own number
     int every = 1;
     int legs = 1;
-    bool written = false;  // also as numbers and text of a result document
+    bool written = false;      // also as numbers and text of a result document
+    std::size_t channels = 0;  // 0: those of the model
 };
 
 // Throws std::invalid_argument with the largest possible number of steps if this exceeds

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include "models/reader/document/suggestions.hpp"
-#include "models/reader/plausibility.hpp"
+#include "reports/document/document.hpp"
+#include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 
 namespace elastocheck::reports {
 
-LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail) {
-    auto [scene, warnings] = reader::read_scene_with_warnings(file, settings);
-    for (const auto& warning : warnings) print_error("{} (warning)\n", warning);
+LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
+                                 Detail detail) {
+    auto& [scene, warnings] = read;
     const auto where = [&, &scene = scene] {
         return scene.trim && scene.trim->line > 0
                    ? fmt::format("{}:{}: trim", file, scene.trim->line)
@@ -27,6 +28,19 @@ LoadedScene load_scene(const std::string& file, const Settings& settings, Detail
     Model model = compile(trimmed.scene, detail);
     return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record),
             std::move(warnings)};
+}
+
+LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail) {
+    auto read = reader::read_scene_with_warnings(file, settings);
+    for (const auto& warning : read.warnings) print_error("{} (warning)\n", warning);
+    return trimmed_and_compiled(std::move(read), file, detail);
+}
+
+nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {
+    auto part = scene_document(loaded.scene, read_whole(file), loaded.model);
+    if (loaded.trim) add_trim(part, *loaded.trim);
+    if (!loaded.warnings.empty()) part["warnings"] = loaded.warnings;
+    return part;
 }
 
 const Branch& branch_named(const Model& model, const std::string& name) {

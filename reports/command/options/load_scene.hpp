@@ -1,6 +1,7 @@
 // Loads a scene for a command: reads, trims, compiles.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/reader/plausibility.hpp"
 #include "reports/command/grammar/command.hpp"
 
 namespace elastocheck::reports {
@@ -27,10 +29,17 @@ struct LoadedScene {
     std::vector<std::string> warnings = {};  // of the reader: "FILE:LINE: field: ..."
 };
 
-// Prints the reader's warnings to standard error. Throws SceneError, also for an ill-posed trim, and
+// Trims and compiles what was read from a file. Throws SceneError for an ill-posed trim, and
 // NotTrimmed.
+LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
+                                 Detail detail = Detail::required);
+// Reads the file too, and prints the reader's warnings to standard error. Throws SceneError.
 LoadedScene load_scene(const std::string& file, const Settings& settings,
                        Detail detail = Detail::required);
+
+// A scene of result.json without results: the compiled model, the trim, the reader's warnings.
+// `file` is the scene's.
+nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file);
 
 // The branch of --branch. Throws std::invalid_argument for an unknown name, with the nearest.
 const Branch& branch_named(const Model& model, const std::string& name);

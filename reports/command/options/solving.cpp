@@ -1,0 +1,136 @@
+#include "reports/command/options/solving.hpp"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <stdexcept>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/definitions/definitions.hpp"
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::reports {
+namespace {
+
+using compare::Channel;
+
+// The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
+// without a match, with the nearest name.
+std::vector<Channel> chosen(const std::vector<Channel>& all,
+                            const std::vector<std::string>& patterns) {
+    if (patterns.empty()) return all;
+    std::vector<Channel> list;
+    std::vector<std::string> names;
+    for (const auto& channel : all) names.push_back(channel.name);
+    for (const auto& pattern : patterns) {
+        bool fits = false;
+        for (const auto& channel : all) {
+            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0)
+                continue;
+            fits = true;
+            if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
+        }
+        if (!fits)
+            throw std::invalid_argument(
+                fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
+                            reader::did_you_mean(pattern, names, "outputs")));
+    }
+    return list;
+}
+
+// Largest differences between two states in the main outputs, in words: "2.2 mm (wheel_centre_z)
+// and 0.0068 deg (toe)".
+std::string differences(const Model& model, const Branch& branch, const Equilibrium& state,
+                        const Equilibrium& truth) {
+    auto main = compare::channels(model);
+    std::erase_if(main, [](const Channel& c) { return !c.main || !c.kinematic(); });
+    const auto is = compare::evaluate(model, branch, main, state),
+               right = compare::evaluate(model, branch, main, truth);
+    std::string text;
+    for (const auto unit : {compare::Unit::mm, compare::Unit::deg}) {
+        const Channel* worst = nullptr;
+        double off = 0;
+        for (std::size_t c = 0; c < main.size(); ++c) {
+            const double by = compare::worse(std::abs(is[c] - right[c]), off);
+            if (main[c].unit != unit || (worst != nullptr && by == off)) continue;
+            worst = &main[c], off = by;
+        }
+        if (worst != nullptr)
+            text += fmt::format("{}{:.2g} {} ({})", text.empty() ? "" : " and ", off, symbol(unit),
+                                worst->name);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::vector<std::string> solvers() {
+    std::vector<std::string> names;
+    for (const auto leg : compare::legs) names.emplace_back(name(leg));
+    for (const auto& method : recursive::methods) names.emplace_back(method.name);
+    return names;
+}
+
+compare::SolverSettings solver_of(const SolverRequest& request) {
+    RecursionRequest with_method = request.recursion;
+    const auto leg = std::ranges::find(compare::legs, request.method,
+                                       [](auto l) { return std::string(name(l)); });
+    if (leg == compare::legs.end()) with_method.method = request.method;
+    compare::SolverSettings solver;
+    solver.recursion = recursion(with_method);
+    solver.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
+    solver.every = request.every;
+    solver.error_bound = request.error_bound;
+    return solver;
+}
+
+std::vector<std::string> certified_solvers() {
+    std::vector<std::string> names{"equilibrium", "energy"};
+    for (const auto& method : recursive::methods) names.emplace_back(method.name);
+    return names;
+}
+
+compare::SolverSettings certified_solver(const std::string& solver) {
+    for (const auto leg : {compare::Leg::equilibrium, compare::Leg::energy, compare::Leg::series})
+        if (solver == name(leg)) return {.leg = leg};
+    compare::SolverSettings settings;
+    settings.recursion.method = *recursive::find_method(solver);
+    return settings;
+}
+
+std::vector<Channel> requested_channels(const Model& model,
+                                        const std::vector<std::string>& patterns) {
+    auto all = compare::channels(model);
+    if (patterns.empty()) return all;
+    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
+    return chosen(all, patterns);
+}
+
+bool is_end(const Branch& side, double load) {
+    return std::abs(load - side.to) <= 1e-12 * std::abs(side.to);
+}
+
+std::string error_at_end(const Model& model, compare::BranchSide side, const Equilibrium& state) {
+    const compare::Unit unit = compare::unit_of(side.branch.unit);
+    const std::string where =
+        fmt::format("at {:g} {}, the end", compare::in_unit(unit) * side.branch.to, symbol(unit));
+    side.branch.steps = 1;
+    std::optional<Equilibrium> truth;
+    const EquilibriumPath path = compare::walk(side, {.leg = compare::Leg::equilibrium},
+                                               [&](const Equilibrium& found) { truth = found; });
+    if (path.outcome != Outcome::converged || !truth)
+        return fmt::format("its error {} is not known: equilibrium leg: {}: {}", where,
+                           name(path.outcome), path.detail);
+    return fmt::format("off by {} {}, from the equilibrium leg there",
+                       differences(model, side.branch, state, *truth), where);
+}
+
+}  // namespace elastocheck::reports
