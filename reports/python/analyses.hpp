@@ -1,0 +1,12 @@
+// The analyses of the commands as functions of the Python module. Each returns what the command
+// reports: its text, its document, and its exit code.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace elastocheck::python {
+
+// Adds Report and the functions compare, judge, certify, sensitivity, fit, study to the module.
+void bind_analyses(pybind11::module_& module);
+
+}  // namespace elastocheck::python

@@ -1,0 +1,33 @@
+// Values of the product as Python objects, and Python's as those of the product.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "elastocheck/compare.hpp"
+#include "reports/command/grammar/command.hpp"
+
+namespace elastocheck::python {
+
+// A document as dicts, lists, texts and numbers. A number that is not finite is nan.
+pybind11::object object_of(const nlohmann::ordered_json& value);
+
+// {"springs.coil.rate": 28}: numbers with the fewest digits that read back as the same, texts as
+// they are. Throws Python's TypeError for other values.
+reports::Settings settings_of(const pybind11::dict& values);
+
+// The numbers as a matrix with this many columns; nothing is copied.
+pybind11::array matrix(std::vector<double> values, std::size_t columns);
+// The same [points × bodies × 7].
+pybind11::array poses(std::vector<double> values, std::size_t bodies);
+
+// Calls a Python function (what, done) from any thread; None: empty. What the function throws ends
+// the computation and arrives at the caller. The function outlives what this returns, and is not
+// copied, since that would need the lock of the interpreter.
+compare::Progress progress_to(const pybind11::object& function);
+
+}  // namespace elastocheck::python

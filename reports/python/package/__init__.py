@@ -1,0 +1,351 @@
+"""Elastokinematic analysis of suspensions: scenes solved by three methods that check each other.
+
+Numbers, columns, units and messages are those of the command `elastocheck`.
+"""
+
+import atexit
+import os
+import shutil
+import tempfile
+import warnings
+from collections.abc import Mapping
+
+from elastocheck import _core
+from elastocheck._core import Scene, templates
+from elastocheck._errors import (ArgumentError, Error, FileError, NotTrimmed, SceneError,
+                                 SceneWarning, SheetError)
+
+__version__ = _core.version
+__all__ = [
+    "read", "new", "templates", "Scene", "Solution", "Branch", "Output", "Drawing", "Report",
+    "kc", "compare", "judge", "certify", "sensitivity", "fit", "study",
+    "Error", "SceneError", "NotTrimmed", "SheetError", "FileError", "ArgumentError", "SceneWarning",
+]
+
+
+def _listed(names):
+    return [names] if isinstance(names, str) else list(names)
+
+
+# ---- Scenes.
+
+def read(file, settings=None):
+    """The scene of a YAML file, with some numbers of it changed: {"springs.coil.rate": 28}.
+
+    Settings are in the units of the file, as `--set` of the command. Warnings of the reader are
+    SceneWarning. Throws SceneError, NotTrimmed.
+    """
+    scene = _core.read(os.fspath(file), dict(settings or {}))
+    for warning in scene.warnings:
+        warnings.warn(warning, SceneWarning, stacklevel=2)
+    return scene
+
+
+def new(template, file=None, settings=None):
+    """A built-in scene to start from; templates() lists the names.
+
+    With `file` its text is written there, where there is no file yet; else to a temporary file that
+    the end of the process removes.
+    """
+    text = _core.template_text(template)
+    if file is None:
+        folder = tempfile.mkdtemp(prefix="elastocheck-")
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        file = os.path.join(folder, template + ".yaml")
+    with open(file, "x", encoding="utf-8") as out:
+        out.write(text)
+    return read(file, settings)
+
+
+class Branch:
+    """A path of equilibria of a scene: the unit and the range of its parameter."""
+
+    def __init__(self, name, unit, first, last, steps):
+        self.name, self.unit, self.steps = name, unit, steps
+        self.from_, self.to = first, last
+
+    def __repr__(self):
+        return f"<branch {self.name}: {self.from_:g} to {self.to:g} {self.unit}>"
+
+
+class Output:
+    """An output of a scene: its name, its unit, and its definition with the sign convention."""
+
+    def __init__(self, name, unit, definition):
+        self.name, self.unit, self.definition = name, unit, definition
+
+    def __repr__(self):
+        return f"<output {self.name} [{self.unit}]: {self.definition}>"
+
+
+class Drawing:
+    """A drawing of a scene as SVG; a notebook shows it."""
+
+    def __init__(self, svg):
+        self.svg = svg
+
+    def _repr_svg_(self):
+        return self.svg
+
+    def save(self, file):
+        """Writes the SVG to a file."""
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(self.svg)
+
+
+class Solution(Mapping):
+    """Curves of a scene by one leg or method, per branch: solution["travel"]["toe"].
+
+    A branch has numpy arrays: `parameter`, an output by its name, `values` [points, outputs],
+    `states` [points, bodies, 7] if they were asked for; a value without a number is nan. A branch
+    that ends early has the points up to there, `converged` is False, and `outcome` and `detail` say
+    why.
+    """
+
+    def __init__(self, curves):
+        self._curves = {one.branch: one for one in curves}
+
+    def __getitem__(self, branch):
+        return self._curves[branch]
+
+    def __iter__(self):
+        return iter(self._curves)
+
+    def __len__(self):
+        return len(self._curves)
+
+    @property
+    def converged(self):
+        """Whether every branch was followed to its end."""
+        return all(one.converged for one in self._curves.values())
+
+    @property
+    def messages(self):
+        """What the command prints on standard error: why branches end early, and error bounds."""
+        lines = []
+        for one in self._curves.values():
+            lines += [f"{one.method}: {one.branch}: {line}" for line in one.messages]
+            if not one.converged:
+                lines.append(f"{one.method}: {one.outcome}: {one.detail}")
+        return lines
+
+    @property
+    def units(self):
+        """The unit of every output, by its name."""
+        for one in self._curves.values():
+            return one.units
+        return {}
+
+    @property
+    def columns(self):
+        """The columns of the CSV of `elastocheck solve`: "toe [deg]"."""
+        return ["branch", "leg", "parameter", "unit"] + [f"{name} [{unit}]"
+                                                         for name, unit in self.units.items()]
+
+    def csv(self):
+        """The text that `elastocheck solve` prints, digit for digit."""
+        return "".join(one.csv(k == 0) for k, one in enumerate(self._curves.values()))
+
+    def frame(self):
+        """The same as a pandas.DataFrame."""
+        import pandas
+
+        names = self.columns
+        parts = []
+        for one in self._curves.values():
+            table = pandas.DataFrame(one.values, columns=names[4:])
+            table.insert(0, "unit", one.unit)
+            table.insert(0, "parameter", one.parameter)
+            table.insert(0, "leg", one.leg)
+            table.insert(0, "branch", one.branch)
+            parts.append(table)
+        return pandas.concat(parts, ignore_index=True) if parts else pandas.DataFrame(columns=names)
+
+    def _repr_html_(self):
+        return self.frame()._repr_html_()
+
+    def __repr__(self):
+        lines = [f"{one.branch}: {len(one)} points by {one.method}"
+                 + ("" if one.converged else f", {one.outcome}: {one.detail}")
+                 for one in self._curves.values()]
+        return "\n".join(lines)
+
+
+def _solve(self, method="equilibrium", channels=(), *, branches=(), steps=0, every=1, tolerance="",
+           order=0, expansions=0, arc_length=False, account=False, states=False):
+    """Solves every branch by one leg or method, as `elastocheck solve`; or these `branches`.
+
+    `channels`: names or patterns with *; the default leaves out forces of elements and K&C figures.
+    `states` keeps the poses of the bodies. Other options as those of the command, 0 or "" for its
+    defaults. Throws ArgumentError.
+    """
+    return Solution(self._solve(method, _listed(channels), steps, every, tolerance, order,
+                                expansions, arc_length, account, states, False, _listed(branches)))
+
+
+def _draw(self, view="axonometric"):
+    """The scene at its design position: view axonometric, front, side or top."""
+    return Drawing(self._drawing(view))
+
+
+def _branches(self):
+    """The branches by name."""
+    return {branch[0]: Branch(*branch) for branch in self._branches}
+
+
+def _outputs(self):
+    """The outputs that can be asked for, by name."""
+    return {output[0]: Output(*output) for output in self._outputs}
+
+
+def _again(file, settings):
+    return _core.read(file, settings)
+
+
+def _repr(self):
+    return f"<scene {self.name!r} of {self.file}: {', '.join(self.branches)}>"
+
+
+Scene.solve, Scene.draw = _solve, _draw
+Scene.branches, Scene.outputs = property(_branches), property(_outputs)
+Scene.__repr__ = _repr
+Scene.__reduce__ = lambda self: (_again, (os.path.abspath(self.file), self.settings))
+
+
+def kc(scene, method="equilibrium", *, branches=(), steps=0, every=1, tolerance=""):
+    """All kinematics and compliance figures of a scene at every point of its branches.
+
+    Exact rates by the tangent of the leg: wheel rate, bump steer, roll centre, compliance steer.
+    Options as those of Scene.solve().
+    """
+    return Solution(scene._solve(method, [], steps, every, tolerance, 0, 0, False, False, False,
+                                 True, _listed(branches)))
+
+
+# ---- Analyses.
+
+class Report:
+    """What a command reports: `text` as on the terminal, `document` as with --json.
+
+    `verdict` is "fine", "limit broken" or "could not judge", the exit codes 0, 1 and 3. A report
+    that is not fine is false.
+    """
+
+    def __init__(self, core, table=None):
+        self._core, self._table = core, table
+
+    @property
+    def text(self):
+        return self._core.text
+
+    @property
+    def document(self):
+        return self._core.document
+
+    @property
+    def verdict(self):
+        return self._core.verdict
+
+    @property
+    def exit_code(self):
+        return self._core.exit_code
+
+    def __bool__(self):
+        return self.exit_code == 0
+
+    def frame(self, table=None):
+        """A table of the document as a pandas.DataFrame, columns with their units; by its name
+        where there are several."""
+        import pandas
+
+        name = table or self._table
+        if callable(name):
+            return name()
+        found = self.document.get(name) if name else None
+        if not isinstance(found, dict) or "columns" not in found:
+            known = [key for key, value in self.document.items()
+                     if isinstance(value, dict) and "columns" in value]
+            raise ArgumentError(f"table {table!r}; allowed: {', '.join(known) or 'none here'}")
+        names = [column["name"] + (f" [{column['unit']}]" if column["unit"] else "")
+                 for column in found["columns"]]
+        return pandas.DataFrame(found["rows"], columns=names)
+
+    def __repr__(self):
+        return self.text
+
+
+def _frame_of_csv(text):
+    import io
+
+    import pandas
+    return pandas.read_csv(io.StringIO(text), float_precision="round_trip")
+
+
+def compare(scene, method=None, within=None, *, steps=0, every=1, threads=0, progress=None):
+    """All three legs on one scene: deviations, agreement of the references, proofs of points.
+
+    With `method` or `within` ("0.01mm,0.001deg,1%") it judges the method. frame() has every point
+    of every leg, as curves.csv. `progress(what, done)` is called from any thread, one at a time;
+    what it raises ends the comparison. `threads`: 0 for one per core.
+    """
+    found = _core.compare(scene, method, within, steps, every, threads, progress)
+    return Report(found, lambda: _frame_of_csv(found._csv))
+
+
+def judge(scene, solver, name="candidate", tolerance=None, *, steps=0, threads=0, progress=None):
+    """Judges a solver of your own by the references, as if it were a leg.
+
+    solver(scene, branch, parameters) returns states [points, bodies, 7], a state per parameter (in
+    the unit of the branch), bodies in the order of scene.bodies: x, y, z of the body's origin in mm
+    and its quaternion w, x, y, z. Fewer states: it ended early. `branch` is a name; a branch with
+    two sides is two calls, each from the parameter 0 on.
+    """
+    return Report(_core.judge(scene, solver, name, tolerance, steps, threads, progress))
+
+
+def certify(scene, methods=(), tolerance=None, *, points=20, threads=0, progress=None):
+    """Proves by interval arithmetic that computed points are equilibria; frame(): per solver."""
+    return Report(_core.certify(scene, _listed(methods), tolerance, points, threads, progress),
+                  "ways")
+
+
+def sensitivity(scene, of=(), to=(), *, branches=(), at=(), points=4, most=5, progress=None):
+    """Exact derivatives of outputs by numbers of the scene, by all legs; frame() has all of them.
+
+    Names, or patterns with *; `at`: stations "BRANCH:VALUE" in place of `points`.
+    """
+    return Report(_core.sensitivity(scene, _listed(of), _listed(to), _listed(branches), _listed(at),
+                                    points, most, progress), "derivatives")
+
+
+def fit(scene, measured, vary, *, map="", robust=False, threads=0):
+    """Fits numbers of the scene to measured curves, with 95 % intervals; frame(): the numbers.
+
+    `measured`: a CSV file or a pandas.DataFrame with such columns; `vary`: numbers or patterns,
+    limits as "NAME=LOW:HIGH".
+    """
+    if hasattr(measured, "to_csv"):
+        with tempfile.TemporaryDirectory(prefix="elastocheck-") as folder:
+            file = os.path.join(folder, "measured.csv")
+            measured.to_csv(file, index=False)
+            return Report(_core.fit(scene, file, _listed(vary), map, robust, threads), "numbers")
+    return Report(_core.fit(scene, os.fspath(measured), _listed(vary), os.fspath(map), robust,
+                            threads), "numbers")
+
+
+def study(file, folder, count=None, *, threads=0, progress=None):
+    """Many variants of a scene by a study file; the same call goes on where it was interrupted.
+
+    Rows are kept in ledger.sqlite in the folder, as by `elastocheck study`. frame() has a row per
+    variant: its numbers, outcome, figures.
+    """
+    file, folder = os.fspath(file), os.fspath(folder)
+
+    def rows():
+        with tempfile.TemporaryDirectory(prefix="elastocheck-") as temporary:
+            csv = os.path.join(temporary, "study.csv")
+            _core.write_study_rows(file, folder, count, csv)
+            with open(csv, encoding="utf-8") as text:
+                return _frame_of_csv(text.read())
+
+    return Report(_core.study(file, folder, count, threads, progress), rows)

@@ -1,0 +1,371 @@
+#include "reports/python/scene.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/extrapolation.hpp"
+#include "compare/outputs/curve.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/text_file.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "reports/command/options/limits.hpp"
+#include "reports/document/drawing.hpp"
+#include "reports/document/inspection.hpp"
+#include "reports/page/picture.hpp"
+#include "reports/python/convert.hpp"
+#include "reports/tables/csv.hpp"
+
+namespace elastocheck::python {
+
+namespace py = pybind11;
+
+namespace {
+
+SharedScene loaded(std::string file, reports::Settings settings,
+                   std::shared_ptr<const reader::ParsedScene> parsed) {
+    reader::SceneAndWarnings found;
+    found.scene = parsed->read(settings, &found.warnings);
+    auto scene = std::make_shared<SceneOfFile>();
+    scene->loaded = reports::trimmed_and_compiled(std::move(found), file);
+    scene->channels = std::make_shared<const std::vector<compare::Channel>>(
+        reports::requested_channels(scene->loaded.model, {}));
+    scene->file = std::move(file);
+    scene->settings = std::move(settings);
+    scene->parsed = std::move(parsed);
+    return scene;
+}
+
+}  // namespace
+
+double SceneOfFile::length() const {
+    std::call_once(diagnosed_, [&] { length_ = recursive::diagnose(loaded.model).length; });
+    return length_;
+}
+
+SharedScene read(const std::string& file, const reports::Settings& settings) {
+    const reader::TextFile text = reader::read_text(file, reader::Pipes::allowed);
+    if (!text.trouble.empty()) throw SceneError(fmt::format("{}: {}", file, text.trouble));
+    return loaded(file, settings,
+                  std::make_shared<reader::ParsedScene>(text.text, file,
+                                                        std::filesystem::path(file).parent_path()));
+}
+
+SharedScene varied(const SceneOfFile& scene, const reports::Settings& settings) {
+    reports::Settings all = scene.settings;
+    for (const Setting& one : settings) {
+        std::erase_if(all, [&](const Setting& old) { return old.path == one.path; });
+        all.push_back(one);
+    }
+    return loaded(scene.file, std::move(all), scene.parsed);
+}
+
+void append(std::vector<double>& poses, const Equilibrium& state) {
+    for (const Pose& pose : state.poses)
+        poses.insert(poses.end(), {1e3 * pose.r.x(), 1e3 * pose.r.y(), 1e3 * pose.r.z(), pose.p.w(),
+                                   pose.p.x(), pose.p.y(), pose.p.z()});
+}
+
+std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& request) {
+    const Model& model = scene->loaded.model;
+    compare::SolverSettings solver = reports::solver_of(request.solver);
+    const recursive::Options& how = solver.recursion;
+    auto channels = scene->channels;
+    if (request.characteristics)
+        channels =
+            std::make_shared<const std::vector<compare::Channel>>(compare::characteristics(model));
+    else if (!request.channels.empty())
+        channels = std::make_shared<const std::vector<compare::Channel>>(
+            reports::requested_channels(model, request.channels));
+    std::vector<Branch> branches;
+    for (const std::string& name : request.branches)
+        branches.push_back(reports::branch_named(model, name));
+    if (request.branches.empty()) branches = model.branches;
+    Model limited;  // the limits read the branches only
+    limited.branches = branches;
+    reports::check_every(limited, how.steps, request.solver.every);
+    reports::check_memory(
+        limited, {.steps = how.steps,
+                  .every = request.solver.every,
+                  .channels = channels->size() + (request.states ? 7 * model.bodies.size() : 0)});
+    const bool is_recursive = solver.leg == compare::Leg::recursive;
+    const auto promise = is_recursive && !recursive::has_steps(how.method)
+                             ? compare::tolerance_of_method(how.method, scene->length())
+                             : std::nullopt;
+    solver.error_bound = request.solver.error_bound || promise;
+    const bool approximate = is_recursive && recursive::has_steps(how.method);
+    std::vector<BranchCurves> all;
+    for (const Branch& branch : branches) {
+        BranchCurves& of = all.emplace_back();
+        of.branch = branch.name;
+        of.leg = solver.leg;
+        of.method = is_recursive ? std::string(how.method.name) : name(solver.leg);
+        of.unit = compare::unit_of(branch.unit);
+        of.channels = channels;
+        of.scene = scene;
+        const auto sides = compare::sides_of(model, branch, how.steps);
+        compare::BranchErrorBounds bounds{promise};
+        compare::Analyses analyses;
+        const EquilibriumPath path = compare::walk(
+            sides, solver,
+            [&](const Equilibrium& state) {
+                if (solver.error_bound) add(bounds, state);
+                for (const compare::BranchSide& side : sides)
+                    if (approximate && reports::is_end(side.branch, state.load))
+                        of.ends.emplace_back(side, state);
+                auto row =
+                    compare::row_of(model, *channels, sides.front(), solver, state, analyses);
+                if (request.states) append(row.values, state);  // taken off below
+                return row;
+            },
+            [&](compare::Row row) {
+                const auto outputs =
+                    row.values.begin() + static_cast<std::ptrdiff_t>(channels->size());
+                of.poses.insert(of.poses.end(), outputs, row.values.end());
+                row.values.erase(outputs, row.values.end());
+                of.rows.push_back(std::move(row));
+            });
+        of.outcome = path.outcome;
+        of.detail = path.detail;
+        of.messages = messages(bounds, branch.unit);
+    }
+    return all;
+}
+
+namespace {
+
+// As the CSV has it: neither an undefined value nor a failure is a number.
+double cell(double value) {
+    return std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+py::array values_of(const BranchCurves& curves) {
+    std::vector<double> values;
+    values.reserve(curves.rows.size() * curves.channels->size());
+    for (const compare::Row& row : curves.rows)
+        std::ranges::transform(row.values, std::back_inserter(values), cell);
+    return matrix(std::move(values), curves.channels->size());
+}
+
+py::array column(const BranchCurves& curves, const std::string& output) {
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < curves.channels->size(); ++c) {
+        if ((*curves.channels)[c].name != output) {
+            names.push_back((*curves.channels)[c].name);
+            continue;
+        }
+        py::array_t<double> values(static_cast<py::ssize_t>(curves.rows.size()));
+        double* at = values.mutable_data();
+        for (const compare::Row& row : curves.rows) *at++ = cell(row.values[c]);
+        return values;
+    }
+    throw py::key_error(fmt::format("there is no output {}{}", reader::quote(output),
+                                    reader::did_you_mean(output, names, "outputs")));
+}
+
+py::array parameters(const BranchCurves& curves) {
+    py::array_t<double> values(static_cast<py::ssize_t>(curves.rows.size()));
+    double* at = values.mutable_data();
+    for (const compare::Row& row : curves.rows)
+        *at++ = compare::parameter_in(curves.unit, row.load);
+    return values;
+}
+
+std::string csv_of(const BranchCurves& curves, bool with_header) {
+    std::string text = with_header ? reports::curves_header(*curves.channels) : "";
+    for (const compare::Row& row : curves.rows)
+        text += reports::curves_row(curves.branch, curves.leg, curves.unit, row);
+    return text;
+}
+
+std::vector<std::string> errors_at_ends(const BranchCurves& curves) {
+    std::vector<std::string> all;
+    for (const auto& [side, state] : curves.ends)
+        all.push_back(reports::error_at_end(curves.scene->loaded.model, side, state));
+    return all;
+}
+
+SolveRequest request_of(std::string method, int steps, int every, std::string tolerance, int order,
+                        int expansions, bool arc_length, bool account) {
+    const auto known = reports::solvers();
+    if (std::ranges::find(known, method) == known.end())
+        throw std::invalid_argument(fmt::format("method {}{}", reader::quote(method),
+                                                reader::did_you_mean(method, known, "allowed")));
+    if (steps < 0 || steps > reports::most_steps)
+        throw std::invalid_argument(
+            fmt::format("steps {}; allowed: 1 to {}", steps, reports::most_steps));
+    if (every < 1) throw std::invalid_argument(fmt::format("every {}; allowed: 1 or more", every));
+    if (order < 0 || order > 60)
+        throw std::invalid_argument(fmt::format("order {}; allowed: 1 to 60", order));
+    if (expansions < 0)
+        throw std::invalid_argument(fmt::format("expansions {}; allowed: 1 or more", expansions));
+    SolveRequest request;
+    request.solver.method = std::move(method);
+    request.solver.recursion.steps = steps;
+    request.solver.recursion.tolerance = std::move(tolerance);
+    request.solver.recursion.order = order;
+    request.solver.recursion.expansions = expansions;
+    request.solver.recursion.arc_length = arc_length;
+    request.solver.every = every;
+    request.solver.error_bound = account;
+    return request;
+}
+
+py::dict numbers_of(const SceneOfFile& scene) {
+    py::dict numbers;
+    for (const Number& number : scene.loaded.scene.numbers)
+        numbers[py::str(number.path)] = number.value;
+    return numbers;
+}
+
+py::dict units_of(const SceneOfFile& scene) {
+    py::dict units;
+    for (const Number& number : scene.loaded.scene.numbers)
+        units[py::str(number.path)] = number.unit;
+    return units;
+}
+
+py::list branches_of(const SceneOfFile& scene) {
+    py::list branches;
+    for (const Branch& branch : scene.loaded.model.branches) {
+        const compare::Unit unit = compare::unit_of(branch.unit);
+        branches.append(py::make_tuple(branch.name, symbol(unit),
+                                       compare::parameter_in(unit, branch.from),
+                                       compare::parameter_in(unit, branch.to), branch.steps));
+    }
+    return branches;
+}
+
+// Name, unit and definition of every output that can be asked for by its name.
+py::list outputs_of(const SceneOfFile& scene) {
+    py::list outputs;
+    for (const compare::Channel& channel : reports::requested_channels(scene.loaded.model, {"*"}))
+        outputs.append(py::make_tuple(channel.name, symbol(channel.unit), channel.definition));
+    return outputs;
+}
+
+std::string drawing_of(const SceneOfFile& scene, const std::string& view) {
+    const Model& model = scene.loaded.model;
+    compare::Comparison nothing_solved;
+    nlohmann::ordered_json part;
+    part["drawing"] = reports::drawing_json(scene.loaded.scene, model, nothing_solved);
+    return reports::picture({&part, "", &scene.file}, view);
+}
+
+}  // namespace
+
+void bind_scene(py::module_& module) {
+    using release = py::call_guard<py::gil_scoped_release>;
+    py::class_<BranchCurves, std::shared_ptr<BranchCurves>>(module, "Curves")
+        .def_readonly("branch", &BranchCurves::branch)
+        .def_property_readonly("leg", [](const BranchCurves& c) { return name(c.leg); })
+        .def_readonly("method", &BranchCurves::method)
+        .def_property_readonly("unit", [](const BranchCurves& c) { return symbol(c.unit); })
+        .def_property_readonly("parameter", &parameters)
+        .def_property_readonly("values", &values_of)
+        .def_property_readonly("states",
+                               [](const BranchCurves& c) {
+                                   return poses(c.poses, c.scene->loaded.model.bodies.size());
+                               })
+        .def_property_readonly("outputs",
+                               [](const BranchCurves& c) {
+                                   std::vector<std::string> names;
+                                   for (const auto& channel : *c.channels)
+                                       names.push_back(channel.name);
+                                   return names;
+                               })
+        .def_property_readonly("units",
+                               [](const BranchCurves& c) {
+                                   py::dict units;
+                                   for (const auto& channel : *c.channels)
+                                       units[py::str(channel.name)] = symbol(channel.unit);
+                                   return units;
+                               })
+        .def_property_readonly("outcome", [](const BranchCurves& c) { return name(c.outcome); })
+        .def_property_readonly(
+            "converged", [](const BranchCurves& c) { return c.outcome == Outcome::converged; })
+        .def_readonly("detail", &BranchCurves::detail)
+        .def_readonly("messages", &BranchCurves::messages)
+        .def("errors_at_ends", &errors_at_ends, release())
+        .def("csv", &csv_of, py::arg("header") = true)
+        .def("__getitem__", &column)
+        .def("__len__", [](const BranchCurves& c) { return c.rows.size(); });
+
+    py::class_<SceneOfFile, std::shared_ptr<SceneOfFile>>(module, "Scene", py::dynamic_attr())
+        .def_readonly("file", &SceneOfFile::file)
+        .def_property_readonly("name", [](const SceneOfFile& s) { return s.loaded.model.name; })
+        .def_property_readonly("numbers", &numbers_of)
+        .def_property_readonly("units", &units_of)
+        .def_property_readonly("_branches", &branches_of)
+        .def_property_readonly("_outputs", &outputs_of)
+        .def_property_readonly("bodies",
+                               [](const SceneOfFile& s) {
+                                   std::vector<std::string> names;
+                                   for (const Body& body : s.loaded.model.bodies)
+                                       names.push_back(body.name);
+                                   return names;
+                               })
+        .def_property_readonly("warnings", [](const SceneOfFile& s) { return s.loaded.warnings; })
+        .def_property_readonly("settings",
+                               [](const SceneOfFile& s) {
+                                   py::dict settings;
+                                   for (const Setting& one : s.settings)
+                                       settings[py::str(one.path)] = one.value;
+                                   return settings;
+                               })
+        .def("inspect",
+             [](const SceneOfFile& s) {
+                 return reports::inspection(
+                     {.scene = s.loaded.scene, .model = s.loaded.model, .trim = s.loaded.trim});
+             })
+        .def(
+            "vary",
+            [](const SceneOfFile& s, const py::dict& settings) {
+                const auto all = settings_of(settings);
+                const py::gil_scoped_release unlocked;
+                return std::const_pointer_cast<SceneOfFile>(varied(s, all));
+            },
+            py::arg("settings"))
+        .def("_drawing", &drawing_of, release())
+        .def(
+            "_solve",
+            [](const std::shared_ptr<SceneOfFile>& s, std::string method,
+               std::vector<std::string> channels, int steps, int every, std::string tolerance,
+               int order, int expansions, bool arc_length, bool account, bool states,
+               bool characteristics, std::vector<std::string> branches) {
+                SolveRequest request =
+                    request_of(std::move(method), steps, every, std::move(tolerance), order,
+                               expansions, arc_length, account);
+                request.channels = std::move(channels);
+                request.branches = std::move(branches);
+                request.states = states;
+                request.characteristics = characteristics;
+                std::vector<BranchCurves> curves;
+                {
+                    const py::gil_scoped_release unlocked;
+                    curves = solve(s, request);
+                }
+                py::list all;
+                for (BranchCurves& one : curves)
+                    all.append(std::make_shared<BranchCurves>(std::move(one)));
+                return all;
+            },
+            py::arg("method"), py::arg("channels"), py::arg("steps"), py::arg("every"),
+            py::arg("tolerance"), py::arg("order"), py::arg("expansions"), py::arg("arc_length"),
+            py::arg("account"), py::arg("states"), py::arg("characteristics"), py::arg("branches"));
+    module.def(
+        "read",
+        [](const std::string& file, const py::dict& settings) {
+            const auto all = settings_of(settings);
+            const py::gil_scoped_release unlocked;
+            return std::const_pointer_cast<SceneOfFile>(read(file, all));
+        },
+        py::arg("file"), py::arg("settings"));
+}
+
+}  // namespace elastocheck::python

@@ -1,0 +1,147 @@
+"""Analyses from Python: the text and the document of the command line."""
+import json
+import re
+import threading
+
+import elastocheck
+import numpy as np
+import pandas
+import pytest
+
+
+def same(a, b):
+    """As JSON: a number that is not finite is null."""
+    if isinstance(a, dict):
+        return isinstance(b, dict) and a.keys() == b.keys() and all(same(a[k], b[k]) for k in a)
+    if isinstance(a, list):
+        return len(a) == len(b) and all(map(same, a, b))
+    return a == b or (b is None and a != a)
+
+
+def without_times(text):
+    return re.sub(r"(converged(?: +\d+){4}) +[\d.]+", r"\1", text)
+
+
+def test_compare_is_that_of_the_command(scenes, command, tmp_path):
+    file = scenes / "mcpherson.yaml"
+    said, code, _ = command("compare", file, "--method", "published", "--within", "0.01mm,0.001deg")
+    told = []
+    report = elastocheck.compare(elastocheck.read(file), "published", "0.01mm,0.001deg",
+                                 progress=lambda what, done: told.append((what, done)))
+    assert (without_times(report.text), report.exit_code) == (without_times(said), code)
+    assert told and all(0 <= done <= 1 for _, done in told)
+    assert report.document["judgement"]["verdict"] == "fail"
+    command("compare", file, "-o", tmp_path / "out", "--method", "published", "--within", "0.01mm,0.001deg")
+    curves = pandas.read_csv(tmp_path / "out/curves.csv", float_precision="round_trip")
+    pandas.testing.assert_frame_equal(report.frame(), curves, check_exact=True)
+
+
+@pytest.mark.parametrize("method", ["series", "equilibrium"])
+def test_certify_is_that_of_the_command(scenes, command, method):
+    file = scenes / "pinned_bar.yaml"
+    said, code, _ = command("certify", file, "--method", method, "--points", "4")
+    report = elastocheck.certify(elastocheck.read(file), method, points=4)
+    assert (report.text, report.exit_code, bool(report)) == (said, code, True)
+    assert report.document["proved"] == report.document["points"] > 0
+    assert len(report.frame()) == 2
+
+
+def test_sensitivity_is_that_of_the_command(scenes, command):
+    file = scenes / "double_wishbone.yaml"
+    options = ["--of", "toe,camber", "--to", "points.tie_rod*", "--branch", "travel", "--points", "2"]
+    said, code, _ = command("sensitivity", file, *options)
+    report = elastocheck.sensitivity(elastocheck.read(file), ["toe", "camber"], "points.tie_rod*",
+                                     branches="travel", points=2)
+    assert (report.text, report.exit_code) == (said, code)
+    said, _, _ = command("sensitivity", file, *options, "--json")
+    document = json.loads(said)
+    assert all(same(value, document[key]) for key, value in report.document.items())
+    assert len(report.frame()) == len(document["derivatives"]["rows"])
+
+
+def test_fit_is_that_of_the_command(scenes, command, tmp_path):
+    file = scenes / "mcpherson.yaml"
+    rig = elastocheck.read(file, {"springs.K1_coil.rate": 24e3}).solve()
+    measured = pandas.DataFrame({"branch": "jounce", "load_N": rig["jounce"].parameter[::60],
+                                 "wheel_centre_z_mm": rig["jounce"]["wheel_centre_z"][::60]})
+    measured.to_csv(tmp_path / "rig.csv", index=False)
+    said, code, _ = command("fit", file, "--measured", tmp_path / "rig.csv", "--vary", "springs.K1_coil.rate")
+    for given in [measured, tmp_path / "rig.csv"]:
+        report = elastocheck.fit(elastocheck.read(file), given, "springs.K1_coil.rate")
+        assert (report.text, report.exit_code) == (said, code)
+    rate = report.frame().set_index("number")
+    assert float(rate.filter(like="fitted").iloc[0, 0]) == pytest.approx(24e3, rel=1e-6)
+    with pytest.raises(elastocheck.SheetError, match="rig.csv") as error:
+        (tmp_path / "rig.csv").write_text("load_N,toe_deg\n1,x\n")
+        elastocheck.fit(elastocheck.read(file), tmp_path / "rig.csv", "springs.K1_coil.rate")
+    assert error.value.line == 2
+    with pytest.raises(elastocheck.ArgumentError, match="--vary"):
+        elastocheck.fit(elastocheck.read(file), measured, "springs.coil.rate")
+
+
+STUDY = """elastocheck_study: 1
+scene: mine.yaml
+variables:
+  bushings.tip.rates.z: {list: [18, 19, 20, 21, 22]}
+design: {kind: grid}
+figures: {tip: "tip_z@up:5000"}
+"""
+
+
+def test_study_goes_on_and_is_that_of_the_command(tmp_path, command):
+    elastocheck.new("pinned_bar", tmp_path / "mine.yaml")
+    study = tmp_path / "study.yaml"
+    study.write_text(STUDY)
+    said, code, _ = command("study", study, "-o", tmp_path / "command")
+    if "OpenTURNS" in said:
+        pytest.skip("built without OpenTURNS")
+    report = elastocheck.study(study, tmp_path / "python")
+    assert report.exit_code == code
+    frame = report.frame()
+    assert len(frame) == 5
+    again = elastocheck.study(study, tmp_path / "python")
+    assert again.text == report.text
+    study.write_text(STUDY.replace("rates.z", "rates.up"))
+    with pytest.raises(elastocheck.SceneError) as error:
+        elastocheck.study(study, tmp_path / "other")
+    assert error.value.line == 4
+
+
+def test_what_progress_raises_ends_the_computation():
+    class Enough(Exception):
+        pass
+
+    def stop(what, done):
+        raise Enough
+
+    scene = elastocheck.new("pinned_bar")
+    for run in (elastocheck.compare, elastocheck.certify):
+        for threads in (1, 2):
+            with pytest.raises(Enough):
+                run(scene, threads=threads, progress=stop)
+
+
+def test_a_thread_may_compare_while_another_reports_progress():
+    scene = elastocheck.new("pinned_bar")
+    texts = []
+
+    def work():
+        texts.append(elastocheck.compare(scene, threads=2, progress=lambda what, done: None).text)
+
+    threads = [threading.Thread(target=work) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(set(map(without_times, texts))) == 1 and len(texts) == 3
+
+
+def test_a_table_that_is_not_there_is_named():
+    with pytest.raises(elastocheck.ArgumentError, match="ways"):
+        elastocheck.certify(elastocheck.new("pinned_bar"), points=1).frame("rows")
+
+
+def test_values_without_a_number_are_nan():
+    kc = elastocheck.kc(elastocheck.new("double_wishbone"), "series", every=50)
+    assert all(np.isfinite(kc["travel"]["wheel_rate"]))
+    assert not any(np.isinf(one.values).any() for one in kc.values())
