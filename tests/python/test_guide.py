@@ -18,7 +18,7 @@ def test_the_blocks_of_the_guide_run(tmp_path, monkeypatch, capsys):
     for block in blocks:
         exec(compile(block, "README.md", "exec"), shared)
     said = capsys.readouterr().out
-    assert "pass" in said and "did you mean 'rate'?" in said and "mine.svg" in "".join(blocks)
+    assert "Pass: the candidate ‘closed form’" in said and re.search(r"mine.yaml \d+ mine.yaml:\d+:", said) and "mine.svg" in "".join(blocks)
     assert (tmp_path / "mine.svg").read_text().startswith("<svg")
 
 

@@ -41,16 +41,18 @@ def test_openturns_has_the_exact_derivatives():
 
 def test_dask_workers_have_the_same_answers():
     distributed = pytest.importorskip("distributed")
-    heights = DRAWN + np.random.default_rng(1).normal(0, 0.5e-3, (1000, 2))
+    strut = elastocheck.new("mcpherson")
+    drawn = np.array([strut.numbers[name] for name in users.NUMBERS])
+    heights = drawn + np.random.default_rng(1).normal(0, 0.5e-3, (1000, 2))
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True,
                                   dashboard_address=None) as cluster, distributed.Client(cluster) as client:
         client.run(lambda folder: sys.path.insert(0, folder), str(pathlib.Path(__file__).parent))
-        futures = client.map(users.bump_steer, heights.tolist())
+        futures = client.map(users.toe_at_full_jounce, heights.tolist())
         answers = client.gather(futures)
         workers = {worker for key in client.who_has(futures).values() for worker in key}
         scene = elastocheck.new("pinned_bar", settings={"bushings.tip.rates.z": 21})
         sent = client.submit(lambda s: s.solve("series").csv(), scene).result()
     assert len(workers) == 2
     assert sent == scene.solve("series").csv()
-    assert answers[::50] == [users.bump_steer(h) for h in heights[::50]]
+    assert answers[::50] == [users.toe_at_full_jounce(h) for h in heights[::50]]
     assert len(answers) == 1000 and np.isfinite(answers).all() and len(set(answers)) == 1000
