@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
+
+#include "models/decimal.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -52,7 +54,7 @@ Tolerance parse_tolerance(std::string_view text, ToleranceParts allowed) {
         const std::string_view word = trim(rest.substr(0, comma));
         if (word.empty()) refuse("a number with its unit is missing");
         double value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        const auto [end, error] = read_decimal(word.data(), word.data() + word.size(), value);
         if (error == std::errc::invalid_argument)
             refuse(fmt::format("'{}' does not begin with a number", word));
         if (error != std::errc{} || !std::isfinite(value) || !(value > 0))

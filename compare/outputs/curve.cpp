@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
+
+#include "models/decimal.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -30,7 +31,7 @@ std::vector<double> Curve::channel(std::size_t c) const {
 double parameter_in(Unit unit, double load) {
     const std::string digits = fmt::format("{:.15g}", in_unit(unit) * load);
     double rounded = load;
-    std::from_chars(digits.data(), digits.data() + digits.size(), rounded);
+    read_decimal(digits.data(), digits.data() + digits.size(), rounded);
     return rounded + 0.0;  // no negative zero at the start of a negative side
 }
 

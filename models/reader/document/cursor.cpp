@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "models/decimal.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -124,7 +125,7 @@ Real Cursor::number(const std::string& unit) const {
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     double x = 0;
     const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, x);
+    const auto [stop, error] = read_decimal(digits.data(), end, x);
     if (value->kind != Value::Kind::scalar || stop != end || error == std::errc::invalid_argument ||
         std::isnan(x))
         fail(fmt::format("expected a number, found {}", found()));

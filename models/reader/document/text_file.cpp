@@ -22,4 +22,12 @@ TextFile read_text(const std::filesystem::path& file, Pipes pipes, std::size_t l
     return {text, ""};
 }
 
+bool leads_out_of(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    namespace fs = std::filesystem;
+    std::error_code unknown;
+    const fs::path inside = fs::canonical(folder.empty() ? "." : folder, unknown),
+                   target = fs::weakly_canonical(file, unknown);
+    return !unknown && std::ranges::mismatch(inside, target).in1 != inside.end();
+}
+
 }  // namespace elastocheck::reader

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
+#include <system_error>
 
+#include "models/decimal.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
@@ -172,7 +173,7 @@ double real(const PropertyFile& file, int line, const std::string& block, std::s
             double largest) {
     double value = 0;
     if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value) ||
         std::abs(value) > largest)
         fail(file.file, line, block, fmt::format("{} is not a number", quote(text)));

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
+#include "models/decimal.hpp"
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -55,7 +55,7 @@ std::vector<TablePoint> read_rows(const Cursor& at, const LawUnits& units) {
 bool begins_with_number(std::string_view text) {
     if (text.starts_with('+')) text.remove_prefix(1);
     double ignored = 0;
-    return std::from_chars(text.data(), text.data() + text.size(), ignored).ec !=
+    return read_decimal(text.data(), text.data() + text.size(), ignored).ec !=
            std::errc::invalid_argument;
 }
 
@@ -90,12 +90,7 @@ FileBeside read_beside(const Cursor& at, const Definitions& defs) {
     if (!defs.folder)
         at.fail("relative to the scene's file, but this scene is not a file; give a table");
     const fs::path path = *defs.folder / name;
-    // Resolves symbolic links. A path that cannot be resolved cannot be read either, which is
-    // reported next.
-    std::error_code unknown;
-    const fs::path folder = fs::canonical(defs.folder->empty() ? "." : *defs.folder, unknown),
-                   target = fs::weakly_canonical(path, unknown);
-    if (!unknown && std::ranges::mismatch(folder, target).in1 != folder.end())
+    if (leads_out_of(*defs.folder, path))
         at.fail(
             fmt::format("{} is a symbolic link that leads out of the scene's folder; allowed: a "
                         "file in it, or in a "
