@@ -1,56 +1,19 @@
 #include "recursive/linear_algebra/rank.hpp"
 
-#include <Eigen/CholmodSupport>
 #include <Eigen/SparseCholesky>
-#include <SuiteSparseQR.hpp>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <queue>
-#include <stdexcept>
+
+#include "recursive/linear_algebra/scattered.hpp"
 
 namespace elastocheck::recursive {
 namespace {
 
 using Eigen::VectorXd;
 
-// of a value of order one that would be zero in exact arithmetic
-constexpr double rounding = 1e-12;
 constexpr double pivot_threshold = 0.1;  // of the largest entry of a row: acceptable pivots
-
-// Sparse accumulator: a dense vector with the list of its non-zero positions.
-struct Scattered {
-    VectorXd value;
-    std::vector<int> touched;
-    std::vector<char> is_touched;
-
-    explicit Scattered(Eigen::Index size)
-        : value(VectorXd::Zero(size)), is_touched(static_cast<std::size_t>(size), 0) {}
-    // Returns whether the position is new.
-    bool add(int at, double what) {
-        value[at] += what;
-        if (is_touched[static_cast<std::size_t>(at)]) return false;
-        is_touched[static_cast<std::size_t>(at)] = 1;
-        touched.push_back(at);
-        return true;
-    }
-    void clear() {
-        for (const int at : touched) value[at] = 0, is_touched[static_cast<std::size_t>(at)] = 0;
-        touched.clear();
-    }
-    double norm() const {
-        double sum = 0;
-        for (const int at : touched) sum += value[at] * value[at];
-        return std::sqrt(sum);
-    }
-    // Appends the vector as a column of unit length, without entries at rounding level.
-    void append_to(std::vector<Eigen::Triplet<double>>& entries, int column) const {
-        const double whole = norm();
-        for (const int at : touched)
-            if (std::abs(value[at]) > rounding * whole)
-                entries.emplace_back(at, column, value[at] / whole);
-    }
-};
 
 struct Entry {
     int at;
@@ -108,7 +71,7 @@ Repeated repeated(const Rows& rows) {
             const Reduced& other = reduced[static_cast<std::size_t>(j)];
             const double l = x.value[other.pivot] / other.pivot_value;
             x.value[other.pivot] = 0;
-            if (!(std::abs(l) > rounding)) continue;
+            if (!(std::abs(l) > Scattered::rounding)) continue;
             u.taken.push_back({j, l});
             for (const Entry& e : other.entries) add(e.at, -l * e.value);
         }
@@ -127,7 +90,7 @@ Repeated repeated(const Rows& rows) {
                 u.pivot_value = x.value[at];
             }
             for (const int at : x.touched)
-                if (at != u.pivot && std::abs(x.value[at]) > rounding)
+                if (at != u.pivot && std::abs(x.value[at]) > Scattered::rounding)
                     u.entries.push_back({at, x.value[at]});
             pivot_of[static_cast<std::size_t>(u.pivot)] = k;
         } else {
@@ -154,58 +117,6 @@ Repeated repeated(const Rows& rows) {
     result.dependencies.resize(rows.rows(), static_cast<Eigen::Index>(result.rows.size()));
     result.dependencies.setFromTriplets(dependencies.begin(), dependencies.end());
     return result;
-}
-
-// SuiteSparseQR factorises in a fill-reducing column order and sets aside each column that depends
-// on those before it (Heath's method): A E = Q ⎡R₁ R₂⎤. A column r of R₂ is R₁ c, so that
-// Eᵀ x = (-c, 1) is a null vector; where R is sparse so is c.
-Columns null_space(const Rows& rows) {
-    const int n = static_cast<int>(rows.cols());
-    using Long = SuiteSparse_long;
-    Eigen::SparseMatrix<double, Eigen::ColMajor, Long> A = rows;
-    cholmod_common common;
-    cholmod_l_start(&common);
-    common.print = 0;
-    cholmod_sparse view = Eigen::viewAsCholmod(A), *R = nullptr;
-    Long* E = nullptr;
-    const Long rank =
-        SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, rank_threshold, 0, &view, &R, &E, &common);
-    std::vector<Eigen::Triplet<double>> entries;
-    if (rank >= 0) {
-        const auto* const first = static_cast<const Long*>(R->p);
-        const auto* const row = static_cast<const Long*>(R->i);
-        const auto* const value = static_cast<const double*>(R->x);
-        Scattered x(n);
-        for (int c = static_cast<int>(rank); c < n; ++c) {
-            std::priority_queue<int> later;
-            const auto add = [&](Long at, double what) {
-                if (x.add(static_cast<int>(at), what)) later.push(static_cast<int>(at));
-            };
-            for (Long e = first[c]; e < first[c + 1]; ++e) add(row[e], -value[e]);
-            while (!later.empty()) {
-                const int k = later.top();
-                later.pop();
-                // last entry of a column of the triangle, since rows ascend
-                const Long diagonal = first[k + 1] - 1;
-                x.value[k] /= value[diagonal];
-                for (Long e = first[k]; e < diagonal; ++e) add(row[e], -value[e] * x.value[k]);
-            }
-            x.add(c, 1);
-            const std::size_t begin = entries.size();
-            x.append_to(entries, c - static_cast<int>(rank));
-            for (std::size_t e = begin; E && e < entries.size(); ++e)
-                entries[e] = {static_cast<int>(E[entries[e].row()]), entries[e].col(),
-                              entries[e].value()};
-            x.clear();
-        }
-    }
-    cholmod_l_free_sparse(&R, &common);
-    cholmod_l_free(static_cast<std::size_t>(n), sizeof(Long), E, &common);
-    cholmod_l_finish(&common);
-    if (rank < 0) throw std::bad_alloc();
-    Columns basis(n, n - static_cast<Eigen::Index>(rank));
-    basis.setFromTriplets(entries.begin(), entries.end());
-    return basis;
 }
 
 // ⎡ I   Aᵀ ⎤ ⎧ left ⎫   ⎧ f ⎫
