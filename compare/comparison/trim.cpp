@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
@@ -13,6 +14,7 @@
 #include "elastocheck/compile.hpp"
 #include "models/branch.hpp"
 #include "models/overloaded.hpp"
+#include "recursive/diagnosis/analysis.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -34,6 +36,7 @@ struct Problem {
     BranchSide side;                // branch on which the adjustments are held
     std::vector<Channel> channels;  // read by the conditions
     VectorXd target;                // [m, rad]
+    Leg solver = Leg::equilibrium;  // by which the trim equations are solved
 };
 
 struct TrimAttempt {
@@ -155,8 +158,8 @@ std::optional<MatrixXd> responses(const Problem& problem, const VectorXd& p, Tri
     for (Index k = 0; k < n; ++k) {
         const VectorXd h =
             step(problem.trim->adjust[static_cast<std::size_t>(k)]) * VectorXd::Unit(n, k);
-        const TrimAttempt more = settle(problem, p + h, Leg::equilibrium),
-                          less = settle(problem, p - h, Leg::equilibrium);
+        const TrimAttempt more = settle(problem, p + h, problem.solver),
+                          less = settle(problem, p - h, problem.solver);
         for (const TrimAttempt* answer : {&more, &less})
             if (answer->outcome != Outcome::converged) {
                 failed = *answer;
@@ -291,7 +294,10 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
     return scene;
 }
 
-Trimmed trim(const Scene& scene) {
+namespace {
+
+// trim() by one leg, confirmed by the energy leg or, where that does not apply, by the series.
+Trimmed trim_by(const Scene& scene, Leg solver, bool confirm) {
     Trimmed result{scene, std::nullopt};
     if (!scene.trim) return result;
     const Trim& trim = *scene.trim;
@@ -299,7 +305,11 @@ Trimmed trim(const Scene& scene) {
         throw std::invalid_argument(
             fmt::format("{} adjusted quantities for {} conditions; their numbers must be equal",
                         trim.adjust.size(), trim.until.size()));
-    const Problem problem = pose(scene);
+    Problem problem = pose(scene);
+    problem.solver = solver;
+    if (solver == Leg::series)
+        problem.side.analysis =
+            std::make_shared<const recursive::Analysis>(recursive::analyse(problem.side.model));
     TrimRecord& record = result.record.emplace();
     const auto give_up = [&](const TrimAttempt& answer, const std::string& where) {
         record.outcome = answer.outcome;
@@ -311,7 +321,7 @@ Trimmed trim(const Scene& scene) {
     VectorXd p = VectorXd::Zero(static_cast<Index>(trim.adjust.size())), h = p;
     for (std::size_t k = 0; k < trim.adjust.size(); ++k)
         h[static_cast<Index>(k)] = step(trim.adjust[k]);
-    TrimAttempt here = settle(problem, p, Leg::equilibrium);
+    TrimAttempt here = settle(problem, p, problem.solver);
     if (here.outcome != Outcome::converged)
         return give_up(here, "the scene has no settled equilibrium before the trim");
     std::string stuck;
@@ -339,7 +349,7 @@ Trimmed trim(const Scene& scene) {
         TrimAttempt next;
         double share = 1;
         for (int halved = 0; halved <= most_halvings; ++halved, share /= 2) {
-            next = settle(problem, p + share * dp, Leg::equilibrium);
+            next = settle(problem, p + share * dp, problem.solver);
             if (next.outcome == Outcome::converged && next.missed.norm() < here.missed.norm())
                 break;
         }
@@ -373,25 +383,29 @@ Trimmed trim(const Scene& scene) {
         return result;
     }
 
-    TrimAttempt second = settle(problem, p, Leg::energy);
-    if (is_not_applicable(second.outcome)) {
-        record.confirmed_by = Leg::series;
-        second = settle(problem, p, Leg::series);
-    }
-    if (second.outcome != Outcome::converged)
-        return give_up(second, fmt::format("not confirmed: the {} leg", name(record.confirmed_by)));
     const BranchSide held = held_at(problem, p);
-    const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&here.state, 1}));
-    for (std::size_t k = 0; k < record.conditions.size(); ++k) {
-        auto& c = record.conditions[k];
-        c.confirmed = in_unit(c.unit) * second.missed[static_cast<Index>(k)];
-        const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
-        if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
-            record.detail = fmt::format(
-                "not confirmed: the {} leg misses '{}' by {:.3g} {}, at most {:.3g} is allowed",
-                name(record.confirmed_by), c.name, c.confirmed, symbol(c.unit), bound);
+    record.confirmed_by = confirm ? Leg::energy : Leg::series;
+    if (confirm) {
+        TrimAttempt second = settle(problem, p, Leg::energy);
+        if (is_not_applicable(second.outcome)) {
+            record.confirmed_by = Leg::series;
+            second = settle(problem, p, Leg::series);
+        }
+        if (second.outcome != Outcome::converged)
+            return give_up(second,
+                           fmt::format("not confirmed: the {} leg", name(record.confirmed_by)));
+        const Bounds bounds = bounds_of({}, scale_of(held.model, held.branch, {&here.state, 1}));
+        for (std::size_t k = 0; k < record.conditions.size(); ++k) {
+            auto& c = record.conditions[k];
+            c.confirmed = in_unit(c.unit) * second.missed[static_cast<Index>(k)];
+            const double bound = c.unit == Unit::deg ? bounds.angle : bounds.length;
+            if (!(std::isfinite(c.confirmed) && std::abs(c.confirmed) <= bound))
+                record.detail = fmt::format(
+                    "not confirmed: the {} leg misses '{}' by {:.3g} {}, at most {:.3g} is allowed",
+                    name(record.confirmed_by), c.name, c.confirmed, symbol(c.unit), bound);
+        }
+        if (!record.detail.empty()) return result;
     }
-    if (!record.detail.empty()) return result;
 
     apply(trim, p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
@@ -404,5 +418,10 @@ Trimmed trim(const Scene& scene) {
     }
     return result;
 }
+
+}  // namespace
+
+Trimmed trim(const Scene& scene) { return trim_by(scene, Leg::equilibrium, true); }
+Trimmed trim_by_series(const Scene& scene) { return trim_by(scene, Leg::series, false); }
 
 }  // namespace elastocheck::compare

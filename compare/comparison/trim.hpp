@@ -7,6 +7,7 @@
 #include "elastocheck/channels.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
+#include "elastocheck/trim.hpp"
 
 namespace elastocheck::compare {
 
@@ -17,5 +18,9 @@ std::vector<Channel> condition_channels(const Model& model, const Trim& trim);
 // The scene with the adjustments p as plain data, in the units of the adjusted quantities [SI], and
 // without its trim.
 Scene with_adjusted(Scene scene, const Eigen::VectorXd& p);
+
+// trim() by the series alone, without a second reference: `confirmed` of its conditions is NaN, and
+// `confirmed_by` is the series. For a program without the references.
+Trimmed trim_by_series(const Scene& scene);
 
 }  // namespace elastocheck::compare
