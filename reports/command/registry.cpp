@@ -25,6 +25,7 @@ Command gate_command();
 Command import_command();
 Command inspect_command();
 Command judge_command();
+Command live_command();
 Command new_command();
 Command optimise_command();
 Command report_command();
@@ -86,12 +87,13 @@ Command printing(const char* name, const char* description, std::vector<Option> 
 Program program() { return program_with(documentation); }
 
 std::vector<Command> commands() {
-    std::vector<Command> all{
-        inspect_command(),  solve_command(),      compare_command(),     converge_command(),
-        trade_command(),    new_command(),        import_command(),      export_command(),
-        gate_command(),     certify_command(),    judge_command(),       report_command(),
-        stress_command(),   equilibria_command(), sensitivity_command(), solve_for_command(),
-        optimise_command(), fit_command(),        tolerances_command(),  study_command()};
+    std::vector<Command> all{inspect_command(),    solve_command(),      compare_command(),
+                             converge_command(),   trade_command(),      new_command(),
+                             import_command(),     export_command(),     gate_command(),
+                             certify_command(),    judge_command(),      report_command(),
+                             stress_command(),     equilibria_command(), sensitivity_command(),
+                             solve_for_command(),  optimise_command(),   fit_command(),
+                             tolerances_command(), study_command(),      live_command()};
     const auto given = std::make_shared<std::string>();
     all.push_back(printing(
         "completion", "Print the completion of this command for a shell",

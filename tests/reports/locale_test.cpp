@@ -107,6 +107,7 @@ const Line lines[] = {
     {"study",
      "$E study $SCENES/../studies/mcpherson.yaml --count 16 -o studied --csv rows.csv --quiet && "
      "rm -r studied"},
+    {"live", "$E live $SCENES/pendulum.yaml -o live.html"},  // without its component an error
     {"completion", "$E completion bash; $E man"},
     // Errors are reported with line and number.
     {"inspect",

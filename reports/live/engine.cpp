@@ -1,0 +1,270 @@
+#include "reports/live/engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <list>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
+#include "compare/outputs/positions.hpp"
+#include "elastocheck/compile.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "reports/document/drawing.hpp"
+
+namespace elastocheck::live {
+namespace {
+
+using json = nlohmann::ordered_json;
+using compare::Channel;
+using Eigen::Vector3d;
+
+constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
+constexpr int most_points = 400;
+
+std::vector<Channel> channels_of(const Model& model) {
+    auto all = compare::channels(model);
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    return all;
+}
+
+// Points of a drawing_json() in their bodies.
+std::vector<Point> drawn_points(const Model& model, const json& drawing) {
+    std::vector<Point> points;
+    for (const auto& entry : drawing.at("points")) {
+        const auto at = entry.at("design_mm").get<std::vector<double>>();
+        const Vector3d r = 1e-3 * Vector3d(at[0], at[1], at[2]);
+        Point point{ground, r};
+        for (std::size_t b = 0; b < model.bodies.size(); ++b)
+            if (const Body& body = model.bodies[b];
+                body.name == entry.at("body").get_ref<const std::string&>())
+                point = {static_cast<BodyId>(b), body.design.p.conjugate() * (r - body.design.r)};
+        points.push_back(point);
+    }
+    return points;
+}
+
+// The rows of one branch in the order of the path.
+struct Rows {
+    std::vector<std::pair<double, std::vector<double>>> rows;  // by the parameter in SI
+    std::size_t append_to(std::vector<double>& numbers) {
+        std::ranges::sort(rows, {}, [](const auto& row) { return row.first; });
+        const std::size_t at = numbers.size();
+        for (const auto& [a, row] : rows) numbers.insert(numbers.end(), row.begin(), row.end());
+        return at;
+    }
+};
+
+// Analyses of a model, which depend on its joints, elements and bodies, not on its loads: shared by
+// the branches on which the same parts are active.
+struct Shared {
+    std::vector<std::string> parts;  // names of the active joints and elements
+    std::shared_ptr<const recursive::Analysis> analysis;
+    compare::Analyses responses = {};
+};
+std::vector<std::string> parts_of(const Model& model) {
+    std::vector<std::string> names;
+    for (const auto& constraint : model.constraints)
+        names.push_back(model.joints[static_cast<std::size_t>(constraint.joint)].name);
+    names.emplace_back();
+    for (const auto& elastic : model.elastics) names.push_back(elastic.name);
+    return names;
+}
+
+struct Solver {
+    const Model& model;
+    const std::vector<Channel>& channels;
+    std::vector<Point> points;  // of the drawing
+    std::size_t rates = 0;      // position of the first characteristic in `channels`
+
+    // Adds the rows of all sides. With `full` the characteristics too; with `geometry` the drawing.
+    EquilibriumPath walk(const Branch& branch, const std::vector<compare::BranchSide>& sides,
+                         const compare::SolverSettings& solver, bool full, bool geometry,
+                         compare::Analyses& analyses, Rows& rows) const {
+        const std::span<const Channel> read =
+            std::span(channels).first(full ? channels.size() : rates);
+        const compare::Unit unit = compare::unit_of(branch.unit);
+        return compare::walk(
+            sides, solver,
+            [&](const Equilibrium& state) {
+                compare::Row row = row_of(model, read, sides.front(), solver, state, analyses);
+                row.values.resize(channels.size(), not_computed);
+                if (!geometry) return row;
+                for (const Point& point : points)
+                    for (const double x : compare::position(state.poses, point))
+                        row.values.push_back(1e3 * x);
+                for (const Wheel& wheel : model.wheels)
+                    for (const double x :
+                         Vector3d(compare::pose(state.poses, wheel.body).p * wheel.spin_axis_local))
+                        row.values.push_back(x);
+                return row;
+            },
+            [&](compare::Row row) {
+                std::vector<double> line{compare::parameter_in(unit, row.load)};
+                line.insert(line.end(), row.values.begin(), row.values.end());
+                rows.rows.emplace_back(row.load, std::move(line));
+            });
+    }
+};
+
+json outcome_json(const EquilibriumPath& path) {
+    return {{"outcome", name(path.outcome)}, {"detail", path.detail}};
+}
+
+json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& branch,
+                 const Request& request, bool full, std::vector<double>& numbers) {
+    auto sides = compare::sides_of(solver.model, branch, request.points);
+    const auto parts = parts_of(sides.front().model);
+    auto known = std::ranges::find(shared, parts, &Shared::parts);
+    if (known == shared.end())
+        known = shared.insert(known, {parts, std::make_shared<const recursive::Analysis>(
+                                                 recursive::analyse(sides.front().model))});
+    for (auto& side : sides) side.analysis = known->analysis;
+    Rows rows;
+    const EquilibriumPath path = solver.walk(branch, sides, {.leg = compare::Leg::series}, full,
+                                             true, known->responses, rows);
+    json result = {{"name", branch.name}, {"unit", symbol(compare::unit_of(branch.unit))}};
+    result.update(outcome_json(path));
+    result["points"] = rows.rows.size();
+    result["at"] = rows.append_to(numbers);
+    const auto start = std::ranges::min_element(
+        rows.rows, {}, [](const auto& row) { return std::abs(row.first); });
+    result["start"] = start - rows.rows.begin();
+    result["published"] = nullptr;
+    if (!full) return result;
+    const int refine = std::max(1, (branch.steps + request.points / 2) / request.points);
+    Rows fast;
+    const EquilibriumPath published =
+        solver.walk(branch, sides, {.leg = compare::Leg::recursive, .refine = refine}, false, false,
+                    known->responses, fast);
+    json& part = result["published"] = outcome_json(published);
+    part["steps"] = refine * request.points;
+    part["points"] = fast.rows.size();
+    part["at"] = fast.append_to(numbers);
+    return result;
+}
+
+}  // namespace
+
+json open(Session& session, std::string_view text, const std::string& name) {
+    session = {std::string(text), name, std::nullopt};
+    session.parsed.emplace(session.text, name, std::nullopt);
+    std::vector<std::string> warnings;
+    const Scene scene = session.parsed->read({}, &warnings);
+    json answer = {{"title", scene.name}, {"warnings", warnings}};
+    answer["numbers"] = json::array();
+    for (const Number& number : scene.numbers)
+        answer["numbers"].push_back(
+            {{"path", number.path}, {"value", number.value}, {"unit", number.unit}});
+    answer["points"] = json::array();
+    for (const Hardpoint& point : scene.hardpoints)
+        answer["points"].push_back(
+            {{"name", point.name},
+             {"at",
+              {1e3 * point.position.x(), 1e3 * point.position.y(), 1e3 * point.position.z()}}});
+    const Model model = compile(scene);
+    answer["branches"] = json::array();
+    for (const Branch& branch : model.branches) {
+        const compare::Unit unit = compare::unit_of(branch.unit);
+        answer["branches"].push_back({{"name", branch.name},
+                                      {"unit", symbol(unit)},
+                                      {"from", compare::parameter_in(unit, branch.from)},
+                                      {"to", compare::parameter_in(unit, branch.to)},
+                                      {"steps", branch.steps}});
+    }
+    answer["channels"] = json::array();
+    for (const Channel& channel : channels_of(model))
+        answer["channels"].push_back({{"name", channel.name},
+                                      {"unit", symbol(channel.unit)},
+                                      {"kind", compare::name(channel.kind())},
+                                      {"main", channel.main},
+                                      {"definition", channel.definition},
+                                      {"undefined", channel.undefined}});
+    return answer;
+}
+
+Answer solve(const Session& session, const Request& request) {
+    if (!session.parsed) throw std::logic_error("no scene is open");
+    if (request.points < 1 || request.points > most_points)
+        throw std::invalid_argument(
+            fmt::format("points: {} is not from 1 to {}", request.points, most_points));
+    const compare::Trimmed trimmed =
+        compare::trim_by_series(session.parsed->read(request.settings));
+    Answer answer;
+    answer.head["trim"] = nullptr;
+    if (trimmed.record) {
+        if (!trimmed.record->reached()) {
+            answer.head["trouble"] = "trim: " + trimmed.record->detail;
+            return answer;
+        }
+        json list = json::array();
+        for (const auto& adjusted : trimmed.record->adjusted)
+            list.push_back({{"name", adjusted.name},
+                            {"by", adjusted.by},
+                            {"unit", symbol(adjusted.unit)},
+                            {"makes", adjusted.makes}});
+        answer.head["trim"] = std::move(list);
+    }
+    const Model model = compile(trimmed.scene);
+    const auto channels = channels_of(model);
+    answer.head["channels"] = json::array();
+    for (const Channel& channel : channels) answer.head["channels"].push_back(channel.name);
+    answer.head["drawing"] = reports::drawing_json(trimmed.scene, model, {});
+    const auto first_rate =
+        std::ranges::find(channels, compare::ChannelKind::characteristic, &Channel::kind);
+    const Solver solver{model, channels, drawn_points(model, answer.head["drawing"]),
+                        static_cast<std::size_t>(first_rate - channels.begin())};
+    std::list<Shared> shared;
+    answer.head["branches"] = json::array();
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const Branch& branch = model.branches[b];
+        if (!request.only.empty() && branch.name != request.only) continue;
+        const bool full = b < request.full.size() && request.full[b];
+        answer.head["branches"].push_back(
+            branch_json(solver, shared, branch, request, full, answer.numbers));
+    }
+    return answer;
+}
+
+std::string rewrite(const Session& session, const std::vector<Setting>& settings) {
+    return rewrite_scene(session.text, session.name, settings);
+}
+
+Request request_of(std::string_view text) {
+    const json read = json::parse(text, nullptr, false);
+    Request request;
+    const auto require = [](bool met) {
+        if (!met) throw std::invalid_argument("the request is not as engine.hpp describes it");
+    };
+    require(read.is_object() && read.contains("settings") && read["settings"].is_array());
+    for (const json& pair : read["settings"]) {
+        require(pair.is_array() && pair.size() == 2 && pair[0].is_string() && pair[1].is_string());
+        request.settings.push_back({pair[0].get<std::string>(), pair[1].get<std::string>()});
+    }
+    if (read.contains("points")) {
+        require(read["points"].is_number_integer());
+        request.points = read["points"].get<int>();
+    }
+    if (read.contains("only")) {
+        require(read["only"].is_string());
+        request.only = read["only"].get<std::string>();
+    }
+    if (read.contains("full")) {
+        require(read["full"].is_array());
+        for (const json& value : read["full"]) {
+            require(value.is_boolean());
+            request.full.push_back(value.get<bool>());
+        }
+    }
+    return request;
+}
+
+}  // namespace elastocheck::live

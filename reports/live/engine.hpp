@@ -1,0 +1,60 @@
+// What a live page asks of the solver: opens a scene, solves it with changed numbers by the series, writes it back. The
+// same code runs in the page as WebAssembly (reports/live/wasm) and natively in tests.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "elastocheck/read_scene.hpp"
+#include "models/reader/parsed_scene.hpp"
+
+namespace elastocheck::live {
+
+struct Session {
+    std::string text, name;  // of the scene, and of its file for messages
+    std::optional<reader::ParsedScene> parsed;
+};
+
+// Reads a scene and keeps it in the session. Throws SceneError. The answer:
+//   title, warnings      of the reader, "file:line: field: ..."
+//   numbers              path, value, unit of every number of the file, as written
+//   points               hardpoints [mm]: name, position
+//   branches             name, unit, from, to [unit], steps
+//   channels             name, unit, kind, main, definition, undefined, of all that solve() returns
+nlohmann::ordered_json open(Session& session, std::string_view text, const std::string& name);
+
+struct Request {
+    std::vector<Setting> settings;
+    int points = 40;  // equal increments of the parameter over a branch, > 0
+    // per branch: whether characteristics and the published method are computed too; missing: not
+    std::vector<bool> full;
+    std::string only;  // name of a branch: the others are not solved; empty: all are
+};
+
+// Trims and solves all branches by the power series. Throws SceneError, std::invalid_argument.
+// `head`:
+//   trouble   why there is no result: a trim that is not reached; else absent
+//   trim      adjusted: name, by, unit, makes; null without a trim
+//   channels  names; normally those of open()
+//   drawing   drawing_json() of the trimmed design position
+//   branches  name, unit, outcome, detail, points, start: position of a = 0, at: position of its first number,
+//             published: outcome, detail, steps, points, at; null unless asked for
+// `numbers`, per point of a branch: parameter, channels, positions of the drawing's points [mm], spin axes of the wheels.
+// Of a point of the published method: parameter, channels. NaN: not computed; infinite: undefined.
+struct Answer {
+    nlohmann::ordered_json head;
+    std::vector<double> numbers;
+};
+Answer solve(const Session& session, const Request& request);
+
+// The scene's text with these values (rewrite_scene()).
+std::string rewrite(const Session& session, const std::vector<Setting>& settings);
+
+// {"settings": [[path, value], ...], "points": 40, "full": [true, false, ...], "only": "travel"}; throws
+// std::invalid_argument for anything else.
+Request request_of(std::string_view json);
+
+}  // namespace elastocheck::live

@@ -1,0 +1,416 @@
+// ---- The page: its state, what changes it, and the solver in its worker
+const state = {info: null, source: '', file: '', of: new Map(), channel: new Map(), settings: new Map(), base: null, now: null,
+  branch: '', station: null, curves: null, point: null, targets: new Map(), effects: null, undo: [], redo: [], solved: new Map()};
+const branchOf = (run, name) => run.branches.find(b => b.name === name);
+const stationIn = branch => !branch ? 0 : state.station === null ? branch.start : Math.round(state.station * (branch.points - 1));
+const stationOf = run => {
+  const branch = branchOf(run, state.branch) ?? run.branches[0];
+  return [branch, branch ? stationIn(branch) : 0];
+};
+
+// ---- The worker: one call at a time, answers by their number
+let worker, calls = 0;
+const waiting = new Map();
+const ask = (what, data = {}) => new Promise((resolve, reject) => {
+  waiting.set(++calls, {resolve, reject});
+  worker.postMessage({id: calls, what, ...data});
+});
+const startWorker = async () => {
+  const blob = new Blob([$('worker').textContent], {type: 'text/javascript'});
+  worker = new Worker(URL.createObjectURL(blob));
+  worker.onmessage = ({data}) => {
+    const call = waiting.get(data.id);
+    waiting.delete(data.id);
+    data.error === undefined ? call.resolve(data) : call.reject(Object.assign(new Error(data.error), {kind: data.kind}));
+  };
+  const packed = Uint8Array.from(atob($('solver').textContent.trim()), c => c.charCodeAt(0));
+  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  await ask('start', {bytes: await new Response(plain).arrayBuffer()});
+};
+
+// ---- Numbers and settings
+const numberOf = path => state.settings.has(path) ? +state.settings.get(path) : state.of.get(path).value;
+const paths = name => [0, 1, 2].map(k => `points.${name}.${'xyz'[k]}`);
+const mm = path => millimetres[state.of.get(path).unit] ?? 1;
+const coordinatesOf = name => paths(name).map(p => numberOf(p) * mm(p));
+const isMoved = name => paths(name).some(p => state.settings.has(p));
+// A hardpoint where it is drawn: its design position, or with its body at the shown station.
+const placeOf = name => {
+  const design = coordinatesOf(name), {now} = state;
+  if (!now) return design;
+  const i = now.drawing.points.findIndex(p => p.name === name), [branch, k] = stationOf(now);
+  if (i < 0 || !branch?.points || k === branch.start) return design;
+  return add(add(design, 1, now.point(branch, k, i)), -1, now.point(branch, branch.start, i));
+};
+const put = (path, text) => {
+  if (state.of.get(path).value === +text && text.trim() !== '') state.settings.delete(path);
+  else state.settings.set(path, text);
+};
+const place = (name, coordinates) => {
+  paths(name).forEach((p, k) => { if (Math.abs(coordinates[k] - numberOf(p) * mm(p)) > 1e-9) put(p, written(coordinates[k] / mm(p))); });
+  changed();
+};
+// Half the points while a hardpoint is dragged.
+const request = () => ({settings: [...state.settings], points: held?.name ? 20 : 40,
+  full: state.info.branches.map(b => state.branch === '' || b.name === state.branch || b === state.info.branches[0])});
+
+// ---- Undo: the settings before each change
+const remember = () => {
+  const last = state.undo.at(-1), now = [...state.settings];
+  if (last && JSON.stringify(last) === JSON.stringify(now)) return;
+  state.undo.push(now);
+  state.redo = [];
+};
+// Drops a remembered state that nothing was changed after.
+const settle = () => {
+  if (state.undo.length && JSON.stringify(state.undo.at(-1)) === JSON.stringify([...state.settings])) state.undo.pop();
+  buttons();
+};
+const restore = (from, to) => {
+  if (!from.length) return;
+  to.push([...state.settings]);
+  state.settings = new Map(from.pop());
+  changed();
+};
+const buttons = () => {
+  $('undo').disabled = !state.undo.length;
+  $('redo').disabled = !state.redo.length;
+  $('reset').disabled = $('line').disabled = $('save').disabled = !state.info;
+  $('reset').disabled ||= !state.settings.size;
+};
+
+// ---- Solving: the newest state, one solve at a time; what came between is left out
+let busy = false, due = false;
+window.live = {draws: [], state};  // for tests: seconds of every solve, and from the change to the picture
+let since = 0;
+const changed = () => {
+  since ||= performance.now();
+  due = true;
+  fillNumbers();
+  drawHandles(axesOf());
+  buttons();
+  pump();
+};
+const nextFrame = () => new Promise(resolve => requestAnimationFrame(resolve));
+const pump = async () => {
+  if (busy) return;
+  busy = true;
+  while (due) {
+    due = false;
+    const asked = since, settings = new Map(state.settings);
+    since = 0;
+    try {
+      const answer = await ask('solve', {request: request()});
+      if (answer.head.trouble) throw new Error(answer.head.trouble);
+      state.now = new Run(answer);
+      if (!settings.size) state.base = state.now;
+      trouble('');
+      const begun = performance.now();
+      draw();
+      const done = performance.now();
+      window.live.draws.push({solve: answer.seconds, draw: (done - begun) / 1e3, all: (done - asked) / 1e3});
+      $('state').textContent = `${state.now.branches.length} branches solved in ${(1e3 * answer.seconds).toFixed(0)} ms` +
+        (settings.size ? ` · ${settings.size} number${settings.size > 1 ? 's' : ''} changed` : '');
+    } catch (error) {
+      $('state').textContent = 'not solved: the curves are those of the last numbers that could be solved';
+      trouble(error.message);
+    }
+    invalid();
+    await nextFrame();
+  }
+  busy = false;
+};
+
+// ---- Arrows: by how much a figure, at the shown position of the shown branch, changes with each coordinate of a hardpoint.
+// Central differences of 0.1 mm, solved while nothing else is to be done.
+const listEffects = () => {
+  const select = $('effect'), old = select.value, names = [...new Set([...document.querySelectorAll('#charts .chart')].map(c => c.dataset.channel))];
+  if ([...select.options].slice(1).map(o => o.value).join() === names.join()) return;
+  select.replaceChildren(make('option', {value: ''}, 'none'), ...names.map(n => make('option', {value: n}, n)));
+  select.value = names.includes(old) ? old : '';
+};
+let measuring = 0;
+const measureEffects = async () => {
+  const mine = ++measuring, name = $('effect').value, h = .1;
+  state.effects = null;
+  $('effects').hidden = true;
+  drawHandles(axesOf());
+  if (!name || !state.now) return;
+  const [branch, k] = stationOf(state.now), all = [];
+  const rates = state.channel.get(name).kind === 'characteristic';
+  for (const point of handles.keys())
+    for (const p of paths(point)) {
+      const values = [];
+      for (const sign of [1, -1]) {
+        if (due || busy) return;
+        if (mine !== measuring) return;
+        const settings = new Map(state.settings).set(p, written(numberOf(p) + sign * h / mm(p)));
+        try {
+          const run = new Run(await ask('solve', {request: {settings: [...settings], points: 40, only: branch.name, full: state.info.branches.map(() => rates)}}));
+          values.push(run.value(run.branches[0], k, run.place.get(name)));
+        } catch { values.push(NaN); }
+      }
+      all.push({point, path: p, axis: 'xyz'.indexOf(p.at(-1)), by: (values[0] - values[1]) / (2 * h)});
+    }
+  if (mine !== measuring) return;
+  state.effects = all.filter(e => Number.isFinite(e.by));
+  const unit = state.channel.get(name).unit, most = [...state.effects].sort((a, b) => Math.abs(b.by) - Math.abs(a.by)).slice(0, 5);
+  $('effects').hidden = false;
+  $('effects').querySelector('h3').textContent = `Most effect on ${name} at ${shown(state.now.a(branch, k))} ${branch.unit} of ${branch.name}, per mm`;
+  $('effects').querySelector('ol').replaceChildren(...most.map(e => make('li', {}, `${e.path.slice(7)} ${signed(e.by)} ${unit}`)));
+  drawHandles(axesOf());
+};
+let pause = 0;
+const measureSoon = () => { ++measuring; clearTimeout(pause); if ($('effect').value) pause = setTimeout(measureEffects, 250); };
+$('effect').onchange = measureEffects;
+const trouble = text => { $('trouble').hidden = !text; $('trouble').textContent = text; };
+
+// ---- Opening
+const open = async (source, file) => {
+  const {head} = await ask('open', {source, name: file});
+  Object.assign(state, {info: head, source, file, of: new Map(head.numbers.map(n => [n.path, n])),
+    channel: new Map(head.channels.map(c => [c.name, c])), settings: new Map(), undo: [], redo: [], curves: null, point: null, targets: new Map(), effects: null,
+    station: null, branch: head.branches[0]?.name ?? '', now: null, base: null});
+  $('title').textContent = head.title;
+  document.title = `${head.title} – elastocheck live`;
+  $('warnings').hidden = !head.warnings.length;
+  $('warnings').querySelector('summary').textContent = `${head.warnings.length} warning${head.warnings.length > 1 ? 's' : ''} of the reader`;
+  $('warnings').querySelector('ul').replaceChildren(...head.warnings.map(w => make('li', {}, w)));
+  makeHandles();
+  makeNumbers();
+  makeBranches();
+  makeChoice();
+  $('point').hidden = $('target').hidden = $('effects').hidden = true;
+  trouble('');
+  buttons();
+  since = performance.now();
+  due = true;
+  await pump();
+  if (state.base) { fitView(state.base); draw(); }
+};
+const tryOpen = async (source, file) => {
+  try { await open(source, file); } catch (error) { trouble(error.message); $('state').textContent = 'not opened'; }
+};
+
+// ---- Drawing all that depends on the answer
+const draw = () => {
+  if (!state.now) return;
+  if (view.size === 1) fitView(state.now);
+  draw3d();
+  drawCharts();
+  drawTables();
+  drawMotion();
+  listEffects();
+  measureSoon();
+};
+const drawMotion = () => {
+  const [branch, k] = stationOf(state.now), slider = $('motion');
+  if (!branch?.points) return;
+  slider.max = branch.points - 1;
+  slider.value = k;
+  $('motion-name').textContent = branch.name;
+  $('motion-at').textContent = `${shown(state.now.a(branch, k))} ${branch.unit}`;
+  slider.setAttribute('aria-valuetext', $('motion-at').textContent);
+};
+const makeBranches = () => {
+  const names = [...state.info.branches.map(b => b.name), ''];
+  $('branches').replaceChildren(...names.map(name => {
+    const button = make('button', {type: 'button', 'aria-pressed': String(name === state.branch)}, name || 'all branches');
+    button.onclick = () => {
+      state.branch = name;
+      state.station = null;
+      for (const other of $('branches').children) other.setAttribute('aria-pressed', String(other === button));
+      drawCharts();
+      listEffects();
+      solveBase().then(changed);
+    };
+    return button;
+  }));
+};
+// The scene as opened, with all that the shown branch needs.
+const solveBase = async () => {
+  const answer = await ask('solve', {request: {...request(), settings: []}});
+  if (!answer.head.trouble) state.base = new Run(answer);
+};
+const makeChoice = () => {
+  const box = $('choose').querySelector('div');
+  box.replaceChildren(...state.info.channels.map(channel => {
+    const tick = make('input', {type: 'checkbox', value: channel.name});
+    tick.onchange = () => {
+      state.curves = [...box.querySelectorAll('input:checked')].map(t => t.value);
+      if (!state.curves.length) state.curves = null;
+      drawCharts();
+    };
+    return make('label', {title: channel.definition}, tick, `${channel.name} [${channel.unit}]`);
+  }));
+};
+$('choose').addEventListener('toggle', () => {
+  if (!$('choose').open || !state.now) return;
+  const list = state.curves ?? defaultCurves(state.base, branchOf(state.base, state.branch) ?? state.base.branches[0]);
+  for (const tick of $('choose').querySelectorAll('input')) tick.checked = list.includes(tick.value);
+});
+const staticFigures = ['toe', 'camber', 'caster', 'kingpin_inclination', 'scrub_radius', 'mechanical_trail', 'track'];
+const drawTables = () => {
+  const {base, now, info} = state, first = info.branches[0]?.name;
+  const old = branchOf(base, first), is = branchOf(now, first);
+  const row = (channel, was, value) => {
+    const by = value - was, differs = Number.isFinite(by) && Math.abs(by) > 1e-9 * Math.max(1, Math.abs(was));
+    return make('tr', {'data-channel': channel.name}, make('td', {title: channel.definition}, words(channel.name)), make('td', {}, channel.unit),
+      make('td', {}, shown(was)), make('td', {}, shown(value)), make('td', {class: differs ? 'changed' : ''}, differs ? signed(by) : ''));
+  };
+  const head = () => make('thead', {}, make('tr', {}, ...['', 'unit', 'as opened', 'now', 'change'].map(t => make('th', {scope: 'col'}, t))));
+  const at = (run, branch, name, k) => branch?.points ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
+  const rows = info.channels.filter(c => (c.kind === 'motion' && staticFigures.includes(last(c.name))) || c.kind === 'characteristic')
+    .map(c => row(c, at(base, old, c.name, old?.start), at(now, is, c.name, is?.start)));
+  $('static').replaceChildren(head(), make('tbody', {}, ...rows));
+  if (!$('forces').open) return;
+  const [b, k] = stationOf(now), [o, j] = stationOf(base);
+  $('forces').querySelector('table').replaceChildren(head(), make('tbody', {}, ...info.channels
+    .filter(c => c.kind === 'element' && ['N', 'N·m'].includes(c.unit)).map(c => row(c, at(base, o, c.name, j), at(now, b, c.name, k)))));
+};
+$('forces').addEventListener('toggle', () => state.now && drawTables());
+
+// ---- The list of numbers, and the entry of the chosen hardpoint
+const rowsOf = new Map();  // path -> [row, ...]
+const numberRow = (number, words, slides) => {
+  const entry = make('input', {type: 'text', inputmode: 'decimal', 'aria-label': number.path, autocomplete: 'off'});
+  const row = make('div', {class: 'row', 'data-path': number.path}, make('span', {class: 'path'}, words));
+  entry.onchange = () => { remember(); put(number.path, entry.value.trim()); changed(); settle(); };
+  let slider = null;
+  if (slides && number.value !== 0) {
+    const size = Math.abs(number.value);
+    slider = make('input', {type: 'range', 'aria-label': `${number.path}, slider`, min: number.value - .5 * size, max: number.value + .5 * size, step: size / 200});
+    slider.onpointerdown = remember;
+    slider.onkeydown = event => { if (event.key.startsWith('Arrow')) remember(); };
+    slider.oninput = () => { put(number.path, written(+slider.value)); changed(); };
+    slider.onchange = settle;
+  }
+  row.append(slider ?? make('span'), entry, make('span', {class: 'unit'}, number.unit));
+  row.fill = () => {
+    const text = state.settings.get(number.path) ?? String(number.value);
+    if (document.activeElement !== entry || entry.value.trim() !== text) entry.value = text;
+    if (slider && document.activeElement !== slider) slider.value = text;
+    row.classList.toggle('changed', state.settings.has(number.path));
+    row.title = `as opened: ${number.value} ${number.unit}`;
+  };
+  rowsOf.set(number.path, [...(rowsOf.get(number.path) ?? []), row]);
+  row.fill();
+  return row;
+};
+const fillNumbers = () => { for (const rows of rowsOf.values()) for (const row of rows) row.fill(); };
+// Marks the entries that the message is about, or that are no number.
+const invalid = () => {
+  const text = $('trouble').textContent;
+  for (const [path, rows] of rowsOf)
+    for (const row of rows)
+      row.querySelector('input[type=text]').setAttribute('aria-invalid',
+        String(state.settings.has(path) && text !== '' && (text.includes(path) || !Number.isFinite(+state.settings.get(path)) || state.settings.get(path) === '')));
+};
+const makeNumbers = () => {
+  rowsOf.clear();
+  const sections = new Map();
+  for (const number of state.info.numbers) {
+    const section = number.path.split('.')[0];
+    if (!sections.has(section)) sections.set(section, make('div', {}, make('h3', {}, section.replaceAll('_', ' '))));
+    sections.get(section).append(numberRow(number, number.path.slice(section.length + 1) || section, section !== 'points'));
+  }
+  const order = ['springs', 'bushings', 'stops', 'torsion_springs', 'beams', 'tyres', 'joints'];
+  const rank = name => { const k = order.indexOf(name); return k < 0 ? 50 : k; };
+  $('list').replaceChildren(...[...sections].sort((a, b) => rank(a[0]) - rank(b[0])).map(s => s[1]));
+  filter();
+};
+const filter = () => {
+  const word = $('find').value.trim().toLowerCase();
+  for (const section of $('list').children) {
+    let any = false;
+    for (const row of section.querySelectorAll('.row')) {
+      row.hidden = !row.dataset.path.toLowerCase().includes(word);
+      any ||= !row.hidden;
+    }
+    section.hidden = !any;
+  }
+};
+const choose = name => {
+  if (state.point === name && !$('point').hidden) return;
+  for (const [path, rows] of rowsOf) rowsOf.set(path, rows.filter(row => !$('point').contains(row)));
+  state.point = name;
+  const back = make('button', {type: 'button'}, 'As opened');
+  back.onclick = () => { remember(); paths(name).forEach(p => state.settings.delete(p)); changed(); settle(); };
+  $('point').replaceChildren(make('h3', {}, name), ...paths(name).map((p, k) => numberRow(state.of.get(p), 'xyz'[k], false)), back);
+  $('point').hidden = false;
+  drawHandles(axesOf());
+};
+
+// ---- Tools
+$('find').oninput = filter;
+$('undo').onclick = () => restore(state.undo, state.redo);
+$('redo').onclick = () => restore(state.redo, state.undo);
+$('reset').onclick = () => { remember(); state.settings.clear(); changed(); settle(); };
+$('motion').oninput = () => {
+  const [branch] = stationOf(state.now), k = +$('motion').value;
+  state.station = k === branch.start ? null : k / (branch.points - 1);
+  draw3d();
+  drawCharts();
+  drawMotion();
+  if ($('forces').open) drawTables();
+  measureSoon();
+};
+document.addEventListener('keydown', event => {
+  if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== 'z' || event.target.matches('input[type=text],textarea')) return;
+  event.preventDefault();
+  event.shiftKey ? restore(state.redo, state.undo) : restore(state.undo, state.redo);
+});
+const save = (text, name) => {
+  const link = make('a', {href: URL.createObjectURL(new Blob([text], {type: 'text/yaml'})), download: name});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+};
+$('save').onclick = async () => {
+  try {
+    const {text} = await ask('rewrite', {request: {settings: [...state.settings]}});
+    window.live.saved = text;
+    save(text, state.file.replace(/^.*[/\\]/, '').replace(/\.ya?ml$/, '') + '_varied.yaml');
+  } catch (error) { trouble(error.message); }
+};
+const quoted = word => /^[\w./=+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
+const commandLine = () => ['elastocheck', 'report', quoted(state.file), ...[...state.settings].flatMap(([p, v]) => ['--set', quoted(`${p}=${v}`)])].join(' ');
+const dialog = (title, text, write, then) => {
+  const box = $('dialog'), area = box.querySelector('textarea');
+  box.querySelector('span').textContent = title;
+  area.value = text;
+  area.readOnly = !write;
+  $('dialog-ok').hidden = !write;
+  box.returnValue = '';
+  box.onclose = () => { if (box.returnValue === 'ok' && then) then(area.value); };
+  box.showModal();
+  if (!write) area.select();
+};
+$('line').onclick = () => dialog('The numbers that differ from the scene as opened, as a command line', commandLine(), false);
+$('target').onsubmit = event => event.preventDefault();
+$('paste').onclick = () => dialog('Text of a scene (YAML)', '', true, text => tryOpen(text, 'pasted.yaml'));
+$('file').onchange = async () => {
+  const [file] = $('file').files;
+  if (file) await tryOpen(await file.text(), file.name);
+  $('file').value = '';
+};
+for (const name of ['dragover', 'drop'])
+  document.addEventListener(name, async event => {
+    if (!event.dataTransfer?.types.includes('Files')) return;
+    event.preventDefault();
+    const [file] = event.dataTransfer.files;
+    if (name === 'drop' && file) await tryOpen(await file.text(), file.name);
+  });
+new ResizeObserver(() => state.now && draw3d()).observe($('suspension'));
+
+setUpView();
+(async () => {
+  try {
+    await startWorker();
+    const {text, name} = JSON.parse($('scene').textContent);
+    await tryOpen(text, name);
+    window.live.ready = performance.now();
+  } catch (error) {
+    trouble(error.message);
+    $('state').textContent = 'the solver did not start';
+  }
+})();

@@ -1,0 +1,192 @@
+// ---- The drawing: orthographic, of the shown station, with the suspension as opened in pale lines
+const views = {Oblique: [38, 24], Front: [0, 0], Side: [90, 0], Top: [180, 90]};  // about z, above [deg]
+const view = {yaw: 38, pitch: 24, zoom: 1, centre: [0, 0, 0], size: 1, wide: 640, high: 460, name: 'Oblique'};
+const axesOf = () => {
+  const a = view.yaw * Math.PI / 180, b = view.pitch * Math.PI / 180;
+  return {right: [-Math.sin(a), Math.cos(a), 0],
+          up: [-Math.cos(a) * Math.sin(b), -Math.sin(a) * Math.sin(b), Math.cos(b)],
+          scale: view.zoom * .8 * Math.min(view.wide, view.high) / view.size};
+};
+const flat = (p, {right, up, scale}) => {
+  const d = add(p, -1, view.centre);
+  return [view.wide / 2 + scale * dot(d, right), view.high / 2 - scale * dot(d, up)];
+};
+const between = (a, b, t, off) => {
+  const x = b[0] - a[0], y = b[1] - a[1], l = Math.hypot(x, y) || 1;
+  return [a[0] + t * x - off * y / l, a[1] + t * y + off * x / l];
+};
+const shapes = {
+  spring: (a, b) => path([a, ...Array.from({length: 13}, (_, k) => between(a, b, .12 + .76 * k / 12, k % 12 ? (k % 2 ? 7 : -7) : 0)), b]),
+  damper: (a, b) => path([a, between(a, b, .35, 0)]) + path([between(a, b, .55, 0), b]) +
+    path([[.7, 4], [.35, 4], [.35, -4], [.7, -4]].map(([t, off]) => between(a, b, t, off))),
+  stop: () => ''
+};
+// A wheel: the circle of the tyre about the spin axis.
+const circle = (run, branch, k, wheel, index) => {
+  const centre = run.point(branch, k, wheel.centre), patch = run.point(branch, k, wheel.patch), e = run.spin(branch, k, index);
+  const arm = add(patch, -1, centre), r = add(arm, -dot(arm, e), e), size = Math.hypot(...r);
+  if (size < 1e-6) return [];
+  const side = [e[1] * r[2] - e[2] * r[1], e[2] * r[0] - e[0] * r[2], e[0] * r[1] - e[1] * r[0]];
+  return Array.from({length: 49}, (_, i) => add(add(centre, Math.cos(i * Math.PI / 24), r), Math.sin(i * Math.PI / 24), side));
+};
+const fitView = run => {
+  const branch = run.branches[0], all = [];
+  if (!branch || !branch.points) return;
+  for (let i = 0; i < run.drawing.points.length; ++i) all.push(run.point(branch, branch.start, i));
+  run.drawing.wheels.forEach((wheel, w) => all.push(...circle(run, branch, branch.start, wheel, w)));
+  const low = [0, 1, 2].map(k => Math.min(...all.map(p => p[k]))), high = [0, 1, 2].map(k => Math.max(...all.map(p => p[k])));
+  view.centre = low.map((v, k) => (v + high[k]) / 2);
+  view.size = Math.hypot(...low.map((v, k) => high[k] - v)) * .8 || 1;
+};
+const scenery = (run, branch, k, axes, was) => {
+  const group = make('g'), at = run.drawing.points.map((_, i) => flat(run.point(branch, k, i), axes));
+  if (!was)
+    for (const face of run.drawing.faces) group.append(make('path', {class: 'face', d: path(face.points.map(i => at[i]), 'Z')}));
+  for (const link of run.drawing.links) {
+    const [a, b] = link.points.map(i => at[i]), d = (shapes[link.kind] ?? ((p, q) => path([p, q])))(a, b);
+    if (d) group.append(make('path', {class: 'l ' + (was ? 'was' : link.kind), d}));
+  }
+  run.drawing.wheels.forEach((wheel, w) => group.append(make('path',
+    {class: was ? 'tyre was' : 'tyre', d: path(circle(run, branch, k, wheel, w).map(p => flat(p, axes)), 'Z')})));
+  if (!was)
+    for (const i of run.drawing.bushings) {
+      group.append(make('circle', {class: 'bush', cx: px(at[i][0]), cy: px(at[i][1]), r: 9}));
+    }
+  return group;
+};
+const triad = axes => {
+  const group = make('g', {class: 'axes'}), from = [30, view.high - 30];
+  ['x', 'y', 'z'].forEach((name, k) => {
+    const to = [from[0] + 22 * axes.right[k], from[1] - 22 * axes.up[k]];
+    if (Math.hypot(to[0] - from[0], to[1] - from[1]) < 4) return;
+    group.append(make('line', {x1: from[0], y1: from[1], x2: px(to[0]), y2: px(to[1])}),
+                 make('text', {x: px(to[0] + 3), y: px(to[1] - 2)}, name));
+  });
+  return group;
+};
+// The movable hardpoints, each an element that keeps its place in the document, so that it keeps the focus.
+const handles = new Map();
+const drawHandles = axes => {
+  const layer = $('handles');
+  for (const [name, handle] of handles) {
+    const [x, y] = flat(placeOf(name), axes);
+    handle.setAttribute('transform', `translate(${px(x)} ${px(y)})`);
+    handle.setAttribute('class', 'handle' + (state.point === name ? ' chosen' : '') + (isMoved(name) ? ' moved' : ''));
+    handle.setAttribute('aria-label', `${name}: ${placeOf(name).map(v => minus(v.toFixed(1))).join(', ')} mm`);
+    if (handle.parentNode !== layer) layer.append(handle);
+  }
+  // An arrow shows into which direction a move raises the chosen figure most, and by its length how much.
+  const sums = new Map();
+  for (const {point, axis, by} of state.effects ?? []) (sums.get(point) ?? sums.set(point, [0, 0, 0]).get(point))[axis] = by;
+  const longest = Math.max(...[...sums.values()].map(g => Math.hypot(...g)), 0), arrows = [];
+  for (const [point, g] of sums) {
+    const d = [dot(g, axes.right), -dot(g, axes.up)].map(v => 60 * v / longest), size = Math.hypot(...d), [x, y] = flat(placeOf(point), axes);
+    if (!(size > 3)) continue;
+    const tip = [x + d[0], y + d[1]], u = d.map(v => v / size), side = s => [tip[0] - 6 * u[0] - s * 4 * u[1], tip[1] - 6 * u[1] + s * 4 * u[0]];
+    arrows.push(make('path', {class: 'arrow', d: path([[x, y], tip]) + path([side(1), tip, side(-1)])}));
+  }
+  $('arrows').replaceChildren(...arrows);
+};
+const draw3d = () => {
+  const svg = $('drawing'), {now, base} = state;
+  if (!now) return;
+  view.wide = svg.clientWidth || 640;
+  view.high = Math.round(view.wide * .74);
+  svg.setAttribute('viewBox', `0 0 ${view.wide} ${view.high}`);
+  const axes = axesOf(), [branch, k] = stationOf(now);
+  const layers = [];
+  if (base !== now && branch) {
+    const [old, j] = stationOf(base);
+    if (old && old.points) layers.push(scenery(base, old, j, axes, true));
+  }
+  if (branch && branch.points) layers.push(scenery(now, branch, k, axes, false));
+  layers.push(triad(axes));
+  $('scenery').replaceChildren(...layers);
+  drawHandles(axes);
+  for (const button of $('views').children) button.setAttribute('aria-pressed', String(button.textContent === view.name));
+};
+const pointers = new Map();
+let held = null;  // what a pointer moves: {name, from: coordinates, x, y} or {turn: true, ...}
+const moved3d = (from, dx, dy) => {
+  const axes = axesOf(), along = $('along').value, step = +$('snap').value;
+  let d = [0, 0, 0];
+  if (along === '') d = add(add(d, dx / axes.scale, axes.right), -dy / axes.scale, axes.up);
+  else {
+    const s = [axes.right[along] * axes.scale, -axes.up[along] * axes.scale], size = dot(s, s);
+    if (size > 1e-3 * axes.scale ** 2) d[along] = (s[0] * dx + s[1] * dy) / size;
+  }
+  return from.map((v, k) => Math.abs(d[k]) < 1e-9 ? v : step ? v + Math.round(d[k] / step) * step : v + d[k]);
+};
+const setUpView = () => {
+  const svg = $('drawing');
+  svg.append(make('g', {id: 'scenery'}), make('g', {id: 'arrows'}), make('g', {id: 'handles'}));
+  for (const name of Object.keys(views)) {
+    const button = make('button', {type: 'button'}, name);
+    button.onclick = () => { [view.yaw, view.pitch] = views[name]; view.name = name; draw3d(); };
+    $('views').append(button);
+  }
+  svg.addEventListener('pointerdown', event => {
+    if (event.button) return;
+    pointers.set(event.pointerId, [event.clientX, event.clientY]);
+    svg.setPointerCapture(event.pointerId);
+    const handle = event.target.closest('.handle');
+    if (handle) {
+      handle.focus({preventScroll: true});
+      choose(handle.dataset.name);
+      held = {name: handle.dataset.name, from: coordinatesOf(handle.dataset.name), x: event.clientX, y: event.clientY};
+      remember();
+    } else held = {turn: true, x: event.clientX, y: event.clientY, yaw: view.yaw, pitch: view.pitch};
+    event.preventDefault();
+  });
+  svg.addEventListener('pointermove', event => {
+    if (!pointers.has(event.pointerId)) return;
+    const before = pointers.get(event.pointerId);
+    if (pointers.size === 2) {  // two fingers zoom
+      const other = [...pointers].find(([id]) => id !== event.pointerId)[1];
+      const apart = p => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
+      view.zoom = Math.min(20, Math.max(.2, view.zoom * apart([event.clientX, event.clientY]) / apart(before)));
+      held = null;
+      draw3d();
+    } else if (held?.turn) {
+      view.yaw = held.yaw - (event.clientX - held.x) * .4;
+      view.pitch = Math.max(-90, Math.min(90, held.pitch + (event.clientY - held.y) * .4));
+      view.name = '';
+      draw3d();
+    } else if (held?.name) place(held.name, moved3d(held.from, event.clientX - held.x, event.clientY - held.y), true);
+    pointers.set(event.pointerId, [event.clientX, event.clientY]);
+  });
+  for (const end of ['pointerup', 'pointercancel'])
+    svg.addEventListener(end, event => { pointers.delete(event.pointerId); const dragged = held?.name; held = null; if (dragged) { settle(); changed(); } });
+  svg.addEventListener('wheel', event => {
+    event.preventDefault();
+    view.zoom = Math.min(20, Math.max(.2, view.zoom * Math.exp(-event.deltaY * .0015)));
+    draw3d();
+  }, {passive: false});
+  svg.addEventListener('keydown', event => {
+    const handle = event.target.closest('.handle'), arrow = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+    if (!handle) return;
+    if (event.key === 'Enter' || event.key === ' ') { choose(handle.dataset.name); event.preventDefault(); }
+    if (!arrow) return;
+    event.preventDefault();
+    const name = handle.dataset.name, axes = axesOf(), step = +$('snap').value || .1, from = coordinatesOf(name);
+    choose(name);
+    remember();
+    // one step along the axis nearest to the arrow in this view
+    const along = $('along').value === '' ? [0, 1, 2] : [+$('along').value];
+    const fit = k => arrow[0] * axes.right[k] - arrow[1] * axes.up[k];
+    const k = along.reduce((best, i) => Math.abs(fit(i)) > Math.abs(fit(best)) ? i : best, along[0]);
+    if (Math.abs(fit(k)) > 1e-6) place(name, from.map((v, i) => i === k ? v + Math.sign(fit(k)) * step : v), false);
+    settle();
+  });
+};
+const makeHandles = () => {
+  handles.clear();
+  $('handles').replaceChildren();
+  for (const point of state.info.points) {
+    if (![0, 1, 2].every(k => state.of.has(`points.${point.name}.${'xyz'[k]}`))) continue;
+    const group = make('g', {tabindex: 0, role: 'button', class: 'handle'},
+      make('circle', {class: 'hit', r: 13}), make('circle', {class: 'dot', r: 4.5}), make('text', {x: 8, y: -7}, point.name));
+    group.dataset.name = point.name;
+    handles.set(point.name, group);
+  }
+};

@@ -1,0 +1,64 @@
+// What the sources name and the page has not: the two references, files, and the clock of the processor. The page asks
+// for none of it; a call would be a fault, and says so.
+#include <stdexcept>
+
+#include "compare/jobs/jobs.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "models/reader/document/text_file.hpp"
+#include "reference/energy/linear_response.hpp"
+#include "reference/equilibrium/linear_response.hpp"
+
+namespace elastocheck {
+namespace {
+[[noreturn]] void absent(const char* what) {
+    throw std::logic_error(std::string(what) + " is not part of a live page");
+}
+}  // namespace
+
+namespace reference::equilibrium {
+EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, const Options&,
+                      const Visit&) {
+    absent("the equilibrium leg");
+}
+Residuals residuals(const Model&, const Branch&, const Equilibrium&) {
+    absent("the equilibrium leg");
+}
+Response linear_response(const Model&, const Branch&, const Equilibrium&,
+                         std::span<const Disturbance>) {
+    absent("the equilibrium leg");
+}
+ResponseRates response_rates(const Model&, const Branch&, const Equilibrium&,
+                             std::span<const Disturbance>, std::span<const Model>) {
+    absent("the equilibrium leg");
+}
+}  // namespace reference::equilibrium
+
+namespace reference::energy {
+EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, const Options&,
+                      const Visit&) {
+    absent("the energy leg");
+}
+Residuals residuals(const Model&, const Branch&, const Equilibrium&) { absent("the energy leg"); }
+Response linear_response(const Model&, const Branch&, const Equilibrium&,
+                         std::span<const Disturbance>) {
+    absent("the energy leg");
+}
+ResponseRates response_rates(const Model&, const Branch&, const Equilibrium&,
+                             std::span<const Disturbance>, std::span<const Model>) {
+    absent("the energy leg");
+}
+}  // namespace reference::energy
+
+// A scene in a page has no folder, which the reader reports before it would read a file.
+namespace reader {
+TextFile read_text(const std::filesystem::path&, Pipes, std::size_t) {
+    return {"", "a live page reads no files"};
+}
+bool leads_out_of(const std::filesystem::path&, const std::filesystem::path&) { return true; }
+}  // namespace reader
+
+namespace compare {
+double processor_time() { return 0; }
+}  // namespace compare
+}  // namespace elastocheck

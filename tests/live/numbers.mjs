@@ -1,0 +1,94 @@
+// WebAssembly against native: every number of every scene, as given and with changed numbers; errors and what follows them.
+// node numbers.mjs PAGE NATIVE SCENES-FOLDER
+import {execFileSync} from 'node:child_process';
+import {readFileSync, readdirSync} from 'node:fs';
+import path from 'node:path';
+import {solverOf} from './solver.mjs';
+
+const [page, native, folder] = process.argv.slice(2);
+const ask = solverOf(page);
+const failures = [];
+const check = (met, what) => { if (!met) failures.push(what); };
+// Of the largest number of its unit on the branch. A change of one hardpoint by one ulp moves them by as much (native:
+// elements 5e-11, characteristics 6e-9). The two differ in the mathematical library (glibc, musl) and in the order
+// of sums (vectors of two, none), by an ulp here and there. Positions stay within 1e-12; a force is a stiffness times a
+// difference of positions, and a characteristic near a pole a quotient of such differences.
+const bounds = {parameter: 0, geometry: 1e-12, motion: 1e-11, drive: 1e-11, reaction: 1e-11, element: 1e-10, characteristic: 1e-8};
+const worsts = {};
+let compared = 0, worst = 0, where = '', identical = 0;
+
+const compare = (name, settings) => {
+  const there = JSON.parse(execFileSync(native, [path.join(folder, name), ...settings.map(s => s.join('='))], {maxBuffer: 1 << 30}));
+  let opened, solved;
+  try {
+    opened = ask('open', {source: readFileSync(path.join(folder, name), 'utf8'), name: 'scene.yaml'});
+    solved = ask('solve', {request: {settings, points: 40, full: opened.head.branches.map(() => true)}});
+  } catch (error) {
+    check(there.error === error.message, `${name}: "${error.message}" is not "${there.error}"`);
+    return;
+  }
+  check(JSON.stringify(opened.head) === JSON.stringify(there.open), `${name}: opened otherwise`);
+  if (there.error !== undefined || there.head.trouble) { check(solved.head.trouble === there.head?.trouble, `${name}: ${solved.head.trouble}`); return; }
+  const {head} = there, wide = 1 + head.channels.length + 3 * head.drawing.points.length + 3 * head.drawing.wheels.length;
+  check(solved.numbers.length === there.numbers.length, `${name}: another count of numbers`);
+  head.branches.forEach((branch, b) => {
+    const own = solved.head.branches[b];
+    for (const key of ['name', 'unit', 'outcome', 'points', 'at', 'start']) check(branch[key] === own[key], `${name}: ${branch.name}: ${key}`);
+    const unitOf = column => column === 0 ? 'parameter' : there.open.channels[column - 1]?.unit ?? 'geometry';
+    for (const [part, size] of [[branch, wide], [branch.published, 1 + head.channels.length]]) {
+      if (!part) continue;
+      // relative to the largest number of that unit on the branch, of lengths and angles at least 1: what is zero but for
+      // rounding has no digits of its own
+      const scales = new Map();
+      for (let at = 0; at < part.points * size; ++at) {
+        const value = Math.abs(+there.numbers[part.at + at]), unit = unitOf(at % size);
+        if (Number.isFinite(value)) scales.set(unit, Math.max(scales.get(unit) ?? 1, value));
+      }
+      for (let column = 0; column < size; ++column) {
+        const scale = scales.get(unitOf(column)) ?? 1;
+        for (let k = 0; k < part.points; ++k) {
+          const a = there.numbers[part.at + k * size + column], x = a === 'nan' || a === '-nan' ? NaN : a === 'inf' ? Infinity : +a;
+          const y = solved.numbers[part.at + k * size + column];
+          if (Number.isNaN(x) && Number.isNaN(y)) continue;
+          ++compared;
+          if (x === y) { ++identical; continue; }
+          const off = Math.abs(x - y) / scale, at = `${name} ${settings} ${branch.name} ${head.channels[column - 1] ?? 'geometry'} ${k}: ${x} ${y}`;
+          if (!(off <= worst)) { worst = off; where = at; }
+          const kind = column === 0 ? 'parameter' : there.open.channels[column - 1]?.kind ?? 'geometry';
+          check(off <= bounds[kind], `${at}: ${off}`);
+          if (!(off <= worsts[kind]?.[0])) worsts[kind] = [off, at];
+        }
+      }
+    }
+  });
+};
+const scenes = readdirSync(folder).filter(name => name.endsWith('.yaml'));
+for (const name of scenes) compare(name, []);
+compare('double_wishbone.yaml', [['points.tie_rod_inner.z', '0.006'], ['springs.coil.rate', '110000']]);
+compare('mcpherson.yaml', [['points.tie_rod_inner.z', 'low']]);
+compare('mcpherson.yaml', [['points.nowhere.z', '1']]);
+
+// Errors end in a message, and the next call works.
+const scene = readFileSync(path.join(folder, 'double_wishbone.yaml'), 'utf8');
+const says = (source, part) => {
+  try { ask('open', {source, name: 'bad.yaml'}); check(false, `accepted: ${source.slice(0, 40)}`); } catch (error) {
+    check(error.kind === 'input' && error.message.startsWith('bad.yaml') && error.message.includes(part), `"${error.message}" has no "${part}"`);
+  }
+};
+ask('open', {source: scene, name: 'a.yaml'});
+says('', 'empty');
+says('a: [1', 'invalid YAML');
+says('elastocheck: 1\nname: x\nunits: {length: mile}\n', ':3: units.length');
+says('a: \u0000', 'plain text');
+says(scene.replace('rate: 95e3', 'rate: -1'), 'springs.coil.rate');
+says('x'.repeat((1 << 20) + 1), 'larger than 1 MiB');
+for (const request of [{settings: 1}, {settings: [['a']]}, {settings: [], points: 0}, {settings: [], points: 1.5}, {settings: [], full: 'all'}])
+  try { ask('solve', {request}); check(false, `accepted: ${JSON.stringify(request)}`); } catch (error) { check(error.kind === 'input', error.message); }
+check(ask('solve', {request: {settings: [], points: 8}}).head.branches.length === 7, 'the scene opened last is solved after errors');
+const text = ask('rewrite', {request: {settings: [['points.tie_rod_inner.z', '0.006']]}}).text;
+check(text.includes('tie_rod_inner: [-0.279, 0.596, 0.006]') && text.includes('# Front suspension with double wishbones'), 'rewritten text');
+
+console.log(`${scenes.length} scenes, ${compared} numbers compared, ${identical} identical, largest difference ${worst.toExponential(1)} of the largest of its unit (${where})`);
+for (const [kind, [off, at]] of Object.entries(worsts)) console.log(`  ${kind}: ${off.toExponential(1)}  ${at}`);
+for (const failure of failures.slice(0, 20)) console.error(failure);
+if (failures.length || compared < 10000) { console.error(`${failures.length} failures`); process.exit(1); }
