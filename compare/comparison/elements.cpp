@@ -66,11 +66,6 @@ ElementState state_of(const Model& model, const Branch& branch, const Equilibriu
     return at;
 }
 
-double read(const Model& model, const Branch& branch, const Equilibrium& state,
-            const OfElement& c) {
-    return state_of(model, branch, state, c.element).component(c.component);
-}
-
 // ---- Names
 
 std::vector<int> components(const Elastic& elastic) {
@@ -175,9 +170,16 @@ std::vector<Channel> element_channels(const Model& model) {
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state) {
     std::vector<double> values = evaluate(model, channels, state);
-    for (std::size_t c = 0; c < channels.size(); ++c)
-        if (const auto* of = std::get_if<OfElement>(&channels[c].reads))
-            values[c] = in_unit(channels[c].unit) * read(model, branch, state, *of);
+    // The components of an element follow each other.
+    int element = -1;
+    ElementState at{};
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        const auto* of = std::get_if<OfElement>(&channels[c].reads);
+        if (of == nullptr) continue;
+        if (of->element != element)
+            at = state_of(model, branch, state, of->element), element = of->element;
+        values[c] = in_unit(channels[c].unit) * at.component(of->component);
+    }
     return values;
 }
 

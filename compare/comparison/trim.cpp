@@ -28,6 +28,7 @@ constexpr int most_halvings = 10;
 constexpr double met = 1e-12;        // [m, rad]: accuracy of a settled state
 constexpr double acceptable = 1e-9;  // [m, rad]: accepted where Newton's method stagnates
 constexpr double moves = 1e-10;      // [m, rad]: a smaller effect of a step counts as none
+constexpr double contraction = 0.5;  // least progress of an iteration with the J of another scene
 constexpr double known = 1e-6;       // of the largest singular value: resolution of the differences
 
 // The trim equations for any p.
@@ -297,7 +298,7 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
 namespace {
 
 // trim() by one leg, confirmed by the energy leg or, where that does not apply, by the series.
-Trimmed trim_by(const Scene& scene, Leg solver, bool confirm) {
+Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) {
     Trimmed result{scene, std::nullopt};
     if (!scene.trim) return result;
     const Trim& trim = *scene.trim;
@@ -321,13 +322,35 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm) {
     VectorXd p = VectorXd::Zero(static_cast<Index>(trim.adjust.size())), h = p;
     for (std::size_t k = 0; k < trim.adjust.size(); ++k)
         h[static_cast<Index>(k)] = step(trim.adjust[k]);
-    TrimAttempt here = settle(problem, p, problem.solver);
+    MatrixXd changes;  // the last J
+    TrimAttempt here;
+    bool settled = false;
+    if (start != nullptr && start->J.rows() == p.size() && start->J.cols() == p.size()) {
+        const auto factors = start->J.colPivHouseholderQr();
+        p = start->p, changes = start->J;
+        here = settle(problem, p, problem.solver);
+        for (TrimAttempt next; here.outcome == Outcome::converged && here.missed.norm() > met;
+             here = next, ++record.iterations) {
+            const VectorXd dp = h.cwiseProduct(factors.solve(-here.missed));
+            next = settle(problem, p + dp, problem.solver);
+            if (next.outcome != Outcome::converged ||
+                !(next.missed.norm() < contraction * here.missed.norm()))
+                break;
+            p += dp;
+        }
+        settled = here.outcome == Outcome::converged && here.missed.norm() <= met;
+    }
+    if (!settled) {
+        p.setZero();
+        record.iterations = 0;
+        here = settle(problem, p, problem.solver);
+    }
     if (here.outcome != Outcome::converged)
         return give_up(here, "the scene has no settled equilibrium before the trim");
     std::string stuck;
     // J is checked before convergence is accepted: conditions met by chance may leave p
     // undetermined.
-    for (bool first = true; first || here.missed.lpNorm<2>() > met; first = false) {
+    for (bool first = !settled; first || here.missed.lpNorm<2>() > met; first = false) {
         TrimAttempt failed;
         const auto J = responses(problem, p, failed);
         if (!J && record.iterations == 0) return give_up(failed, "at a neighbouring state");
@@ -336,6 +359,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm) {
                                 elastocheck::name(failed.outcome), failed.detail);
             break;
         }
+        changes = *J;
         if (const std::string why = ill_posed(trim, *J); !why.empty()) {
             // Well-posed at an earlier iterate: the iteration has reached the limit of what can be
             // trimmed.
@@ -407,6 +431,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm) {
         if (!record.detail.empty()) return result;
     }
 
+    if (start != nullptr) *start = {p, changes};
     apply(trim, p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
         const auto& adjusted = trim.adjust[k];
@@ -421,7 +446,9 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm) {
 
 }  // namespace
 
-Trimmed trim(const Scene& scene) { return trim_by(scene, Leg::equilibrium, true); }
-Trimmed trim_by_series(const Scene& scene) { return trim_by(scene, Leg::series, false); }
+Trimmed trim(const Scene& scene) { return trim_by(scene, Leg::equilibrium, true, nullptr); }
+Trimmed trim_by_series(const Scene& scene, TrimStart* start) {
+    return trim_by(scene, Leg::series, false, start);
+}
 
 }  // namespace elastocheck::compare

@@ -19,8 +19,18 @@ std::vector<Channel> condition_channels(const Model& model, const Trim& trim);
 // without its trim.
 Scene with_adjusted(Scene scene, const Eigen::VectorXd& p);
 
+// Where a trim of a similar scene ended: its adjustments, in the units of the adjusted quantities
+// [SI], and the changes of the conditions by a step of each [conditions × adjustments].
+struct TrimStart {
+    Eigen::VectorXd p;
+    Eigen::MatrixXd J;
+};
+
 // trim() by the series alone, without a second reference: `confirmed` of its conditions is NaN, and
-// `confirmed_by` is the series. For a program without the references.
-Trimmed trim_by_series(const Scene& scene);
+// `confirmed_by` is the series. For a program without the references. With a `start` the equations
+// are solved from there with the same J where that converges, to the same accuracy, else as by
+// trim(); a start of another size, such as an empty one, is not used. A trim that is reached
+// replaces it.
+Trimmed trim_by_series(const Scene& scene, TrimStart* start = nullptr);
 
 }  // namespace elastocheck::compare

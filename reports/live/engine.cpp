@@ -13,7 +13,6 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/comparison/trim.hpp"
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/analysis.hpp"
@@ -155,7 +154,7 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
 }  // namespace
 
 json open(Session& session, std::string_view text, const std::string& name) {
-    session = {std::string(text), name, std::nullopt};
+    session = {std::string(text), name, std::nullopt, {}};
     session.parsed.emplace(session.text, name, std::nullopt);
     std::vector<std::string> warnings;
     const Scene scene = session.parsed->read({}, &warnings);
@@ -191,13 +190,13 @@ json open(Session& session, std::string_view text, const std::string& name) {
     return answer;
 }
 
-Answer solve(const Session& session, const Request& request) {
+Answer solve(Session& session, const Request& request) {
     if (!session.parsed) throw std::logic_error("no scene is open");
     if (request.points < 1 || request.points > most_points)
         throw std::invalid_argument(
             fmt::format("points: {} is not from 1 to {}", request.points, most_points));
     const compare::Trimmed trimmed =
-        compare::trim_by_series(session.parsed->read(request.settings));
+        compare::trim_by_series(session.parsed->read(request.settings), &session.trim);
     Answer answer;
     answer.head["trim"] = nullptr;
     if (trimmed.record) {

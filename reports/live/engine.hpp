@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/comparison/trim.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/parsed_scene.hpp"
 
@@ -16,6 +17,7 @@ namespace elastocheck::live {
 struct Session {
     std::string text, name;  // of the scene, and of its file for messages
     std::optional<reader::ParsedScene> parsed;
+    compare::TrimStart trim;  // of the last solve, from which the next one starts
 };
 
 // Reads a scene and keeps it in the session. Throws SceneError. The answer:
@@ -48,7 +50,7 @@ struct Answer {
     nlohmann::ordered_json head;
     std::vector<double> numbers;
 };
-Answer solve(const Session& session, const Request& request);
+Answer solve(Session& session, const Request& request);
 
 // The scene's text with these values (rewrite_scene()).
 std::string rewrite(const Session& session, const std::vector<Setting>& settings);

@@ -121,6 +121,28 @@ const tests = {
     await idle();
     check(await run(`document.getElementById('trouble').hidden`), 'reset clears the message');
   },
+  async targetsAndArrows() {
+    const low = async (from, to) => {
+      await run(`document.querySelector('[data-channel=toe] .aim').click(); for (const [n, v] of [['low', '${from}'], ['high', '${to}']]) { const e = document.getElementById('target').elements[n]; e.value = v; e.dispatchEvent(new Event('input')); }`);
+      return run(`document.querySelector('[data-channel=toe]').className`);
+    };
+    check((await low(-.5, .5)).includes('met') && (await low(0, .5)).includes('missed'), 'a target is met, or not');
+    check((await low('x', .5)).includes('missed') && await run(`document.getElementById('target').elements.low.getAttribute('aria-invalid')`) === 'true', 'a target is a number');
+    await run(`document.querySelector('#target button').click()`);
+    // Arrows: each effect is the derivative that the program has.
+    await run(`document.getElementById('motion').value = 40; document.getElementById('motion').dispatchEvent(new Event('input')); document.getElementById('effect').value = 'toe'; document.getElementById('effect').dispatchEvent(new Event('change'))`);
+    await browser.until('state.effects && state.effects.length === 36', 'the effects are known');
+    const of = await run(`state.effects.find(e => e.path === 'points.tie_rod_inner.z').by`);
+    const out = execFileSync(program, ['sensitivity', scene('double_wishbone'), '--of', 'toe', '--to', 'points.tie_rod_inner.z', '--branch', 'travel', '--points', '2'], {stdio: ['ignore', 'pipe', 'ignore']}).toString();
+    const exact = +out.split('travel to 80 mm')[1].match(/tie_rod_inner\.z +\S+ +(\S+) +deg per m/)[1] / 1e3;
+    near(of, exact, .01 * Math.abs(exact), 'effect of a millimetre on toe at full jounce');
+    check(await run(`document.querySelectorAll('.arrow').length`) > 3 && await run(`document.querySelectorAll('#effects li').length`) === 5, 'arrows and the list of five');
+    await run(`[...document.querySelectorAll('#views button')].find(b => b.textContent === 'Oblique').click()`);
+    await pictureOf('arrows');
+    await run(`document.getElementById('effect').value = ''; document.getElementById('effect').dispatchEvent(new Event('change')); state.station = null; draw();
+      [...document.querySelectorAll('#views button')].find(b => b.textContent === 'Front').click()`);
+    await idle();
+  },
   async keyboardAlone() {
     await run(`document.activeElement.blur(); document.getElementById('snap').focus()`);
     await browser.key('Tab');

@@ -109,7 +109,7 @@ const pump = async () => {
       draw();
       const done = performance.now();
       window.live.draws.push({solve: answer.seconds, draw: (done - begun) / 1e3, all: (done - asked) / 1e3});
-      $('state').textContent = `${state.now.branches.length} branches solved in ${(1e3 * answer.seconds).toFixed(0)} ms` +
+      $('state').textContent = `${state.now.branches.length} branch${state.now.branches.length === 1 ? '' : 'es'} solved in ${(1e3 * answer.seconds).toFixed(0)} ms` +
         (settings.size ? ` · ${settings.size} number${settings.size > 1 ? 's' : ''} changed` : '');
     } catch (error) {
       $('state').textContent = 'not solved: the curves are those of the last numbers that could be solved';
@@ -260,7 +260,8 @@ const drawTables = () => {
   };
   const head = () => make('thead', {}, make('tr', {}, ...['', 'unit', 'as opened', 'now', 'change'].map(t => make('th', {scope: 'col'}, t))));
   const at = (run, branch, name, k) => branch?.points ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
-  const rows = info.channels.filter(c => (c.kind === 'motion' && staticFigures.includes(last(c.name))) || c.kind === 'characteristic')
+  const figures = info.channels.filter(c => (c.kind === 'motion' && staticFigures.includes(last(c.name))) || c.kind === 'characteristic');
+  const rows = (figures.length ? figures : info.channels.filter(c => c.kind === 'motion' && c.main))
     .map(c => row(c, at(base, old, c.name, old?.start), at(now, is, c.name, is?.start)));
   $('static').replaceChildren(head(), make('tbody', {}, ...rows));
   if (!$('forces').open) return;

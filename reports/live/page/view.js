@@ -189,4 +189,5 @@ const makeHandles = () => {
     group.dataset.name = point.name;
     handles.set(point.name, group);
   }
+  $('handles').classList.toggle('many', handles.size > 14);
 };
