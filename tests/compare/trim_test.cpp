@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -124,6 +126,34 @@ TEST(Trim, SceneWithoutOneIsAsItWas) {
     const Trimmed found = trim(block());
     EXPECT_FALSE(found.record);
     EXPECT_EQ(std::get<AxialSpring>(found.scene.elastics[0].kind).free_length, 0.4);
+}
+
+// The series alone, from the design and from the trim of a similar scene: the same trim, the second
+// by less work; and from a start that leads nowhere.
+TEST(Trim, BySeriesFromAnyStartIsThatOfTheReferences) {
+    for (const char* name : {"double_wishbone", "front_axle"}) {
+        const Scene scene = support::scene(name);
+        Scene similar = scene;
+        for (auto& elastic : similar.elastics)
+            if (auto* spring = std::get_if<AxialSpring>(&elastic.kind)) spring->free_length += 1e-3;
+        const Trimmed by_references = trim(scene);
+        TrimStart start;
+        ASSERT_TRUE(trim_by_series(similar, &start).record->reached());
+        TrimStart far = start;
+        far.p *= -40, far.J *= -1;
+        for (TrimStart* from : {static_cast<TrimStart*>(nullptr), &start, &far}) {
+            const Trimmed by_series = trim_by_series(scene, from);
+            ASSERT_TRUE(by_series.record && by_series.record->reached()) << name;
+            EXPECT_EQ(by_series.record->confirmed_by, Leg::series);
+            const auto &a = by_references.record->adjusted, &b = by_series.record->adjusted;
+            ASSERT_EQ(a.size(), b.size());
+            for (std::size_t k = 0; k < a.size(); ++k)
+                EXPECT_NEAR(a[k].by, b[k].by, 1e-7 * std::max(1.0, std::abs(a[k].by)))
+                    << name << ": " << a[k].name;
+            for (const auto& condition : by_series.record->conditions)
+                EXPECT_LE(std::abs(condition.missed), 1e-9) << condition.name;
+        }
+    }
 }
 
 TEST(Trim, AsManyAdjustmentsAsConditionsAreNeeded) {

@@ -171,6 +171,9 @@ const tests = {
     check((await paste('a: [')).startsWith('pasted.yaml:'), 'not YAML');
     check((await paste('')).startsWith('pasted.yaml'), 'empty');
     check(await run('state.info.title') === 'Double wishbone' && await run('!!state.now'), 'the scene before stays');
+    await run(`remember(); put('springs.coil.rate', '96000'); changed()`);
+    await idle();
+    check(await run(`document.getElementById('trouble').hidden && state.now !== state.base`), 'and is solved again: ' + await run(`document.getElementById('trouble').textContent`));
     check(await paste(text) === '' && (await run('state.info.title')).includes('McPherson'), 'a pasted scene opens: ' + await run('state.info.title'));
     const marked = text.replace(/^name: .*$/m, `name: '<img src=x onerror="window.broken=1"></script><script>window.broken=1</script>'`);
     check(await paste(marked) === '', 'markup in a name is accepted');
