@@ -139,6 +139,23 @@ const tests = {
     check(await run(`document.querySelectorAll('.arrow').length`) > 3 && await run(`document.querySelectorAll('#effects li').length`) === 5, 'arrows and the list of five');
     await run(`[...document.querySelectorAll('#views button')].find(b => b.textContent === 'Oblique').click()`);
     await pictureOf('arrows');
+    // A wished value by one number, and by the program with that number.
+    const solve = async wish => {
+      await run(`document.getElementById('wish').value = '${wish}'; document.querySelector('#effects li button').click()`);
+      await browser.until(`state.settings.size === 1 || document.getElementById('wish').getAttribute('aria-invalid') === 'true' || !document.getElementById('trouble').hidden`, 'an answer to the wish');
+      await idle();
+    };
+    await solve('nothing');
+    check((await settings()).length === 0, 'a wish is a number');
+    await solve('90');
+    check((await settings()).length === 0 && (await run(`document.getElementById('trouble').textContent`)).includes('is not reached'), 'what cannot be reached is said: ' + JSON.stringify(await settings()));
+    await run(`trouble(''); document.getElementById('wish').setAttribute('aria-invalid', 'false')`);
+    await solve('-0.1');
+    const found = await settings(), there = byProgram(scene('double_wishbone'), 'travel', ['toe'], found);
+    check(found.length === 1 && found[0][0] === 'points.tie_rod_inner.z', 'solved for: ' + JSON.stringify(found));
+    near(there.at(-1)[1], -.1, 2e-6, 'toe at full jounce as wished');
+    await run(`document.getElementById('reset').click()`);
+    await idle();
     await run(`document.getElementById('effect').value = ''; document.getElementById('effect').dispatchEvent(new Event('change')); state.station = null; draw();
       [...document.querySelectorAll('#views button')].find(b => b.textContent === 'Front').click()`);
     await idle();

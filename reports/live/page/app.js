@@ -157,9 +157,45 @@ const measureEffects = async () => {
   const unit = state.channel.get(name).unit, most = [...state.effects].sort((a, b) => Math.abs(b.by) - Math.abs(a.by)).slice(0, 5);
   $('effects').hidden = false;
   $('effects').querySelector('h3').textContent = `Most effect on ${name} at ${shown(state.now.a(branch, k))} ${branch.unit} of ${branch.name}, per mm`;
-  $('effects').querySelector('ol').replaceChildren(...most.map(e => make('li', {}, `${e.path.slice(7)} ${signed(e.by)} ${unit}`)));
+  $('effects').querySelector('ol').replaceChildren(...most.map(e => {
+    const button = make('button', {type: 'button', 'aria-label': `change ${e.path} for it`}, 'solve');
+    button.onclick = () => solveFor(e.path, e.by * mm(e.path), name, branch.name, k);
+    return make('li', {}, `${e.path.slice(7)} ${signed(e.by)} ${unit}`, button);
+  }));
+  $('effects').querySelector('label span').textContent = unit;
+  if (document.activeElement !== $('wish')) $('wish').value = shown(state.now.value(branch, k, state.now.place.get(name))).replaceAll('−', '-');
   drawHandles(axesOf());
 };
+// Sets one number such that a figure at a station has the wished value: secant method, from the known slope.
+const solveFor = async (path, slope, name, branchName, k) => {
+  const wish = $('wish').value.trim(), want = Number(wish), mine = ++measuring;
+  $('wish').setAttribute('aria-invalid', String(wish === '' || !Number.isFinite(want)));
+  if (wish === '' || !Number.isFinite(want)) return;
+  const rates = state.channel.get(name).kind === 'characteristic';
+  let x = numberOf(path), before = null, message = 'it does not converge';
+  try {
+    for (let i = 0; i < 15; ++i) {
+      const settings = new Map(state.settings).set(path, written(x));
+      const answer = await ask('solve', {request: {settings: [...settings], points: 40, only: branchName, full: state.info.branches.map(() => rates)}});
+      if (mine !== measuring || due) return;
+      if (answer.head.trouble) throw new Error(answer.head.trouble);
+      const run = new Run(answer), value = run.value(run.branches[0], k, run.place.get(name));
+      if (!Number.isFinite(value)) break;
+      if (Math.abs(value - want) <= 1e-6 * Math.max(1, Math.abs(want))) {
+        remember();
+        put(path, written(x));
+        changed();
+        settle();
+        return;
+      }
+      if (before && x !== before[0]) slope = (value - before[1]) / (x - before[0]);
+      before = [x, value];
+      x += (want - value) / slope;
+    }
+  } catch (error) { message = error.message; }
+  trouble(`${name} of ${want} is not reached by ${path}: ${message}`);
+};
+$('effects').onsubmit = event => event.preventDefault();
 let pause = 0;
 const measureSoon = () => { ++measuring; clearTimeout(pause); if ($('effect').value) pause = setTimeout(measureEffects, 250); };
 $('effect').onchange = measureEffects;
