@@ -9,8 +9,11 @@
 //
 // with f a unit factor, or fitted; c the mean of the remaining difference; r_0 the value at the
 // start of the branch. Right means: at most a twentieth of the deviation remains, and at most the
-// tolerance or a thousandth of the range of the reference. If none applies, the column may be right
-// up to a point.
+// tolerance or a thousandth of the range of the reference. A factor has to reproduce the column
+// itself as well: at most a twentieth of its largest value remains, and together with an offset,
+// from r_0 or of a definition, at most a twentieth of its range. Else a small factor and an offset
+// would make any curve right for a column that hardly moves. If none applies, the column may be
+// right up to a point.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,6 +32,7 @@ using Kind = Explanation::Kind;
 using Values = std::vector<double>;
 
 constexpr double explained = 0.05;     // of the deviation that may remain
+constexpr double of_column = 0.05;     // of the column's own range that may remain, see above
 constexpr double of_movement = 1e-3;   // of the range of the reference
 constexpr double first_part = 0.1;     // of the points of a branch that must be right first
 constexpr double right_so_far = 1e-3;  // of the largest deviation beyond
@@ -151,8 +155,10 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed) {
             !std::ranges::all_of(r, [](double x) { return std::isfinite(x); }))
             continue;
         std::optional<Fit> fit;
-        const auto try_it = [&](const std::string& as, const Values& reading) {
-            if (const double left = off(v, reading); !fit && left <= allowed) fit = Fit{as, left};
+        const auto try_it = [&](const std::string& as, const Values& reading, bool needs_movement) {
+            const double left = off(v, reading);
+            const bool moves = left <= of_column * span(v);
+            if (!fit && left <= allowed && (moves || !needs_movement)) fit = Fit{as, left};
         };
         for (const bool with_offset : {false, true})
             for (const double sign : {1., -1.})
@@ -167,7 +173,7 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed) {
                                 : sign < 0 ? " with its sign turned"
                                            : "") +
                                (with_offset ? fmt::format(", {:.6g} taken off", offset) : ""),
-                           reading);
+                           reading, with_offset || u > 0);
                 }
         if (fit) fits.push_back(*fit);
     }
@@ -192,14 +198,18 @@ std::optional<Explanation> explain(const Beside& b) {
         std::min(explained * deviation,
                  std::max(std::isfinite(b.tolerance) ? b.tolerance : 0, of_movement * movement));
     std::optional<Explanation> found;
-    const auto try_it = [&](Explanation as, const Values& reading) {
+    // A factor has to reproduce the level of the column, with an offset or from a start its movement.
+    const double level = std::max(off(v, Values(v.size(), 0)), span(v));
+    const auto try_it = [&](Explanation as, const Values& reading, bool is_level = true) {
         as.left = off(v, reading);
         as.column = b.column;
+        const bool scaled = as.kind == Kind::factor || as.kind == Kind::factor_and_offset;
+        if (scaled && !(as.left <= of_column * (is_level ? level : span(v)))) return;
         if (!found && as.left <= allowed) found = as;
     };
     const auto with_offset = [&](Explanation as, const Values& reading) {
         as.offset = mean(less(v, reading));
-        try_it(as, plus(reading, as.offset));
+        try_it(as, plus(reading, as.offset), false);
     };
     try_it({.kind = Kind::sign}, times(-1, r));
     with_offset({.kind = Kind::offset}, r);
@@ -217,7 +227,8 @@ std::optional<Explanation> explain(const Beside& b) {
         const double f = dot(less(v, b.begin), change) / cc;
         Values reading = times(f, change);
         for (std::size_t k = 0; k < reading.size(); ++k) reading[k] += b.begin[k];
-        if (f > 0) try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, reading);
+        if (f > 0)
+            try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, reading, false);
     }
     with_offset({.kind = Kind::sign_and_offset}, times(-1, r));
     for (std::size_t o = 0; o < b.others.size(); ++o)
@@ -233,7 +244,11 @@ std::optional<Explanation> explain(const Beside& b) {
                          .unit_word = unit.word},
                         times(sign * unit.factor, r));
     if (!found || found->left > rounding_of_range * movement)
-        if (const auto other = by_definitions(b, found ? much_better * found->left : allowed))
+        if (const auto other = by_definitions(
+                b, found
+                       ? much_better * found->left
+                       // the figure may not move at all where another definition of it does
+                       : std::max(allowed, std::min(explained * deviation, of_movement * span(v)))))
             found = other;
     if (!found) found = wrong_from(b);
     return found;
