@@ -16,6 +16,8 @@ namespace elastocheck::compare {
 // Characteristics of a model, as outputs beside channels(model), none of them a main output; empty
 // without a wheel.
 std::vector<Channel> characteristics(const Model& model);
+// The same figures by other definitions, "wheel_rate@patch" (compare/definitions/rates.cpp).
+std::vector<Channel> characteristics_otherwise(const Model& model);
 
 // Value of one characteristic in SI; `undefined` where it has none (Channel::undefined gives the
 // meaning), NaN where the leg failed to compute the response.

@@ -10,6 +10,7 @@
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/extrapolation.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/deviation/proof.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
@@ -430,9 +431,14 @@ LegRun run(const Model& model, const Branch& branch, Leg leg, const recursive::O
 }
 
 Comparison compare(const Model& model, const Options& options) {
+    return compare(model, options, {});
+}
+
+Comparison compare(const Model& model, const Options& options, const std::vector<Channel>& also) {
     Comparison result;
     result.channels = channels(model);
     std::ranges::move(characteristics(model), std::back_inserter(result.channels));
+    std::ranges::copy(also, std::back_inserter(result.channels));
     const int requested =
         options.abscissa.empty() ? -1 : find_channel(result.channels, options.abscissa);
     if (requested < 0 && !options.abscissa.empty())

@@ -7,27 +7,41 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "elastocheck/channels.hpp"
+#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
 
 struct Definition {
-    const char* figure;  // the output that it defines otherwise: "camber"
-    const char* name;    // after "@": "kingpin"
+    std::string figure;  // the output that it defines otherwise: "camber"
+    std::string name;    // after "@": "kingpin"
     Unit unit;
     const char* formula;  // one line, with the sign
     const char* used_by;  // where it is found; names for it elsewhere
-    // SI; `undefined` where the scene has no such part. `wheel`: position in Model::wheels.
-    double (*value)(const Model& model, std::size_t wheel, const Equilibrium& state);
-    bool of_axle = false;  // of both wheels together, not of each
 };
-std::span<const Definition> definitions();
+// Those of a state, then the rates (rates.cpp).
+std::vector<Definition> definitions();
+
+// Definitions by the name of a standard or a way of drawing, for scenes that ask for them.
+struct DefinitionSet {
+    std::string name;                  // "sae"
+    const char* source;                // what they have in common, and where it is defined
+    std::vector<std::string> members;  // "scrub_radius@ground_axes"
+};
+std::vector<DefinitionSet> definition_sets();
 
 // An output per definition and wheel that has a value in the design position, "left.camber@kingpin";
 // figures of an axle once, without the name of a wheel. None of them is a main output.
 std::vector<Channel> definition_channels(const Model& model);
+
+// compare() with these outputs after channels() and characteristics().
+Comparison compare(const Model& model, const Options& options, const std::vector<Channel>& also);
+
+// "camber" of "left.camber@kingpin" and of "left.camber".
+std::string figure_of(std::string_view output);
 
 // The outputs among them that define `figure`, "left.camber", otherwise.
 std::vector<Channel> definitions_of(std::span<const Channel> defined, const std::string& figure);

@@ -14,7 +14,7 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
     std::vector<Channel> pairs;
     for (const Channel& figure : comparison.channels)
         for (const Channel& other : definitions_of(defined, figure.name))
-            pairs.push_back(figure), pairs.push_back(other);
+            if (other.unit == figure.unit) pairs.push_back(figure), pairs.push_back(other);
     if (pairs.empty()) return rows;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const BranchComparison& of = comparison.branches[b];
@@ -30,13 +30,16 @@ std::vector<DefinitionRow> definition_rows(const Model& model, const Comparison&
                               .parameter_unit = symbol(of.unit),
                               .formula = pairs[p + 1].definition};
             const auto &here = path.curve.channel(p), &otherwise = path.curve.channel(p + 1);
+            bool any = false;
             for (std::size_t k = 0; k < here.size(); ++k) {
                 const double difference = otherwise[k] - here[k];
                 if (!std::isfinite(difference)) continue;
+                any = true;
                 if (k == path.curve.start) row.drawn = difference;
                 if (!(std::abs(difference) <= std::abs(row.difference)))
                     row.difference = difference, row.at = path.curve.a[k];
             }
+            if (!any) continue;
             const auto& deviations = of.deviation.equal_parameter.channels;
             if (figure < deviations.size()) row.deviation = finite_or_nan(deviations[figure].max);
             rows.push_back(std::move(row));
