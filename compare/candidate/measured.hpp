@@ -22,17 +22,43 @@ struct MeasuredReading {
     bool by_parameter = true;  // else by Points::abscissa
     std::vector<MeasuredRow> rows;
 };
+
+// A branch that was measured in both directions: the outputs of the way out and of the way back
+// differ by friction and rubber.
+struct Hysteresis {
+    std::string branch;
+    std::size_t channel = 0;
+    double width = 0;  // largest difference of both ways, in the channel's unit
+    double at = 0;     // where it is: parameter or abscissa of the point
+    int points = 0;    // that have both ways
+};
+
 struct MeasuredComparison {
     // branch that each point was compared with; empty where no branch reaches the point
     std::vector<std::string> branch;
     std::vector<PointColumn> columns;  // as absolute positions and angles, no longer as changes
     std::vector<MeasuredReading> readings;
     int compared = 0;  // total of the compared numbers
+    std::vector<Hysteresis> loops;
+    // What is wrong with a column that deviates, in words: "toe agrees to 0.01 deg with its sign
+    // turned", "camber agrees to 0.008 deg by another definition: camber@kingpin"
+    std::vector<std::string> explanations;
 };
 
-// A point is compared only with the branch it names. Throws std::invalid_argument for a branch that
-// is not in the comparison, or, for points without names, if two branches lie on the same side.
+// Curves of figures by other definitions, of the equilibrium leg along each branch of a comparison.
+struct DefinedCurves {
+    std::vector<Channel> channels;
+    std::vector<Curve> branches;  // empty: none
+};
+DefinedCurves defined_curves(const Model& model, const Comparison& comparison);
+
+// A point is compared only with the branch it names. Where the points of a branch go out and back,
+// each is compared by the mean of both ways. A column whose deviation is larger than a hundredth of
+// its range is tried as judge_candidate() does, with `defined`; right means that at most a hundredth
+// of the range remains, since it was measured, and a twentieth of the deviation. Throws
+// std::invalid_argument for a branch that is not in the comparison, or, for points without names, if
+// two branches lie on the same side.
 MeasuredComparison compare_measured(const Model& model, const Comparison& comparison,
-                                    const Points& measured);
+                                    const Points& measured, const DefinedCurves& defined = {});
 
 }  // namespace elastocheck::compare

@@ -101,6 +101,7 @@ struct Meaning {
     double factor = 1, offset = 0;
     std::string
         unit{};  // of a parameter, as written; empty: the branch's own, or given by a column
+    std::string moves{};  // of a rig's parameter: RigHeading::moves
 };
 using MeaningKind = Meaning::Kind;
 
@@ -145,6 +146,17 @@ std::optional<Meaning> parameter_of(std::string_view name) {
                                .unit = std::string(rest)};
     }
     return std::nullopt;
+}
+
+// A heading as rigs write it.
+std::optional<Meaning> of_rig(const std::string& name, const compare::Comparison& all) {
+    const auto ours = heading_of_rig(name, all);
+    if (!ours) return std::nullopt;
+    auto meaning = ours->name == "branch" ? std::optional(Meaning{.kind = MeaningKind::branch})
+                                          : parameter_of(ours->name);
+    if (!meaning) meaning = output_of(ours->name, all);
+    if (meaning) meaning->name = name, meaning->moves = ours->moves;
+    return meaning;
 }
 
 std::vector<std::string> known_columns(const compare::Comparison& all) {
@@ -211,6 +223,14 @@ std::string branch_named(std::string_view cell, const compare::Comparison& all,
     const std::string name = own == map.branches.end() ? std::string(cell) : own->second;
     std::vector<std::string> branches;
     for (const auto& branch : all.branches) branches.push_back(branch.branch);
+    if (std::ranges::find(branches, name) == branches.end()) {
+        const auto meant = branches_of_test(name, map.tests);
+        if (meant.size() == 1) return meant.front();
+        if (meant.size() > 1)
+            fail_at(file, line,
+                    fmt::format("{}: {} may be any of the branches {}; give one of them in a map",
+                                column, reader::quote(name), reader::listed(meant)));
+    }
     if (std::ranges::find(branches, name) == branches.end())
         fail_at(file, line,
                 fmt::format("{}: the scene has no branch {}{}", column, reader::quote(name),
@@ -255,6 +275,7 @@ Table read_table(std::string_view csv, const std::string& file, const compare::C
             else
                 meaning = parameter_of(name);
             if (!meaning) meaning = output_of(name, all);
+            if (!meaning && also_known == nullptr) meaning = of_rig(name, all);
             if (!meaning) {
                 const auto own = name.substr(0, name.find(" ["));
                 if (also_known != nullptr && map.file.empty() &&
@@ -336,6 +357,12 @@ PointTable read_points(std::string_view csv, const std::string& file,
             const std::string& written_in =
                 meaning.unit.empty() && !table.unit.empty() ? table.unit[k] : meaning.unit;
             const auto factor = factor_of(written_in, unit);
+            if (!meaning.moves.empty()) {
+                const std::string& branch =
+                    table.branch.empty() ? all.branches.front().branch : table.branch[k];
+                const auto test = std::ranges::find(map.tests, branch, &TestBranch::branch);
+                if (!factor || test == map.tests.end() || test->moves != meaning.moves) continue;
+            }
             if (!factor)
                 fail_at(file, table.lines[k],
                         fmt::format(

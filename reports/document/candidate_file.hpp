@@ -9,6 +9,7 @@
 
 #include "compare/candidate/candidate.hpp"
 #include "elastocheck/scene.hpp"
+#include "reports/document/rig.hpp"
 #include "reports/files/csv_table.hpp"
 
 namespace elastocheck::reports {
@@ -29,6 +30,8 @@ struct ColumnMap {
     // names in the file and in the scene
     std::vector<std::pair<std::string, std::string>> branches;
     std::string file;  // empty: there is none
+    // of a measurement: what the branches move, for names of tests (rig.hpp)
+    std::vector<TestBranch> tests = {};
 };
 // Throws SceneError "file:line: field: ...".
 ColumnMap read_column_map(std::string_view yaml, const std::string& file);

@@ -22,6 +22,7 @@ struct SolvedCurves {
     Model model;
     compare::Comparison comparison;
     std::vector<double> drawn;  // outputs in the design position; NaN where the document has none
+    compare::DefinedCurves defined;
 };
 
 SolvedCurves curves_of(const JsonCursor& scene) {
@@ -57,6 +58,30 @@ SolvedCurves curves_of(const JsonCursor& scene) {
         if (one.runs.size() < compare::legs.size())
             branch["legs"].fail("a measurement is compared with three legs");
     }
+    if (const auto defined = scene.find("defined")) {
+        for (const auto& channel : (*defined)["channels"].items()) {
+            const auto unit = compare::find_unit(channel["unit"].text());
+            if (!unit) channel["unit"].fail("is not known");
+            solved.defined.channels.push_back(
+                {.name = channel["name"].text(), .unit = *unit, .reads = {}});
+        }
+        const auto of_branches = (*defined)["branches"].items();
+        if (of_branches.size() != solved.comparison.branches.size())
+            (*defined)["branches"].fail("not as many as the scene's branches");
+        for (std::size_t b = 0; b < of_branches.size(); ++b) {
+            const auto& of = solved.comparison.branches[b].run(Leg::equilibrium).curve;
+            compare::Curve curve{.unit = of.unit, .a = of.a, .start = of.start, .values = {}};
+            const std::size_t count = solved.defined.channels.size();
+            curve.values.assign(curve.a.size(), std::vector<double>(count));
+            for (std::size_t c = 0; c < count; ++c) {
+                const JsonCursor field = of_branches[b][solved.defined.channels[c].name];
+                const auto values = field.numbers();
+                if (values.size() != curve.a.size()) field.fail("not as many numbers as points");
+                for (std::size_t k = 0; k < values.size(); ++k) curve.values[k][c] = values[k];
+            }
+            solved.defined.branches.push_back(std::move(curve));
+        }
+    }
     return solved;
 }
 
@@ -69,9 +94,10 @@ PointTable read(std::string_view csv, const std::string& file, const SolvedCurve
     const auto channel = [&](const compare::PointColumn& column) -> const compare::Channel& {
         return all.channels[column.channel];
     };
-    if (std::ranges::count_if(columns, [&](const auto& c) { return is_travel(channel(c)); }) > 1)
-        fail_at(file, 1, "two columns of travel; allowed: one");
-    std::erase_if(columns, [&](const auto& c) { return is_travel(channel(c)); });
+    // The travel that places the points is no output; that of the other wheel of an axle is one.
+    std::erase_if(columns, [&](const auto& c) {
+        return is_travel(channel(c)) && (c.change || c.channel == table.points.abscissa);
+    });
     std::erase_if(columns, [&](const auto& c) {
         if (channel(c).kinematic()) return false;
         table.left_out.push_back(channel(c).name + ": no position or angle");
@@ -109,11 +135,16 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
             fail_at(file, 0,
                     fmt::format("'{}={}': the scene has no branch '{}'{}", theirs, ours, ours,
                                 reader::did_you_mean(ours, branches, "allowed")));
-    const PointTable table = read(csv, file, solved, map);
+    ColumnMap with_tests = map;
+    for (const auto& branch : JsonCursor{&scene_document, "", &result}["branches"].items())
+        if (const auto moves = branch.find("case"))
+            with_tests.tests.push_back(
+                {branch["name"].text(), moves->text(), branch["unit"].text() == "mm"});
+    const PointTable table = read(csv, file, solved, with_tests);
     const compare::Points& measured = table.points;
     compare::MeasuredComparison found;
     try {
-        found = compare::compare_measured(solved.model, all, measured);
+        found = compare::compare_measured(solved.model, all, measured, solved.defined);
     } catch (const std::invalid_argument& error) {
         fail_at(file, 1, error.what());
     }
@@ -145,6 +176,21 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
         const std::string by = reading.by_parameter ? word : all.channels[*measured.abscissa].name;
         readings.push_back({{"reading", "at equal " + by}, {"channels", rows}});
     }
+    json loops = json::array();
+    for (const auto& loop : found.loops) {
+        const auto& channel = all.channels[loop.channel];
+        const auto& branch = all.branch(loop.branch);
+        const std::string at_unit = measured.a.empty()
+                                        ? symbol(all.channels[*measured.abscissa].unit)
+                                        : symbol(branch.unit);
+        loops.push_back({{"branch", loop.branch},
+                         {"channel", channel.name},
+                         {"unit", symbol(channel.unit)},
+                         {"width", loop.width},
+                         {"at", loop.at},
+                         {"at_unit", at_unit},
+                         {"points", loop.points}});
+    }
     scene_document["measured"] = {{"file", file},
                                   {"hash", input_hash(csv)},
                                   {"points", table.count},
@@ -152,10 +198,34 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
                                   {"columns", columns},
                                   {"branch", found.branch},
                                   {"branch_given", !measured.branch.empty()},
-                                  {"readings", readings}};
+                                  {"readings", readings},
+                                  {"loops", loops},
+                                  {"findings", found.explanations}};
     if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
     if (measured.abscissa)
         scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
+}
+
+void add_defined_curves(json& scene_document, const Model& model,
+                        const compare::Comparison& comparison) {
+    const compare::DefinedCurves defined = compare::defined_curves(model, comparison);
+    json channels = json::array(), branches = json::array();
+    for (const auto& channel : defined.channels)
+        channels.push_back({{"name", channel.name},
+                            {"unit", symbol(channel.unit)},
+                            {"definition", channel.definition}});
+    for (std::size_t b = 0; b < defined.branches.size(); ++b) {
+        const auto& reference = comparison.branches[b].run(Leg::equilibrium).curve;
+        // a leg that ended early leaves its points without values
+        json values = json::object();
+        for (std::size_t c = 0; c < defined.channels.size(); ++c) {
+            auto column = defined.branches[b].channel(c);
+            column.resize(reference.a.size(), compare::nan);
+            values[defined.channels[c].name] = column;
+        }
+        branches.push_back(std::move(values));
+    }
+    scene_document["defined"] = {{"channels", channels}, {"branches", branches}};
 }
 
 int compared_with_measurement(const json& scene_document) {

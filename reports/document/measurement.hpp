@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "elastocheck/compare.hpp"
+#include "elastocheck/model.hpp"
 #include "reports/document/candidate_file.hpp"
 #include "reports/files/csv_table.hpp"
 
@@ -30,6 +32,11 @@ using MeasurementError = SheetError;
 // without curves.
 void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv,
                      const std::string& file, const ColumnMap& map = {});
+
+// Adds "defined" to the document of a solved scene: curves of its figures by other definitions, which
+// add_measurement() tries on columns that deviate.
+void add_defined_curves(nlohmann::ordered_json& scene_document, const Model& model,
+                        const compare::Comparison& comparison);
 
 // Number of compared values over all readings and outputs.
 int compared_with_measurement(const nlohmann::ordered_json& scene_document);

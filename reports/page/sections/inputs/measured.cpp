@@ -61,6 +61,8 @@ std::optional<Section> measured_section(const JsonCursor& scene) {
                      {"points", (*measured)["points"].whole()}};
     if (const auto left_out = measured->find("left_out"); left_out && !left_out->texts().empty())
         section.words["left_out"] = enumerated(left_out->texts());
+    if (const auto findings = measured->find("findings"); findings && !findings->texts().empty())
+        section.words["findings"] = enumerated(findings->texts());
     for (const auto& reading : (*measured)["readings"].items()) {
         Table table{
             .caption = fmt::format("Deviation from the measurement, {}", reading["reading"].text()),
@@ -82,6 +84,20 @@ std::optional<Section> measured_section(const JsonCursor& scene) {
             }
             table.rows.push_back(cells);
         }
+        section.tables.push_back(std::move(table));
+    }
+    if (const auto loops = measured->find("loops"); loops && !loops->items().empty()) {
+        Table table{
+            .caption = "Hysteresis of the measurement: its two ways, whose mean is compared",
+            .columns = {
+                {"branch", true}, {"output", true}, {"largest width"}, {"at", true}, {"points"}}};
+        for (const auto& loop : loops->items())
+            table.rows.push_back(
+                {loop["branch"].text(),
+                 fmt::format("{} [{}]", loop["channel"].text(), loop["unit"].text()),
+                 number(loop["width"].number(), 2),
+                 fmt::format("{:.4g} {}", loop["at"].number(), loop["at_unit"].text()),
+                 whole_number(loop["points"].whole())});
         section.tables.push_back(std::move(table));
     }
     return section;
