@@ -23,6 +23,7 @@ class ParsedScene {
     // Thread-safe.
     Scene read(std::span<const Setting> settings,
                std::vector<std::string>* warnings = nullptr) const;
+    std::vector<RequestedDefinition> definitions(std::span<const Setting> settings) const;
 
   private:
     Value tree_;

@@ -11,6 +11,7 @@
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/definitions/definitions.hpp"
 #include "models/reader/document/cursor.hpp"
+#include "models/reader/requested_definitions.hpp"
 
 namespace elastocheck::reader {
 
@@ -27,6 +28,7 @@ std::vector<std::string> implausible(const Cursor& scene, const Units& units, co
 struct SceneAndWarnings {
     Scene scene;
     std::vector<std::string> warnings;
+    std::vector<RequestedDefinition> definitions;
 };
 // of the scene's file; none if the scene is text
 using Folder = std::optional<std::filesystem::path>;

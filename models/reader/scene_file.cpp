@@ -208,12 +208,13 @@ void keep_each_once(std::vector<Number>& numbers) {
 Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::string>* warnings) {
     if (scene.value->kind == Value::Kind::nothing)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
-    scene.only_keys({"elastocheck",     "name",     "units",    "mirror",  "gravity",
-                     "points",          "bodies",   "joints",   "springs", "stops",
-                     "torsion_springs", "bushings", "beams",    "tyres",   "static_loads",
-                     "loads",           "trim",     "branches", "wheel",   "wheels",
-                     "probes",          "dampers",  "vehicle"});
+    scene.only_keys({"elastocheck",     "name",     "units",    "mirror",     "gravity",
+                     "points",          "bodies",   "joints",   "springs",    "stops",
+                     "torsion_springs", "bushings", "beams",    "tyres",      "static_loads",
+                     "loads",           "trim",     "branches", "wheel",      "wheels",
+                     "probes",          "dampers",  "vehicle",  "definitions"});
     check_version(scene);
+    (void)requested_definitions(scene);
     Scene result;
     result.source = *scene.file;
     result.name = scene.require("name").text("the name of the scene");
@@ -272,11 +273,40 @@ Scene ParsedScene::read(std::span<const Setting> settings,
     return scene;
 }
 
+std::vector<RequestedDefinition> ParsedScene::definitions(std::span<const Setting> settings) const {
+    Value tree = tree_;
+    apply(settings, tree, name_);
+    std::vector<Number> numbers;
+    return requested_definitions({&tree, "", &name_, &numbers});
+}
+
 SceneAndWarnings read_whole(std::string_view text, const std::string& name,
                             std::span<const Setting> settings, const Folder& folder) {
     SceneAndWarnings read;
-    read.scene = ParsedScene(text, name, folder).read(settings, &read.warnings);
+    const ParsedScene parsed(text, name, folder);
+    read.scene = parsed.read(settings, &read.warnings);
+    read.definitions = parsed.definitions(settings);
     return read;
+}
+
+std::vector<RequestedDefinition> requested_definitions(const Cursor& scene) {
+    std::vector<RequestedDefinition> list;
+    const auto at = scene.optional("definitions");
+    if (!at) return list;
+    const auto add = [&](const std::string& figure, const Cursor& of) {
+        const std::vector<Cursor> names = of.is_list() ? of.items() : std::vector{of};
+        if (names.empty()) of.fail("an empty list; a name is needed");
+        for (const Cursor& name : names)
+            list.push_back({figure,
+                            name.text(figure.empty() ? "the name of a set of definitions"
+                                                     : "the name of a definition"),
+                            name.value->line, name.path});
+    };
+    if (at->value->kind == Value::Kind::map)
+        for (const auto& [figure, of] : at->entries()) add(figure, of);
+    else
+        add("", *at);
+    return list;
 }
 
 SceneAndWarnings read_scene_with_warnings(const std::filesystem::path& file,

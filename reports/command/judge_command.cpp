@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "compare/definitions/definitions.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
@@ -43,7 +44,7 @@ int judge(const JudgeRequest& request, const Delivery& delivery) {
     compare::Options options;
     options.recursion.steps = request.steps;
     options.progress = progress;
-    const compare::Comparison comparison = compare::compare(model, options);
+    const compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
     progress("");
     int code = fine;
     nlohmann::ordered_json candidates = nlohmann::ordered_json::array();

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
@@ -98,6 +99,8 @@ std::string add_measured(json& document, const ReportRequest& request) {
                     map_of(request.candidate));
     for (const auto& column : document["measured"]["left_out"])
         print_error("{}: column left out: {}\n", request.measured, column.get<std::string>());
+    for (const auto& finding : document["measured"]["findings"])
+        print_error("{}: {}\n", request.measured, finding.get<std::string>());
     return compared_with_measurement(document) > 0
                ? ""
                : fmt::format("no point of {} is within the range of the legs", request.measured);
@@ -259,9 +262,10 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
     options.threads = threads;
     options.prove_ends_only = request.quick;
     options.progress = compare::part(progress_of_scene, 0, after_legs);
-    const auto comparison = compare::compare(model, options);
+    const auto comparison = compare::compare(model, options, loaded.definitions);
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
+    if (!request.measured.empty()) add_defined_curves(document, model, comparison);
     if (!request.measured.empty())
         if (const std::string why = add_measured(document, request); !why.empty())
             reasons.push_back(why);

@@ -85,7 +85,7 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
     const LoadedScene loaded = load_scene(request.scene, request.settings,
                                           request.keep_all ? Detail::everything : Detail::required);
     const Model& model = loaded.model;
-    const auto channels = requested_channels(model, request.channels);
+    const auto channels = requested_channels(loaded, request.channels);
     check_every(model, how.steps, request.solver.every);
     if (delivery.as_json)
         check_memory(model, {.steps = how.steps, .every = request.solver.every, .written = true});

@@ -9,6 +9,7 @@
 
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
@@ -149,7 +150,7 @@ int compare_legs(const CompareRequest& request, const Delivery& delivery) {
                          .every = request.every,
                          .legs = static_cast<int>(compare::legs.size()),
                          .written = delivery.wants_document()});
-    const compare::Comparison comparison = compare::compare(model, options);
+    const compare::Comparison comparison = compare::compare(model, options, loaded.definitions);
     std::optional<compare::FormulationStudy> study;
     if (request.formulations)
         study = compare::formulation_study(loaded.scene, steps, request.every, options.threads,

@@ -34,7 +34,7 @@ SharedScene loaded(std::string file, reports::Settings settings,
     auto scene = std::make_shared<SceneOfFile>();
     scene->loaded = reports::trimmed_and_compiled(std::move(found), file);
     scene->channels = std::make_shared<const std::vector<compare::Channel>>(
-        reports::requested_channels(scene->loaded.model, {}));
+        reports::requested_channels(scene->loaded, {}));
     scene->file = std::move(file);
     scene->settings = std::move(settings);
     scene->parsed = std::move(parsed);
@@ -81,7 +81,7 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
             std::make_shared<const std::vector<compare::Channel>>(compare::characteristics(model));
     else if (!request.channels.empty())
         channels = std::make_shared<const std::vector<compare::Channel>>(
-            reports::requested_channels(model, request.channels));
+            reports::requested_channels(scene->loaded, request.channels));
     std::vector<Branch> branches;
     for (const std::string& name : request.branches)
         branches.push_back(reports::branch_named(model, name));
@@ -244,7 +244,7 @@ py::list branches_of(const SceneOfFile& scene) {
 // Name, unit and definition of every output that can be asked for by its name.
 py::list outputs_of(const SceneOfFile& scene) {
     py::list outputs;
-    for (const compare::Channel& channel : reports::requested_channels(scene.loaded.model, {"*"}))
+    for (const compare::Channel& channel : reports::requested_channels(scene.loaded, {"*"}))
         outputs.append(py::make_tuple(channel.name, symbol(channel.unit), channel.definition));
     return outputs;
 }

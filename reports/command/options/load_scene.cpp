@@ -1,7 +1,13 @@
 #include "reports/command/options/load_scene.hpp"
 
 #include <fmt/format.h>
+#include <fnmatch.h>
 
+#include <algorithm>
+
+#include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
@@ -9,9 +15,98 @@
 
 namespace elastocheck::reports {
 
+namespace {
+
+// The outputs that a scene asks for. A figure or definition that does not exist, and one that this
+// scene does not have, are errors; of a set, what the scene does not have is left out.
+std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefinition>& list,
+                                        const Model& model, const std::string& file) {
+    std::vector<compare::Channel> outputs;
+    if (list.empty()) return outputs;
+    const auto all = compare::definition_channels(model);
+    const auto definitions = compare::definitions();
+    // Adds those of every wheel; returns whether there is one.
+    const auto add = [&](const std::string& figure, const std::string& name) {
+        bool any = false;
+        for (const compare::Channel& channel : all) {
+            if (compare::figure_of(channel.name) != figure || !channel.name.ends_with("@" + name))
+                continue;
+            any = true;
+            if (compare::find_channel(outputs, channel.name) < 0) outputs.push_back(channel);
+        }
+        return any;
+    };
+    for (const auto& one : list) {
+        const auto wrong = [&](const std::string& what) {
+            reader::fail(file, one.line, one.path, what);
+        };
+        std::vector<std::string> names;
+        if (one.figure.empty()) {
+            const auto sets = compare::definition_sets();
+            const auto set = std::ranges::find(sets, one.name, &compare::DefinitionSet::name);
+            for (const auto& known : sets) names.push_back(known.name);
+            if (set == sets.end())
+                wrong(fmt::format("there is no set {}{}", reader::quote(one.name),
+                                  reader::did_you_mean(one.name, names, "allowed")));
+            bool any = false;
+            for (const std::string& member : set->members) {
+                const auto at = member.find('@');
+                any = add(member.substr(0, at), member.substr(at + 1)) || any;
+            }
+            if (!any) wrong(fmt::format("the scene has none of its figures"));
+            continue;
+        }
+        for (const auto& known : definitions)
+            if (known.figure == one.figure && std::ranges::find(names, known.name) == names.end())
+                names.push_back(known.name);
+        if (names.empty()) {
+            std::vector<std::string> figures;
+            for (const auto& known : definitions)
+                if (std::ranges::find(figures, known.figure) == figures.end())
+                    figures.push_back(known.figure);
+            wrong(fmt::format("no figure with other definitions{}",
+                              reader::did_you_mean(one.figure, figures, "allowed")));
+        }
+        if (std::ranges::find(names, one.name) == names.end())
+            wrong(fmt::format("there is no definition {}{}", reader::quote(one.name),
+                              reader::did_you_mean(one.name, names, "allowed")));
+        if (!add(one.figure, one.name))
+            wrong(fmt::format("the scene has no {} by the definition {}", one.figure,
+                              reader::quote(one.name)));
+    }
+    for (auto& output : outputs) output.main = output.kinematic();
+    return outputs;
+}
+
+// The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
+// without a match, with the nearest name.
+std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all,
+                                     const std::vector<std::string>& patterns) {
+    if (patterns.empty()) return all;
+    std::vector<compare::Channel> list;
+    std::vector<std::string> names;
+    for (const auto& channel : all) names.push_back(channel.name);
+    for (const auto& pattern : patterns) {
+        bool fits = false;
+        for (const auto& channel : all) {
+            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0)
+                continue;
+            fits = true;
+            if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
+        }
+        if (!fits)
+            throw std::invalid_argument(
+                fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
+                            reader::did_you_mean(pattern, names, "outputs")));
+    }
+    return list;
+}
+
+}  // namespace
+
 LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
                                  Detail detail) {
-    auto& [scene, warnings] = read;
+    auto& [scene, warnings, definitions] = read;
     const auto where = [&, &scene = scene] {
         return scene.trim && scene.trim->line > 0
                    ? fmt::format("{}:{}: trim", file, scene.trim->line)
@@ -26,14 +121,29 @@ LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::strin
     if (trimmed.record && !trimmed.record->reached())
         throw NotTrimmed(fmt::format("{}: {}", where(), trimmed.record->detail));
     Model model = compile(trimmed.scene, detail);
+    auto outputs = requested(definitions, model, file);
     return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record),
-            std::move(warnings)};
+            std::move(warnings), std::move(outputs)};
 }
 
 LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail) {
     auto read = reader::read_scene_with_warnings(file, settings);
     for (const auto& warning : read.warnings) print_error("{} (warning)\n", warning);
     return trimmed_and_compiled(std::move(read), file, detail);
+}
+
+std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
+                                                 const std::vector<std::string>& patterns) {
+    const Model& model = loaded.model;
+    auto all = compare::channels(model);
+    if (patterns.empty()) {
+        std::ranges::copy(loaded.definitions, std::back_inserter(all));
+        return all;
+    }
+    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
+    return chosen(all, patterns);
 }
 
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {

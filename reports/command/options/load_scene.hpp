@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "elastocheck/channels.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/model.hpp"
 #include "elastocheck/scene.hpp"
@@ -27,6 +28,8 @@ struct LoadedScene {
     Model model;
     std::optional<compare::TrimRecord> trim;
     std::vector<std::string> warnings = {};  // of the reader: "FILE:LINE: field: ..."
+    // outputs by the definitions that the scene asks for, "camber@kingpin", after its own outputs
+    std::vector<compare::Channel> definitions = {};
 };
 
 // Trims and compiles what was read from a file. Throws SceneError for an ill-posed trim, and
@@ -40,6 +43,14 @@ LoadedScene load_scene(const std::string& file, const Settings& settings,
 // A scene of result.json without results: the compiled model, the trim, the reader's warnings.
 // `file` is the scene's.
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file);
+
+// The outputs of --channels, names or patterns with *, in that order, each once; without patterns
+// channels() and the definitions that the scene asks for. Forces of bushings, springs and links,
+// characteristics and other definitions, whose cost is comparable to a step of a leg, are among them
+// only if requested by name. Throws std::invalid_argument for a pattern without a match, with the
+// nearest name.
+std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
+                                                 const std::vector<std::string>& patterns);
 
 // The branch of --branch. Throws std::invalid_argument for an unknown name, with the nearest.
 const Branch& branch_named(const Model& model, const std::string& name);

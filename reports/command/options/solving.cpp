@@ -1,48 +1,18 @@
 #include "reports/command/options/solving.hpp"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <stdexcept>
 
-#include "compare/comparison/characteristics.hpp"
-#include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
-#include "compare/definitions/definitions.hpp"
-#include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 using compare::Channel;
-
-// The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
-// without a match, with the nearest name.
-std::vector<Channel> chosen(const std::vector<Channel>& all,
-                            const std::vector<std::string>& patterns) {
-    if (patterns.empty()) return all;
-    std::vector<Channel> list;
-    std::vector<std::string> names;
-    for (const auto& channel : all) names.push_back(channel.name);
-    for (const auto& pattern : patterns) {
-        bool fits = false;
-        for (const auto& channel : all) {
-            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0)
-                continue;
-            fits = true;
-            if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
-        }
-        if (!fits)
-            throw std::invalid_argument(
-                fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
-                            reader::did_you_mean(pattern, names, "outputs")));
-    }
-    return list;
-}
 
 // Largest differences between two states in the main outputs, in words: "2.2 mm (wheel_centre_z)
 // and 0.0068 deg (toe)".
@@ -102,16 +72,6 @@ compare::SolverSettings certified_solver(const std::string& solver) {
     compare::SolverSettings settings;
     settings.recursion.method = *recursive::find_method(solver);
     return settings;
-}
-
-std::vector<Channel> requested_channels(const Model& model,
-                                        const std::vector<std::string>& patterns) {
-    auto all = compare::channels(model);
-    if (patterns.empty()) return all;
-    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
-    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
-    std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
-    return chosen(all, patterns);
 }
 
 bool is_end(const Branch& side, double load) {

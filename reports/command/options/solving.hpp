@@ -30,13 +30,6 @@ std::vector<std::string> certified_solvers();
 // Pre: it is one of them.
 compare::SolverSettings certified_solver(const std::string& solver);
 
-// The outputs of these names or patterns with *, in their order, each once; none: the channels of
-// the model. Forces of bushings, springs and links, characteristics and figures by other definitions,
-// whose cost is comparable to a step of a leg, are given only if requested by name. Throws
-// std::invalid_argument for a pattern without a match, with the nearest name.
-std::vector<compare::Channel> requested_channels(const Model& model,
-                                                 const std::vector<std::string>& patterns);
-
 // Whether a recorded parameter is the end of a branch side, but for rounding.
 bool is_end(const Branch& side, double load);
 // Error of a method at the end of a branch side, in words: its state there against one solve of the

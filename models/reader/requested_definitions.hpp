@@ -1,0 +1,23 @@
+// The definitions of figures that a scene asks for. The reader knows no definition: the caller
+// checks the names (compare/definitions/definitions.hpp).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/reader/document/cursor.hpp"
+
+namespace elastocheck::reader {
+
+struct RequestedDefinition {
+    std::string figure;  // "roll_centre_height"; empty for a set
+    std::string name;    // of the definition, "planes", or of the set, "sae"
+    int line = 0;
+    std::string path;  // "definitions.roll_centre_height"
+};
+
+// `definitions: sae`, `definitions: [sae, planes]`, or a map of figures to names or lists of names.
+// Throws SceneError for anything else.
+std::vector<RequestedDefinition> requested_definitions(const Cursor& scene);
+
+}  // namespace elastocheck::reader
