@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/design/maps.hpp"
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -18,8 +22,10 @@
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
+#include "reports/command/options/load_scene.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/tables/maps.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -40,10 +46,17 @@ struct ExportRequest {
     std::string formulation;  // "adams", "chrono": bushings are converted; empty: as they are
     bool allow_missing = false;
     std::vector<Setting> settings;
+    // of a map
+    std::string over;                   // branch
+    std::string rows;                   // "joints.rack=-50:50:11"; empty: one variable
+    std::vector<std::string> channels;  // none: the main positions and angles
+    std::string within = "0.01mm,0.001deg,1%";
 };
 
 constexpr FileKind scene_file{"scene made by import", "# Imported from "};
 constexpr FileKind dataset_file{"dataset made by export", "Exported model name:"};
+constexpr FileKind lookup_file{"lookup table made by export", lookup_head};
+constexpr FileKind polynomial_file{"polynomials made by export", polynomial_head};
 constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
@@ -174,7 +187,138 @@ int import(const ImportRequest& request) {
     return fine;
 }
 
+// ---- Maps.
+
+// The values of --rows, in the unit of the scene, and what they are values of.
+struct Rows {
+    std::string held;  // "joints.rack"
+    std::vector<double> values;
+};
+Rows rows_of(const std::string& text) {
+    const auto wrong = [&] {
+        throw std::invalid_argument(fmt::format(
+            "--rows {}: expected HELD=FROM:TO:COUNT, what the branch holds, FROM below TO, an odd "
+            "count from 3 to 1001",
+            text));
+    };
+    Rows rows;
+    const auto equals = text.find('=');
+    if (equals == text.npos || equals == 0) wrong();
+    rows.held = text.substr(0, equals);
+    std::vector<double> numbers;
+    for (std::string_view rest = std::string_view(text).substr(equals + 1);;) {
+        const auto end = std::min(rest.find(':'), rest.size());
+        double value = 0;
+        const auto [at, error] = std::from_chars(rest.data(), rest.data() + end, value);
+        if (error != std::errc{} || at != rest.data() + end || !std::isfinite(value)) wrong();
+        numbers.push_back(value);
+        if (end == rest.size()) break;
+        rest.remove_prefix(end + 1);
+    }
+    if (numbers.size() != 3 || !(numbers[0] < numbers[1]) || !(numbers[2] >= 3) ||
+        !(numbers[2] <= 1001) || std::fmod(numbers[2], 2) != 1)
+        wrong();
+    const int count = static_cast<int>(numbers[2]);
+    for (int k = 0; k < count; ++k)
+        rows.values.push_back((numbers[0] * (count - 1 - k) + numbers[1] * k) /
+                              static_cast<double>(count - 1));
+    return rows;
+}
+
+// Solves the branch once for each row. NaN beyond the end of a branch.
+int export_map(const ExportRequest& request) {
+    const bool polynomial = request.format == "polynomial";
+    if (!request.output.empty())
+        check_may_write(request.output, polynomial ? polynomial_file : lookup_file);
+    const auto tolerance =
+        compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces);
+    if (request.over.empty())
+        throw std::invalid_argument(
+            fmt::format("--format {} needs --over BRANCH, the branch whose parameter is the first "
+                        "variable",
+                        request.format));
+    Rows rows{"", {0}};
+    if (!request.rows.empty()) rows = rows_of(request.rows);
+    compare::MapTable table;
+    table.y = rows.values;
+    MapAxes axes;
+    int missing = 0;
+    for (const double held : rows.values) {
+        auto settings = request.settings;
+        if (!rows.held.empty())
+            settings.push_back(
+                setting(fmt::format("branches.{}.hold.{}", request.over, rows.held), held));
+        const LoadedScene loaded = load_scene(request.scene, settings);
+        const Branch& branch = branch_named(loaded.model, request.over);
+        if (table.channels.empty()) {
+            table.channels = requested_channels(loaded, request.channels);
+            if (request.channels.empty())
+                std::erase_if(table.channels,
+                              [](const compare::Channel& c) { return !c.main || !c.kinematic(); });
+            const compare::Unit unit = compare::unit_of(branch.unit);
+            axes = {loaded.model.name, fmt::format("{} [{}]", request.over, symbol(unit)),
+                    rows.held.empty() ? "" : rows.held + " [as in the scene]"};
+        }
+        const auto path = compare::walk(loaded.model, table.channels, branch,
+                                        compare::sides_of(loaded.model, branch),
+                                        {.leg = compare::Leg::equilibrium});
+        if (path.outcome != Outcome::converged) {
+            print_error(
+                "{}: {}: {}\n",
+                rows.held.empty() ? request.over : fmt::format("{} = {:g}", rows.held, held),
+                name(path.outcome), path.detail);
+            ++missing;
+        }
+        auto a = path.curve.a;
+        auto values = path.curve.values;
+        if (a.size() > 1 && a.front() > a.back())
+            std::ranges::reverse(a), std::ranges::reverse(values);
+        for (auto& point : values)
+            for (double& value : point)
+                if (!std::isfinite(value)) value = std::numeric_limits<double>::quiet_NaN();
+        if (missing == 0) table.x = a;
+        table.values.push_back(std::move(values));
+    }
+    if (missing > 0) {
+        print_error("no map: {} of {} rows do not reach the end of the branch\n", missing,
+                    rows.values.size());
+        return could_not_judge;
+    }
+    std::string text;
+    int code = fine;
+    if (polynomial) {
+        const auto maps = compare::polynomial_maps(table, tolerance);
+        for (const auto& map : maps)
+            if (!map.within) {
+                code = limit_broken;
+                print_error(
+                    "{}: no polynomial up to degree {} is within the tolerance; the least "
+                    "error is {:.2g} {}\n",
+                    table.channels[map.channel].name, compare::most_map_degree, map.error,
+                    symbol(table.channels[map.channel].unit));
+            }
+        text = polynomial_csv(table, maps, axes);
+    } else {
+        text = lookup_csv(table, axes);
+    }
+    if (request.output.empty())
+        print("{}", text);
+    else
+        write_whole(request.output, text, polynomial ? polynomial_file : lookup_file);
+    return code;
+}
+
 int export_scene(const ExportRequest& request) {
+    const bool map = request.format == "lookup" || request.format == "polynomial";
+    for (const auto& [given, option] : {std::pair{!request.over.empty(), "--over"},
+                                        {!request.rows.empty(), "--rows"},
+                                        {!request.channels.empty(), "--channels"}})
+        if (given && !map)
+            throw std::invalid_argument(
+                fmt::format("{}: only with --format lookup or polynomial", option));
+    if (map && (request.allow_missing || !request.formulation.empty()))
+        throw std::invalid_argument("--allow-missing and --formulation: not of a map");
+    if (map) return export_map(request);
     const bool chrono = request.format == "chrono";
     if (!request.formulation.empty() && (request.formulation == "chrono") != chrono)
         throw std::invalid_argument(fmt::format("--formulation {}: not of --format {}; allowed: {}",
@@ -205,9 +349,9 @@ Command import_command() {
     return {
         "import",
         "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
-        "hardpoints "
-        ".sub",
-        {{"FILE", Text{&request->file, a_file("*")}, "the model (.adm, .json, .sub)", true},
+        "hardpoints .sub, lists of points .csv .shk",
+        {{"FILE", Text{&request->file, a_file("*")}, "the model (.adm, .json, .sub, .csv, .shk)",
+          true},
          {"-o,--output", Text{&request->output, a_file("*.yaml")}, "write the scene to this file"},
          {"--wheel", Text{&request->wheel},
           "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
@@ -216,7 +360,8 @@ Command import_command() {
          {"--axes",
           Text{&request->axes, one_of({importer::axes_of_tables[0], importer::axes_of_tables[1],
                                        importer::axes_of_tables[2], importer::axes_of_tables[3]})},
-          "axes of a table of hardpoints (.sub), turned to ISO 8855: x-rearward,y-right (default)"},
+          "axes of a table of hardpoints, turned to ISO 8855: x-rearward,y-right (default of "
+          ".sub)"},
          {"--allow-missing", Flag{&request->allow_missing},
           "warn about what a scene cannot represent instead of rejecting the file"},
          json_option(request->as_json)},
@@ -225,21 +370,31 @@ Command import_command() {
 
 Command export_command() {
     const auto request = std::make_shared<ExportRequest>();
-    return {"export",
-            "Export the trimmed scene as a model of ADAMS or Chrono",
-            {scene_option(request->scene),
-             {"--format", Text{&request->format, one_of({"adm", "chrono"})},
-              "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON)"},
-             {"-o,--output", Text{&request->output, a_file("*.adm *.json")},
-              "write the model to this file"},
-             {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
-              "adams or chrono, as the format: convert the bushings to that program's formulation "
-              "and report the change of the outputs"},
-             {"--allow-missing", Flag{&request->allow_missing},
-              "warn about elements that the other program does not have instead of rejecting the "
-              "scene"},
-             set_option(request->settings)},
-            [request](const std::string&) { return export_scene(*request); }};
+    return {
+        "export",
+        "Export the trimmed scene as a model of ADAMS or Chrono, or its outputs as a map",
+        {scene_option(request->scene),
+         {"--format", Text{&request->format, one_of({"adm", "chrono", "lookup", "polynomial"})},
+          "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON); "
+          "lookup: a table of outputs over a branch (CSV); polynomial: the same as polynomials"},
+         {"-o,--output", Text{&request->output, a_file("*.adm *.json *.csv")},
+          "write the model to this file"},
+         {"--over", Text{&request->over}, "lookup, polynomial: the branch"},
+         {"--rows", Text{&request->rows},
+          "lookup, polynomial: a second variable, which the branch holds: "
+          "joints.rack=-50:50:11"},
+         {"--channels", TextList{&request->channels, TextList::Form::commas},
+          "lookup, polynomial: outputs, as for solve (default: the main positions and angles)"},
+         {"--within", Text{&request->within},
+          "polynomial: its limit (default: 0.01mm,0.001deg,1%)"},
+         {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
+          "adams or chrono, as the format: convert the bushings to that program's formulation "
+          "and report the change of the outputs"},
+         {"--allow-missing", Flag{&request->allow_missing},
+          "warn about elements that the other program does not have instead of rejecting the "
+          "scene"},
+         set_option(request->settings)},
+        [request](const std::string&) { return export_scene(*request); }};
 }
 
 }  // namespace elastocheck::reports
