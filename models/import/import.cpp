@@ -62,21 +62,26 @@ std::string where(const SourceLocation& place) {
 Imported import_text(std::string_view text, const std::string& file, const Options& options) {
     const std::string ending =
         reader::small_letters(std::filesystem::path(file).extension().string());
-    if (ending != ".adm" && ending != ".json" && ending != ".sub")
+    const bool list = ending == ".csv" || ending == ".shk", points_only = list || ending == ".sub";
+    if (ending != ".adm" && ending != ".json" && !points_only)
         reader::fail(
             file, 0, "",
-            fmt::format("{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
-                        ".json (Chrono::Vehicle suspensions), .sub (hardpoints of Adams/Car)",
-                        reader::quote(ending)));
-    if (!options.axes.empty() && ending != ".sub")
-        reader::fail(
-            file, 0, "--axes",
-            "only for hardpoints of Adams/Car (.sub); the axes of a model are those of its file");
+            fmt::format(
+                "{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
+                ".json (Chrono::Vehicle suspensions), .sub (hardpoints of Adams/Car), .csv, "
+                ".shk (lists of points)",
+                reader::quote(ending)));
+    if (!options.axes.empty() && !points_only)
+        reader::fail(file, 0, "--axes",
+                     "only for hardpoints of Adams/Car (.sub) and lists of points; the axes of a "
+                     "model are those "
+                     "of its file");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
+                        : list              ? import_points(text, file, options)
                                             : import_subsystem(text, file, options);
     if (!draft.notes.missing.empty() && !options.allow_missing) refuse(file, draft.notes);
-    if (draft.bodies.empty() && ending != ".sub")
+    if (draft.bodies.empty() && !points_only)
         reader::fail(file, 0, "",
                      "the model has no moving part: no part has a joint or element that a scene "
                      "can represent");
@@ -86,7 +91,7 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
     result.joints = static_cast<int>(draft.joints.size());
     result.elements = static_cast<int>(draft.bushings.size() + draft.springs.size() +
                                        draft.stops.size() + draft.torsion_springs.size());
-    if (ending != ".sub") {  // hardpoints only: not a scene
+    if (!points_only) {
         try {
             const Scene scene = parse_scene(written.yaml, std::string(name_of_text));
             result.bodies = static_cast<int>(scene.bodies.size());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "models/import/draft.hpp"
@@ -31,7 +32,7 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// Selects the format by extension: .adm, .json, .sub. Throws SceneError "file:line: ..." for errors
+// Selects the format by extension: .adm, .json, .sub, .csv and .shk (points). Throws SceneError "file:line: ..." for errors
 // in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
@@ -43,5 +44,10 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
 Draft import_adm(std::string_view text, const std::string& file, const Options& options);
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options);
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);
+Draft import_points(std::string_view text, const std::string& file, const Options& options);
+
+// Signs of x and y of a table of hardpoints in the axes of a scene; z has their product. Throws
+// SceneError for axes that are not among axes_of_tables.
+std::pair<double, double> directions(const std::string& axes, const std::string& file);
 
 }  // namespace elastocheck::importer

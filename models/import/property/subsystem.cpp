@@ -18,16 +18,19 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
 
 }  // namespace
 
+std::pair<double, double> directions(const std::string& axes, const std::string& file) {
+    if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
+        reader::fail(file, 0, "--axes",
+                     fmt::format("{} is not a set of axes; allowed: {}", reader::quote(axes),
+                                 fmt::join(axes_of_tables, " ")));
+    return {axes.starts_with("x-forward") ? 1 : -1, axes.ends_with("y-left") ? 1 : -1};
+}
+
 // The file has x rearward, y right, z up unless options.axes is set; the scene has x forward, y
 // left, z up. A 'left/right' hardpoint is a pair, of which the left one is written.
 Draft import_subsystem(std::string_view text, const std::string& name, const Options& options) {
     const std::string axes = options.axes.empty() ? "x-rearward,y-right" : options.axes;
-    if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
-        reader::fail(name, 0, "--axes",
-                     fmt::format("{} is not a set of axes; allowed: {}", reader::quote(axes),
-                                 fmt::join(axes_of_tables, " ")));
-    const double along_x = axes.starts_with("x-forward") ? 1 : -1,
-                 along_y = axes.ends_with("y-left") ? 1 : -1;
+    const auto [along_x, along_y] = directions(axes, name);
     const double along_z = along_x * along_y;  // a rotation: the frame stays right-handed
     const reader::PropertyFile file = reader::parse_property_file(text, name);
     Draft draft;
