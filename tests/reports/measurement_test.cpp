@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compare/candidate/measured.hpp"
 #include "elastocheck/compile.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/limits.hpp"
@@ -112,6 +113,109 @@ TEST(Measurement, IsDrawnOverTheCurvesAndComparedInASectionOfItsOwn) {
     }
     EXPECT_TRUE(section);
     EXPECT_TRUE(drawn);
+}
+
+// ---- Rigs.
+
+// Values of the equilibrium leg of a scene at the points of a branch.
+double value_at(const compare::Comparison& all, const std::string& branch, const char* name,
+                std::size_t k) {
+    return all.branch(branch)
+        .run(compare::Leg::equilibrium)
+        .curve.values[k][static_cast<std::size_t>(find_channel(all.channels, name))];
+}
+
+TEST(Measurement, OfARigIsReadByItsNamesOfTestsAndColumns) {
+    static const Solved axle(support::scene("front_axle"), 10, "series");
+    const auto& all = axle.comparison;
+    std::string csv =
+        "Test,Wheel Travel LH [mm],Lateral Force (kN),Braking Force (kN),Toe LH (arc-minutes),"
+        "Right Camber Angle [deg],Oil Temperature\n";
+    for (const auto& [test, branch] : {std::pair{"Bounce", "parallel"},
+                                       {"Lateral - opposed", "lateral"},
+                                       {"BRAKING", "braking"}}) {
+        const auto& curve = all.branch(branch).run(compare::Leg::equilibrium).curve;
+        for (std::size_t k = 0; k < curve.a.size(); k += 3)
+            csv += fmt::format("{},{:.7f},{:.7f},{:.7f},{:.7f},{:.7f},20\n", test,
+                               value_at(all, branch, "left.travel", k),
+                               branch == std::string("lateral") ? curve.a[k] / 1e3 : 0.1234,
+                               branch == std::string("braking") ? curve.a[k] / 1e3 : 0.4321,
+                               60 * value_at(all, branch, "left.toe", k),
+                               value_at(all, branch, "right.camber", k));
+    }
+    const json m = axle.measured(csv);
+    EXPECT_EQ(m["left_out"], json::array({"Oil Temperature"}));
+    ASSERT_EQ(m["readings"].size(), 2u);
+    const auto& by_load = m["readings"][0]["channels"];
+    ASSERT_EQ(by_load.size(), 2u);
+    EXPECT_EQ(by_load[0]["channel"], "left.toe");
+    EXPECT_EQ(by_load[1]["channel"], "right.camber");
+    for (const auto& reading : m["readings"])
+        for (const auto& row : reading["channels"]) {
+            EXPECT_GE(row["compared"], 4) << row;
+            EXPECT_LE(std::abs(row["equilibrium"]["signed_max"].get<double>()), 1e-5) << row;
+        }
+    EXPECT_TRUE(m["findings"].empty()) << m["findings"];
+    EXPECT_TRUE(m["loops"].empty());
+    EXPECT_EQ(axle.refusal("Test,Wheel Travel LH [mm],Toe LH (deg)\nTwist,0,0\n")
+                  .find("kc.csv:2: Test: the scene has no branch 'Twist'"),
+              0u);
+}
+
+// A loop of known width about the curve: the mean of both ways is the curve.
+TEST(Measurement, OfALoopIsComparedByTheMeanOfBothWays) {
+    const auto& all = solved().comparison;
+    const auto& curve = all.branch("jounce").run(compare::Leg::equilibrium).curve;
+    const auto point = [&](std::size_t k, double half) {
+        return fmt::format("jounce,{:.6f},{:.7f}\n", curve.a[k],
+                           value_at(all, "jounce", "toe", k) + half);
+    };
+    std::string csv = "branch,load_N,toe_deg\n";
+    const std::size_t last = curve.a.size() - 1;
+    for (std::size_t k = 0; k < last; k += 2) csv += point(k, 0.02);
+    csv += point(last, 0);
+    for (std::size_t k = last - 2;; k -= 2) {
+        csv += point(k, -0.02);
+        if (k < 2) break;
+    }
+    const json m = measured(csv);
+    ASSERT_EQ(m["loops"].size(), 1u) << m["loops"];
+    EXPECT_EQ(m["loops"][0]["channel"], "toe");
+    EXPECT_NEAR(m["loops"][0]["width"].get<double>(), 0.04, 2e-4);
+    const auto& row = m["readings"][0]["channels"][0];
+    // next to the turning point the polygon of the other way ends in the point without width
+    EXPECT_LE(row["equilibrium"]["rms"].get<double>(), 0.004) << row;
+    const json one_way = measured(csv.substr(0, csv.size() / 2));
+    EXPECT_GE(one_way["readings"][0]["channels"][0]["equilibrium"]["rms"].get<double>(), 0.015);
+    EXPECT_TRUE(one_way["loops"].empty());
+}
+
+// Sign, unit and definition of a column that does not fit.
+TEST(Measurement, ThatDoesNotFitIsTriedBySignsUnitsAndDefinitions) {
+    static const Solved rigid(support::scene("double_wishbone_rigid"), 10, "series");
+    json document = rigid.document;
+    add_defined_curves(document, rigid.model, rigid.comparison);
+    const auto defined = compare::defined_curves(rigid.model, rigid.comparison);
+    const auto d = static_cast<std::size_t>(find_channel(defined.channels, "caster@wheel_plane"));
+    std::string csv = "branch,parameter_mm,caster_deg,camber_deg,toe_deg\n";
+    const auto& all = rigid.comparison;
+    std::size_t b = 0;
+    while (all.branches[b].branch != "steering") ++b;
+    const auto& curve = all.branches[b].run(compare::Leg::equilibrium).curve;
+    for (std::size_t k = 0; k < curve.a.size(); k += 2)
+        csv += fmt::format(
+            "steering,{:.6f},{:.4f},{:.4f},{:.4f}\n", curve.a[k], defined.branches[b].channel(d)[k],
+            -value_at(all, "steering", "camber", k), value_at(all, "steering", "toe", k));
+    add_measurement(document, csv, "kc.csv");
+    const std::string findings = document["measured"]["findings"].dump();
+    EXPECT_NE(findings.find("by another definition: caster@wheel_plane"), findings.npos)
+        << findings;
+    EXPECT_NE(findings.find("with its sign turned"), findings.npos) << findings;
+    EXPECT_EQ(document["measured"]["findings"].size(), 2u) << findings;
+    // a result that was solved without them does not try definitions
+    json without = rigid.document;
+    add_measurement(without, csv, "kc.csv");
+    EXPECT_EQ(without["measured"]["findings"].dump().find("definition"), std::string::npos);
 }
 
 // Every position or angle can be measured.

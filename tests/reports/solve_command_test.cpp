@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -64,6 +65,133 @@ TEST(SolveCommand, IsTheEquilibriumLegUnlessAnotherMethodIsNamed) {
     EXPECT_EQ(said.out, elastocheck_says(command + " --method equilibrium").out);
     expect_parts(said.out, {"\njounce,equilibrium,3000,"});
     EXPECT_TRUE(said.err.empty()) << said.err;
+}
+
+// A scene with these definitions, as `definitions:` writes them.
+std::string with_definitions(const Folder& folder, const std::string& definitions) {
+    const std::string file = (folder.path / "asked.yaml").string();
+    std::ofstream(file) << text_of(scenes + "/double_wishbone_rigid.yaml")
+                        << "\ndefinitions: " << definitions << "\n";
+    return file;
+}
+
+TEST(SolveCommand, WritesTheDefinitionsThatASceneAsksFor) {
+    const Folder folder;
+    const std::string
+        own = elastocheck_says("solve " + scenes + "/double_wishbone_rigid.yaml --steps 4").out,
+        head = own.substr(0, own.find('\n'));
+    const auto asked = [&](const std::string& definitions) {
+        const Said said =
+            expect_says("solve " + with_definitions(folder, definitions) + " --steps 4", 0);
+        const std::string first = said.out.substr(0, said.out.find('\n'));
+        EXPECT_EQ(first.find(head), 0u) << "the own outputs come first";
+        return first.substr(std::min(first.size(), head.size()));
+    };
+    EXPECT_EQ(asked("{roll_centre_height: planes, camber: [kingpin, lateral]}"),
+              ",roll_centre_height@planes [mm],camber@kingpin [deg],camber@lateral [deg]");
+    EXPECT_EQ(asked("planes"), ",roll_centre_height@planes [mm]");
+    EXPECT_EQ(asked("[sae]"),
+              ",mechanical_trail@ground_axes [mm],scrub_radius@ground_axes [mm],"
+              "front_view_swing_arm@patch [mm],roll_centre_height@forces [mm]");
+    expect_parts(asked("iso8855"), {"toe@steer [deg]", "scrub_radius@distance [mm]"});
+}
+
+TEST(SolveCommand, RefusesADefinitionThatDoesNotExistWithItsLine) {
+    const Folder folder;
+    const auto refused = [&](const std::string& definitions,
+                             const std::vector<std::string>& parts) {
+        const std::string file = with_definitions(folder, definitions);
+        const Said said = elastocheck_says("solve " + file + " --steps 4");
+        EXPECT_EQ(said.code, 2) << definitions;
+        EXPECT_TRUE(said.out.empty());
+        expect_parts(said.err, parts);
+        expect_parts(said.err, {fmt::format("asked.yaml:{}: definitions",
+                                            std::ranges::count(text_of(file), '\n'))});
+    };
+    refused("iso8850", {"there is no set 'iso8850'", "iso8855"});
+    refused("{camber: kingpim}",
+            {"definitions.camber: there is no definition 'kingpim'", "kingpin"});
+    refused("{cambers: kingpin}",
+            {"definitions.cambers: no figure with other definitions", "camber"});
+    refused("{ackermann: error}", {"the scene has no ackermann by the definition 'error'"});
+    refused("{camber: {a: b}}", {"definitions.camber"});
+    refused("[]", {"an empty list"});
+    refused("{camber: [planes]}", {"there is no definition 'planes'"});
+}
+
+// A row of the table is the branch with that value held; the polynomial gives its values back.
+TEST(ExportCommand, WritesATableOverABranchAndWhatItHoldsAndItsPolynomials) {
+    const std::string command =
+        "export " + scenes +
+        "/double_wishbone_rigid.yaml --set branches.steering.steps=20 --over "
+        "steering --rows travel=-0.02:0.02:5 --channels toe,camber ";
+    const auto without_remarks = [](const std::string& csv) {
+        std::string text;
+        for (const auto& line : parts_of(csv, '\n'))
+            if (!line.starts_with("#")) text += line + "\n";
+        return text;
+    };
+    const Said lookup = expect_says(command + "--format lookup", 0);
+    expect_parts(lookup.out, {"# Lookup table of elastocheck", "# toe [deg]: ", "positive toe-in"});
+    const auto rows = cells_of(without_remarks(lookup.out));
+    ASSERT_EQ(rows.size(), 1u + 5 * 21);
+    EXPECT_EQ(rows[0][0], "travel [as in the scene]");
+    EXPECT_EQ(rows[0][1], "steering [mm]");
+    EXPECT_EQ(rows[0][2], "toe [deg]");
+    const auto solved = cells_of(
+        elastocheck_says("solve " + scenes +
+                         "/double_wishbone_rigid.yaml --channels toe,camber --set "
+                         "branches.steering.steps=20 --set branches.steering.hold.travel=0.01")
+            .out);
+    int found = 0;
+    for (const auto& row : solved) {
+        if (row[0] != "steering") continue;
+        for (const auto& mine : rows)
+            if (mine[0] == "0.01" &&
+                std::abs(std::atof(mine[1].c_str()) - std::atof(row[2].c_str())) < 1e-9) {
+                EXPECT_NEAR(std::atof(mine[2].c_str()), std::atof(row[4].c_str()), 1e-8);
+                EXPECT_NEAR(std::atof(mine[3].c_str()), std::atof(row[5].c_str()), 1e-8);
+                ++found;
+            }
+    }
+    EXPECT_EQ(found, 21);
+
+    const Said polynomial = expect_says(command + "--format polynomial", 0);
+    std::map<std::string, double> at_end, error;  // u = v = 1: the sum of the coefficients
+    for (const auto& row : cells_of(without_remarks(polynomial.out))) {
+        if (row[0] == "output") continue;
+        at_end[row[0]] += std::atof(row[4].c_str());
+        error[row[0]] = std::atof(row[9].c_str());
+    }
+    for (const auto& [output, column] : {std::pair{"toe", 2}, {"camber", 3}}) {
+        EXPECT_LE(error.at(output), 1e-3);
+        EXPECT_NEAR(at_end.at(output),
+                    std::atof(rows.back()[static_cast<std::size_t>(column)].c_str()),
+                    error.at(output) + 1e-9);
+    }
+}
+
+TEST(ExportCommand, RefusesAMapThatItCannotMake) {
+    const std::string scene = "export " + scenes + "/double_wishbone_rigid.yaml ";
+    expect_says(scene + "--format lookup", 2, {.err = {"--over BRANCH"}});
+    expect_says(scene + "--format lookup --over travels", 2, {.err = {"no branch", "travel"}});
+    expect_says(scene + "--over travel", 2, {.err = {"--over: only with --format lookup"}});
+    expect_says(scene + "--format lookup --over steering --rows travel=1:0:3", 2,
+                {.err = {"HELD=FROM:TO:COUNT"}});
+    expect_says(scene + "--format lookup --over steering --rows travel=0:1:4", 2,
+                {.err = {"an odd count"}});
+    expect_says(scene + "--format lookup --over steering --rows travel=0:nan:3", 2,
+                {.err = {"HELD=FROM:TO:COUNT"}});
+    expect_says(scene + "--format lookup --over steering --rows travels=0:1:3", 2,
+                {.err = {"travels"}});
+    expect_says(scene + "--format lookup --over travel --channels toes", 2, {.err = {"toes"}});
+    // the wheel cannot reach this: no file
+    const Folder folder;
+    const std::string file = (folder.path / "map.csv").string();
+    const Said said = elastocheck_says(
+        scene + "--format lookup --over steering --rows travel=-0.5:0.5:3 -o " + file);
+    EXPECT_EQ(said.code, 3) << said.err;
+    EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 // The line says what the two solutions differ by at the end, in the output that differs most.
