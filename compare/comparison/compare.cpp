@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compare_with.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/extrapolation.hpp"
-#include "compare/definitions/definitions.hpp"
 #include "compare/deviation/proof.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"

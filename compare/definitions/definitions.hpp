@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "elastocheck/channels.hpp"
-#include "elastocheck/compare.hpp"
 
 namespace elastocheck::compare {
 
@@ -36,9 +35,6 @@ std::vector<DefinitionSet> definition_sets();
 // An output per definition and wheel that has a value in the design position, "left.camber@kingpin";
 // figures of an axle once, without the name of a wheel. None of them is a main output.
 std::vector<Channel> definition_channels(const Model& model);
-
-// compare() with these outputs after channels() and characteristics().
-Comparison compare(const Model& model, const Options& options, const std::vector<Channel>& also);
 
 // "camber" of "left.camber@kingpin" and of "left.camber".
 std::string figure_of(std::string_view output);

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "compare/definitions/definitions.hpp"
+#include "compare/comparison/compare_with.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"

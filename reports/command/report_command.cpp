@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "compare/comparison/compare.hpp"
-#include "compare/definitions/definitions.hpp"
+#include "compare/comparison/compare_with.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"

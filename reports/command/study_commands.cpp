@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "compare/comparison/compare.hpp"
+#include "compare/comparison/compare_with.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/definitions/definitions.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"

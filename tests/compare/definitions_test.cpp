@@ -597,6 +597,7 @@ TEST(Definitions, DoNotExplainWrongColumns) {
             explained += found && found->kind == Explanation::Kind::definition;
             ++tried;
         }
+    RecordProperty("explained", explained);
     EXPECT_LE(explained, 10) << "of " << tried;
 }
 
