@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <thread>
+#include <utility>
 
 #include "reports/files/files.hpp"
 #include "reports/files/provenance.hpp"
@@ -43,22 +45,20 @@ std::string text_of_meta(const Database& database, const std::string& key) {
     return meta.step() ? meta.text(0) : "";
 }
 
-std::vector<std::pair<std::string, std::string>> identity_of(const StudyIdentity& identity) {
-    return {{"scene", identity.scene}, {"study", identity.study}, {"version", identity.version}};
-}
-
 void check_identity(const Database& database, const StudyIdentity& identity) {
     Statement tables(database,
                      "SELECT count(*) FROM sqlite_master WHERE name IN ('meta', 'variants')");
     if (!tables.step() || tables.whole(0) != 2 || text_of_meta(database, "format") != format)
         throw FileError(database.file().string() + ": not a ledger of a study");
-    for (const auto& [key, value] : identity_of(identity)) {
+    for (const auto& [key, value] :
+         {std::pair("scene", identity.scene), std::pair("study", identity.study)}) {
         const std::string found = text_of_meta(database, key);
         if (found == value) continue;
-        throw FileError(fmt::format(
-            "{}: is of another {}: {} there, {} here; another study needs "
-            "another folder",
-            database.file().string(), key == "study" ? "study file" : key, found, value));
+        throw FileError(
+            fmt::format("{}: is of another {}: {} there, {} here; another study needs "
+                        "another folder",
+                        database.file().string(), key == std::string("study") ? "study file" : key,
+                        found, value));
     }
 }
 
@@ -77,10 +77,10 @@ void create(const Database& database, const StudyIdentity& identity,
     database.run("CREATE TABLE variants " + columns);
     database.run("CREATE TABLE witnesses " + columns);
     Statement meta(database, "INSERT INTO meta VALUES (?, ?)");
-    auto all = identity_of(identity);
-    all.emplace_back("format", format);
-    for (const auto& [key, value] : all) {
-        meta.bind(1, key), meta.bind(2, value);
+    for (const auto& [key, value] :
+         {std::pair("scene", identity.scene), std::pair("study", identity.study),
+          std::pair("version", identity.version), std::pair("format", std::string(format))}) {
+        meta.bind(1, std::string(key)), meta.bind(2, value);
         meta.execute();
     }
     Statement outcome(database, "INSERT INTO outcomes VALUES (?, ?)");
@@ -171,6 +171,8 @@ Ledger::Ledger(const std::filesystem::path& file, const StudyIdentity& identity,
 }
 Ledger::~Ledger() = default;
 
+const std::filesystem::path& Ledger::file() const { return state_->database.file(); }
+
 void Ledger::add(std::span<const LedgerRow> rows) {
     const Database& database = state_->database;
     const std::string values =
@@ -189,6 +191,33 @@ void Ledger::add(std::span<const LedgerRow> rows) {
         }
     }
     database.run("COMMIT");
+}
+
+std::set<std::string> Ledger::versions() const {
+    Statement found(state_->database, "SELECT value FROM meta WHERE key LIKE 'version%'");
+    std::set<std::string> versions;
+    while (found.step()) versions.insert(found.text(0));
+    return versions;
+}
+
+void Ledger::add_version(const std::string& version) {
+    if (versions().contains(version)) return;
+    Statement insert(state_->database, "INSERT INTO meta VALUES ('version ' || ?1, ?1)");
+    insert.bind(1, version);
+    insert.execute();
+}
+
+std::vector<LedgerRow> Ledger::sample(std::uint64_t most) const {
+    Statement found(
+        state_->database,
+        fmt::format(
+            "{0} FROM (SELECT *, row_number() OVER (ORDER BY k) - 1 AS place FROM variants) "
+            "WHERE place % (SELECT 1 + count(*) / ? FROM variants) = 0",
+            state_->selected()));
+    found.bind(1, most);
+    std::vector<LedgerRow> rows;
+    while (found.step()) rows.push_back(row_of(found, state_->figures));
+    return rows;
 }
 
 void Ledger::merge(const std::filesystem::path& other) {
@@ -217,6 +246,9 @@ void Ledger::merge(const std::filesystem::path& other) {
     database.run("BEGIN IMMEDIATE");
     for (const char* table : {"variants", "witnesses"})
         database.run(fmt::format("INSERT OR IGNORE INTO main.{0} SELECT * FROM other.{0}", table));
+    database.run(
+        "INSERT OR IGNORE INTO main.meta SELECT 'version ' || value, value FROM other.meta "
+        "WHERE key LIKE 'version%' AND value NOT IN (SELECT value FROM main.meta)");
     database.run("COMMIT");
     database.run("DETACH other");
 }
@@ -318,13 +350,17 @@ std::string Ledger::content_hash(std::uint64_t count) const {
     return bytes;
 }
 
-LedgerLock::LedgerLock(const std::filesystem::path& ledger) {
+LedgerLock::LedgerLock(const std::filesystem::path& ledger, std::chrono::seconds patience) {
     // Beside the ledger: SQLite loses its own locks where the file itself is opened once more.
     const std::string file = ledger.string() + ".lock";
     file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0)
         throw FileError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-    if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+    const auto end = std::chrono::steady_clock::now() + patience;
+    do {
+        if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(patience.count() > 0 ? 50 : 0));
+    } while (std::chrono::steady_clock::now() < end);
     ::close(file_);
     throw FileError(ledger.string() + ": another process is computing this study here");
 }

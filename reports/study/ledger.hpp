@@ -10,6 +10,7 @@
 // of its open transaction.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -24,10 +25,10 @@
 
 namespace elastocheck::reports {
 
-// What has to agree for rows to be of one study.
 struct StudyIdentity {
-    std::string scene, study;  // hashes
+    std::string scene, study;  // hashes; they have to agree for rows to be of one study
     std::string version;       // of the program, with its commit
+    bool is_released = true;   // the version says which code it is: no uncommitted change
 };
 
 struct LedgerRow {
@@ -60,9 +61,17 @@ class Ledger {
     Ledger(const Ledger&) = delete;
     Ledger& operator=(const Ledger&) = delete;
 
+    const std::filesystem::path& file() const;
+
     // In one transaction.
     void add(std::span<const LedgerRow> rows);
-    // Rows of another ledger of this study that are not here yet. Throws FileError, also for a row
+    // Versions of the program whose rows it has or that have found themselves to give the same.
+    std::set<std::string> versions() const;
+    void add_version(const std::string& version);
+    // Up to `most` rows, evenly spread.
+    std::vector<LedgerRow> sample(std::uint64_t most) const;
+
+    // Rows of another ledger of this study that are not here yet, and its versions. Throws FileError, also for a row
     // that both have with different content.
     void merge(const std::filesystem::path& other);
 
@@ -86,10 +95,10 @@ class Ledger {
 };
 
 // Excludes other processes that would write the same ledger, for its lifetime. Throws FileError
-// where there is one.
+// where there is one after this time.
 class LedgerLock {
   public:
-    explicit LedgerLock(const std::filesystem::path& ledger);
+    explicit LedgerLock(const std::filesystem::path& ledger, std::chrono::seconds patience = {});
     ~LedgerLock();
     LedgerLock(const LedgerLock&) = delete;
     LedgerLock& operator=(const LedgerLock&) = delete;

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "compare/variants/sampler.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
+#include "reports/files/files.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -43,16 +45,15 @@ std::optional<Model> model_of(const StudyFile& file, const Eigen::VectorXd& valu
 }
 
 std::vector<LedgerRow> solve_rows(const StudyFile& file, const Sampler& sampler,
-                                  std::uint64_t first, std::uint64_t end,
-                                  const std::set<std::uint64_t>& present) {
-    const Eigen::MatrixXd values = sampler.values(first, end - first);
+                                  const Range& range) {
+    const Eigen::MatrixXd values = sampler.values(range.first, range.end - range.first);
     std::vector<LedgerRow> rows;
     std::vector<Model> models;
     std::vector<std::size_t> at;  // row of each model
-    for (std::uint64_t k = first; k < end; ++k) {
-        if (present.contains(k)) continue;
+    for (std::uint64_t k = range.first; k < range.end; ++k) {
         rows.push_back({.k = k, .figures = {}});
-        auto model = model_of(file, values.row(static_cast<Index>(k - first)), rows.back().figures);
+        auto model =
+            model_of(file, values.row(static_cast<Index>(k - range.first)), rows.back().figures);
         const bool is_witness =
             file.study.witness > 0 && k % static_cast<std::uint64_t>(file.study.witness) == 0;
         if (is_witness)
@@ -68,49 +69,66 @@ std::vector<LedgerRow> solve_rows(const StudyFile& file, const Sampler& sampler,
     return rows;
 }
 
+bool is_same(const VariantFigures& a, const VariantFigures& b) {
+    return a.outcome == b.outcome && a.reason == b.reason &&
+           std::ranges::equal(a.values, b.values, [](double x, double y) {
+               return x == y || (std::isnan(x) && std::isnan(y));
+           });
+}
+
+std::int64_t nanoseconds() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
+
 }  // namespace
 
-Computed run_study(const StudyFile& file, Ledger& ledger, const Shard& shard, int threads,
-                   const compare::Progress& progress) {
-    const std::uint64_t count = file.study.design.count;
-    struct Batch {
-        std::uint64_t first, end;
-        bool is_partly_there;
-    };
-    std::vector<Batch> open;
+OpenRanges::OpenRanges(const Ledger& ledger, std::uint64_t count, const Shard& shard,
+                       compare::Progress progress)
+    : progress_(std::move(progress)), start_(nanoseconds()) {
     const auto rows = ledger.rows_by_batch(batch_size, count);
-    std::uint64_t variants = 0;
     for (std::uint64_t b = shard.at - 1; b < rows.size(); b += shard.of) {
         const std::uint64_t first = b * batch_size, end = std::min(first + batch_size, count);
         if (rows[b] == end - first) continue;
-        open.push_back({first, end, rows[b] > 0});
-        variants += end - first - rows[b];
+        variants_ += end - first - rows[b];
+        // A study that is extended has a part of its last batch.
+        const std::set<std::uint64_t> present =
+            rows[b] > 0 ? ledger.rows_in(first, end) : std::set<std::uint64_t>{};
+        std::uint64_t from = first;
+        for (const std::uint64_t k : present) {
+            if (k > from) ranges_.push_back({from, k});
+            from = k + 1;
+        }
+        if (from < end) ranges_.push_back({from, end});
     }
-    const auto start = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    if (open.empty()) return {};
+}
+
+std::optional<Range> OpenRanges::next(std::uint64_t finished) {
+    const std::scoped_lock guard(handing_out_);
+    done_ += finished;
+    if (finished > 0 && progress_)
+        progress_(fmt::format("{} of {} variants, {:.0f} per second", done_, variants_,
+                              static_cast<double>(done_) * 1e9 /
+                                  static_cast<double>(nanoseconds() - start_)),
+                  static_cast<double>(done_) / static_cast<double>(variants_));
+    if (next_ == ranges_.size()) return std::nullopt;
+    return ranges_[next_++];
+}
+
+std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& next, int threads) {
     const Sampler sampler(file.study);
-    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> has_failed = false;
+    std::atomic<std::uint64_t> variants = 0;
     std::mutex recording;
-    std::uint64_t done = 0;
     const auto work = [&] {
-        for (std::size_t b = next++; b < open.size(); b = next++) {
-            const auto& [first, end, is_partly_there] = open[b];
-            std::set<std::uint64_t> present;
-            if (is_partly_there) {
+        std::uint64_t finished = 0;
+        while (!has_failed) {
+            const auto range = next(finished);
+            if (!range) return;
+            const auto rows = solve_rows(file, sampler, *range);
+            {
                 const std::scoped_lock guard(recording);
-                present = ledger.rows_in(first, end);
+                ledger.add(rows);
             }
-            const auto solved = solve_rows(file, sampler, first, end, present);
-            const std::scoped_lock guard(recording);
-            ledger.add(solved);
-            done += solved.size();
-            if (progress)
-                progress(fmt::format("{} of {} variants, {:.0f} per second", done, variants,
-                                     static_cast<double>(done) / seconds()),
-                         static_cast<double>(done) / static_cast<double>(variants));
+            finished = rows.size();
+            variants += finished;
         }
     };
     // A failure of one ends the others after their batches.
@@ -118,14 +136,30 @@ Computed run_study(const StudyFile& file, Ledger& ledger, const Shard& shard, in
         try {
             work();
         } catch (...) {
-            next = open.size();
+            has_failed = true;
             throw;
         }
     };
     compare::run_jobs(std::vector<compare::Job>(static_cast<std::size_t>(threads),
                                                 compare::Job{"variants", guarded}),
                       threads, {});
-    return {variants, seconds()};
+    return variants;
+}
+
+std::size_t check_version(const StudyFile& file, Ledger& ledger) {
+    constexpr std::uint64_t most = 64;
+    const auto versions = ledger.versions();
+    if (versions.contains(file.identity.version) && file.identity.is_released) return 0;
+    const Sampler sampler(file.study);
+    const auto rows = ledger.sample(most);
+    for (const LedgerRow& row : rows)
+        if (!is_same(solve_rows(file, sampler, {row.k, row.k + 1}).front().figures, row.figures))
+            throw FileError(fmt::format(
+                "{}: variant {} was computed by version {}, and this version, {}, finds another "
+                "result; go on with that version, or begin again in another folder",
+                ledger.file().string(), row.k, fmt::join(versions, " or "), file.identity.version));
+    ledger.add_version(file.identity.version);
+    return versions.contains(file.identity.version) ? 0 : rows.size();
 }
 
 }  // namespace elastocheck::reports

@@ -540,7 +540,8 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
         .scene = input_hash(text + std::string(reinterpret_cast<const char*>(numbers.data()),
                                                numbers.size() * sizeof(double))),
         .study = input_hash(essence(reading.study)),
-        .version = made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : "")};
+        .version = made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : ""),
+        .is_released = !made.dirty && made.commit != "unknown"};
     return {file,
             std::move(reading.study),
             scene_file.string(),

@@ -9,64 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "compare/variants/openturns.hpp"
-#include "tests/reports/command.hpp"
+#include "reports/study/database.hpp"
+#include "tests/reports/study_command.hpp"
 
 namespace elastocheck::reports {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-
-// A folder with scenes and a study of one of them.
-struct StudyCommand : testing::Test, Folder {
-    void SetUp() override {
-        if (!compare::variants::openturns::available())
-            GTEST_SKIP() << "libopenturns-dev is not installed";
-        for (const char* scene : {"parallel_springs.yaml", "mcpherson.yaml"})
-            write(scene, text_of(scenes + "/" + scene));
-    }
-    std::string at(const std::string& name) const { return (path / name).string(); }
-    // `study` on the file study.yaml with this content.
-    Said study(const std::string& yaml, const std::string& options = "-o out") const {
-        write("study.yaml", yaml);
-        return run(options);
-    }
-    Said run(const std::string& options) const {
-        return support::says("cd " + path.string() +
-                             " && " ELASTOCHECK_COMMAND " study study.yaml --quiet " + options);
-    }
-    json statistics(const std::string& folder = "out") const {
-        return json::parse(text_of(path / folder / "statistics.json"));
-    }
-};
-
-double cell(const json& table, std::size_t row, const std::string& name) {
-    for (std::size_t c = 0; c < table["columns"].size(); ++c)
-        if (table["columns"][c]["name"] == name) return table["rows"][row][c].get<double>();
-    ADD_FAILURE() << "no column " << name;
-    return 0;
-}
-
-std::string replaced(const std::string& text, const std::string& what, const std::string& by) {
-    const auto at = text.find(what);
-    EXPECT_NE(at, text.npos) << what;
-    return std::string(text).replace(at, what.size(), by);
-}
-
-// z = z₀ + (F + P₁ + W) / (k₁ + k₂): linear in the preload and in the weight.
-const std::string linear = R"(elastocheck_study: 1
-scene: parallel_springs.yaml
-variables:
-  springs.first.preload: {normal: {sd: 20}}
-  static_loads.weight.force.z: {normal: {sd: 30}}
-design: {kind: sobol, count: 4096, seed: 3}
-figures:
-  height: centre_z@up:1500
-limits:
-  height: {max: 420.8}
-witness: 1024
-)";
 
 // ---- Bad input, each before the first variant, with file and line.
 
@@ -249,27 +196,6 @@ figures: {height: centre_z@up:3000}
 
 // ---- Threads, shards, interruption, extension: one content.
 
-const std::string mcpherson = R"(elastocheck_study: 1
-scene: mcpherson.yaml
-variables:
-  points.tie_rod_inner.z: {normal: {sd: 0.0005}}
-  points.strut_top.x: {triangular: {half_width: 0.001}}
-  springs.K1_coil.rate: {truncated_normal: {sd: 2000, low: -1000, high: 40000}}
-  bushes: {scale: 'bushings.K3_arm_front.rates.*', uniform: {half_width: 0.2}}
-design: {kind: sobol, count: 780, seed: 5}
-figures:
-  toe: toe@jounce:3000
-  camber: camber@rebound:-3000
-  wheel rate: wheel_rate@jounce:1500
-witness: 390
-)";
-
-std::string content(const Said& said) {
-    static const std::regex line("Content ([0-9a-f]{16})");
-    std::smatch match;
-    return std::regex_search(said.out, match, line) ? match[1].str() : "none: " + said.err;
-}
-
 TEST_F(StudyCommand, HasOneContentOnAnyThreadsAndInShards) {
     const std::string one = content(study(mcpherson, "-o one --jobs 1"));
     ASSERT_EQ(one.size(), 16u) << one;
@@ -354,6 +280,37 @@ TEST_F(StudyCommand, TwoProcessesDoNotWriteOneLedger) {
                               " && mkdir out && flock out/ledger.sqlite.lock " ELASTOCHECK_COMMAND
                               " study study.yaml -o out --quiet --count 10"),
                 2, {.err = {"another process is computing this study here"}});
+}
+
+// Rows that another version of the program has written are computed again, a sample of them.
+TEST_F(StudyCommand, GoesOnWithTheLedgerOfAVersionWithTheSameNumbers) {
+    const auto as_if_by_another_version = [&] {
+        Database(path / "out" / "ledger.sqlite", Database::Access::existing)
+            .run(
+                "DELETE FROM meta WHERE key LIKE 'version %';"
+                "UPDATE meta SET value = '0.0.1 abc' WHERE key = 'version'");
+    };
+    study(mcpherson, "-o out --count 300");
+    as_if_by_another_version();
+    expect_said(run("-o out --count 300 --show"), 0);
+    expect_said(run("-o out --count 400"), 0,
+                {.err = {"out/ledger.sqlite: 60 of its variants, computed again by version ",
+                         "have the values of version 0.0.1 abc", "100 variants computed"}});
+    const Said again = run("-o out --count 400");
+    EXPECT_EQ(again.err.find("computed again"), std::string::npos) << again.err;
+    EXPECT_EQ(content(again), content(run("-o whole --count 400")));
+
+    as_if_by_another_version();
+    expect_said(run("-o merged --count 400 --merge out/ledger.sqlite"), 0,
+                {.err = {"have the values of version 0.0.1 abc"}});
+    Database(path / "out" / "ledger.sqlite", Database::Access::existing)
+        .run("UPDATE variants SET f1 = f1 + 1e-12");
+    as_if_by_another_version();
+    expect_said(run("-o out --count 400"), 2,
+                {.err = {"variant 0 was computed by version 0.0.1 abc, and this version, ",
+                         "finds another result"}});
+    expect_said(run("-o other --count 400 --merge out/ledger.sqlite"), 2,
+                {.err = {"finds another result"}});
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 
 #include "reports/command/delivery.hpp"
@@ -12,6 +14,7 @@
 #include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/study/ranks.hpp"
 #include "reports/study/run_study.hpp"
 #include "reports/study/study_output.hpp"
 
@@ -59,6 +62,77 @@ std::uint64_t missing(const Ledger& ledger, std::uint64_t count, const Shard& sh
     return all;
 }
 
+StudyFile read(const StudyRequest& request) {
+    return read_study(request.file, request.count > 0
+                                        ? std::optional(static_cast<std::uint64_t>(request.count))
+                                        : std::nullopt);
+}
+
+// A rank is a process of a core, unless more threads are requested.
+int threads_of_rank(const StudyRequest& request) {
+    const int threads = threads_of(request.running);
+    return request.running.jobs > 0 ? threads : 1;
+}
+
+// All ranks but the first, which has checked the study and whose ledger has what they need not
+// compute.
+int assist(const StudyRequest& request, const Ranks& ranks) {
+    hide_progress();
+    ranks.wait_for_first();
+    const std::filesystem::path folder = request.folder, own = ledger_of_rank(folder, ranks.rank());
+    if (!std::filesystem::exists(folder / "ledger.sqlite"))
+        throw FileError(fmt::format(
+            "{}: rank {} does not see the ledger.sqlite of rank 0 in it; the folder has to be on a "
+            "file system that all share",
+            folder.string(), ranks.rank()));
+    const StudyFile file = read(request);
+    std::uint64_t variants = 0;
+    {
+        const LedgerLock lock(own);
+        Ledger ledger(own, file.identity, file.study.figures, Ledger::Access::write);
+        std::mutex asking;  // MPI is called by one thread at a time
+        const auto next = [&](std::uint64_t finished) {
+            const std::scoped_lock guard(asking);
+            return ranks.next(finished);
+        };
+        variants = run_study(file, ledger, next, threads_of_rank(request));
+    }
+    ranks.done(variants);
+    return fine;
+}
+
+// Another version of the program may have written it.
+void accept(const StudyFile& file, Ledger& ledger) {
+    const auto versions = ledger.versions();
+    if (const std::size_t same = check_version(file, ledger); same > 0)
+        print_error(
+            "{}: {} of its variants, computed again by version {}, have the values of version {}\n",
+            ledger.file().string(), same, file.identity.version, fmt::join(versions, ", "));
+}
+
+void compute(const StudyRequest& request, const StudyFile& file, Ledger& ledger, const Shard& shard,
+             std::optional<Ranks>& ranks) {
+    const auto start = std::chrono::steady_clock::now();
+    OpenRanges open(ledger, file.study.design.count, shard, progress);
+    const auto next = [&](std::uint64_t finished) { return open.next(finished); };
+    std::string by;
+    if (ranks) {
+        ranks->serve(open);
+        run_study(file, ledger, next, threads_of_rank(request));
+        const auto variants = ranks->wait();
+        gather(file, ledger, request.folder);
+        by = fmt::format(" by {} ranks", variants.size());
+    } else if (open.variants() > 0) {
+        run_study(file, ledger, next, threads_of(request.running));
+    }
+    progress("");
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (open.variants() > 0)
+        print_error("{} variants computed{} in {:.1f} s, {:.0f} per second\n", open.variants(), by,
+                    seconds, static_cast<double>(open.variants()) / seconds);
+}
+
 // Exit code 0: every variant has a row; 3: some have none, none is solved, or witnesses disagree.
 int study(const StudyRequest& request, const Delivery& delivery) {
     const Shard shard = parse_shard(request.shard);
@@ -66,9 +140,12 @@ int study(const StudyRequest& request, const Delivery& delivery) {
         throw std::invalid_argument("--show computes nothing: not with --merge or --shard");
     if (!request.shard.empty() && !request.merge.empty())
         throw std::invalid_argument("--merge is for the whole study: not with --shard");
-    const StudyFile file = read_study(
-        request.file, request.count > 0 ? std::optional(static_cast<std::uint64_t>(request.count))
-                                        : std::nullopt);
+    std::optional<Ranks> ranks = Ranks::join();
+    if (ranks && ranks->rank() > 0) return assist(request, *ranks);
+    if (ranks && (request.show || !request.shard.empty() || !request.merge.empty()))
+        throw std::invalid_argument(
+            "--show, --shard and --merge are of one process: not with mpirun");
+    const StudyFile file = read(request);
     for (const auto& warning : file.warnings) print_error("{} (warning)\n", warning);
     const std::filesystem::path folder = request.folder;
     const auto ledger_file = folder / (request.shard.empty() ? std::string("ledger.sqlite")
@@ -83,16 +160,16 @@ int study(const StudyRequest& request, const Delivery& delivery) {
     if (!request.show) lock.emplace(ledger_file);
     Ledger ledger(ledger_file, file.identity, file.study.figures,
                   request.show ? Ledger::Access::read : Ledger::Access::write);
-    for (const std::string& other : request.merge) ledger.merge(other);
-    if (!request.show && request.merge.empty()) {
-        const Computed computed =
-            run_study(file, ledger, shard, threads_of(request.running), progress);
-        progress("");
-        if (computed.variants > 0)
-            print_error("{} variants computed in {:.1f} s, {:.0f} per second\n", computed.variants,
-                        computed.seconds,
-                        static_cast<double>(computed.variants) / computed.seconds);
+    if (!request.show) {
+        accept(file, ledger);
+        if (request.shard.empty()) gather(file, ledger, folder);
     }
+    for (const std::string& other : request.merge) {
+        Ledger added(other, file.identity, file.study.figures, Ledger::Access::read);
+        accept(file, added);
+        ledger.merge(other);
+    }
+    if (!request.show && request.merge.empty()) compute(request, file, ledger, shard, ranks);
     std::vector<std::string> ranges;
     const std::uint64_t open = missing(ledger, file.study.design.count, shard, ranges);
     if (open > 0) print_error("{} variants are missing: {}\n", open, fmt::join(ranges, ", "));
