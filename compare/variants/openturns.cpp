@@ -63,4 +63,9 @@ SobolIndices sobol_indices(const Eigen::MatrixXd& outputs, double level, std::ui
     return functions().sobol_indices(outputs, level, seed);
 }
 
+Rare rare(const Values& values, std::size_t dimension, const Threshold& threshold, double level,
+          std::uint64_t seed, std::uint64_t most, std::uint64_t block) {
+    return functions().rare(values, dimension, threshold, level, seed, most, block);
+}
+
 }  // namespace elastocheck::compare::variants::openturns

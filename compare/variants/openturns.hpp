@@ -50,6 +50,28 @@ struct SobolIndices {  // per variable: value, lower and upper bound
 // Design::indices.
 SobolIndices sobol_indices(const Eigen::MatrixXd& outputs, double level, std::uint64_t seed);
 
+// Probability that a function of independent standard normal variables is above or below a threshold.
+struct Rare {
+    // of the point of failure nearest to the origin: its distance, negative where the origin fails,
+    // and the probability beyond the tangent plane there (FORM)
+    double beta = 0, by_form = 0;
+    Eigen::VectorXd point = {};
+    bool is_found = false;  // on the threshold, and steepest towards the origin
+    // by importance sampling about that point, and its interval
+    double probability = 0, low = 0, high = 0;
+    std::uint64_t evaluations = 0;
+};
+struct Threshold {
+    bool above = true;  // else below
+    double at = 0;
+};
+// Values of the function at the rows of a matrix; what it throws is thrown again.
+using Values = std::function<Eigen::VectorXd(const Eigen::MatrixXd& u)>;
+// The gradient is by central differences. At most `most` evaluations of the importance sampling, in
+// blocks of `block`; fewer where the coefficient of variation is 0.02 before.
+Rare rare(const Values& values, std::size_t dimension, const Threshold& threshold, double level,
+          std::uint64_t seed, std::uint64_t most, std::uint64_t block);
+
 // What the module provides, by its only symbol.
 struct Functions {
     decltype(&openturns::transformation) transformation;
@@ -58,6 +80,7 @@ struct Functions {
     decltype(&openturns::clopper_pearson) clopper_pearson;
     decltype(&openturns::percentile_ranks) percentile_ranks;
     decltype(&openturns::sobol_indices) sobol_indices;
+    decltype(&openturns::rare) rare;
 };
 inline constexpr const char* module_file = "elastocheck-openturns.so";
 inline constexpr const char* module_symbol = "elastocheck_openturns_functions";

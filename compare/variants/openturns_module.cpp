@@ -3,16 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <openturns/AbdoRackwitz.hxx>
 #include <openturns/Beta.hxx>
 #include <openturns/Binomial.hxx>
+#include <openturns/CenteredFiniteDifferenceGradient.hxx>
 #include <openturns/ComposedDistribution.hxx>
+#include <openturns/CompositeRandomVector.hxx>
 #include <openturns/DistFunc.hxx>
+#include <openturns/FORM.hxx>
+#include <openturns/Greater.hxx>
 #include <openturns/JansenSensitivityAlgorithm.hxx>
 #include <openturns/LHSExperiment.hxx>
+#include <openturns/Less.hxx>
+#include <openturns/Log.hxx>
 #include <openturns/Normal.hxx>
 #include <openturns/NormalCopula.hxx>
+#include <openturns/PostAnalyticalImportanceSampling.hxx>
 #include <openturns/RandomGenerator.hxx>
+#include <openturns/RandomVector.hxx>
 #include <openturns/SobolSequence.hxx>
+#include <openturns/ThresholdEvent.hxx>
 #include <openturns/Triangular.hxx>
 #include <openturns/TruncatedNormal.hxx>
 #include <openturns/Uniform.hxx>
@@ -150,14 +160,97 @@ SobolIndices sobol_indices_by_openturns(const MatrixXd& outputs, double level, s
     return found;
 }
 
+class Evaluation : public OT::EvaluationImplementation {
+  public:
+    Evaluation(const Values& values, std::size_t dimension, std::uint64_t* count)
+        : values_(&values), dimension_(size(dimension)), count_(count) {
+        setInputDescription(OT::Description::BuildDefault(dimension_, "u"));
+        setOutputDescription(OT::Description::BuildDefault(1, "y"));
+    }
+    Evaluation* clone() const override { return new Evaluation(*this); }
+    OT::UnsignedInteger getInputDimension() const override { return dimension_; }
+    OT::UnsignedInteger getOutputDimension() const override { return 1; }
+    OT::Point operator()(const OT::Point& u) const override {
+        return operator()(OT::Sample(1, u))[0];
+    }
+    OT::Sample operator()(const OT::Sample& u) const override {
+        MatrixXd rows(u.getSize(), u.getDimension());
+        for (Index i = 0; i < rows.rows(); ++i)
+            for (Index j = 0; j < rows.cols(); ++j) rows(i, j) = u(size(i), size(j));
+        const Eigen::VectorXd values = (*values_)(rows);
+        *count_ += u.getSize();
+        OT::Sample y(u.getSize(), 1);
+        for (Index i = 0; i < rows.rows(); ++i) y(size(i), 0) = values[i];
+        return y;
+    }
+
+  private:
+    const Values* values_;
+    OT::UnsignedInteger dimension_;
+    std::uint64_t* count_;
+};
+
+Rare rare_by_openturns(const Values& values, std::size_t dimension, const Threshold& threshold,
+                       double level, std::uint64_t seed, std::uint64_t most, std::uint64_t block) {
+    constexpr double step = 1e-3;  // [standard deviations]
+    constexpr double near = 1e-3;  // of the distance from the threshold at the origin
+    constexpr double aligned = 0.99, variation = 0.02;
+    Rare result;
+    const OT::Pointer<OT::EvaluationImplementation> evaluation(
+        new Evaluation(values, dimension, &result.evaluations));
+    OT::Function function{OT::Evaluation(evaluation)};
+    function.setGradient(OT::CenteredFiniteDifferenceGradient(OT::Point(size(dimension), step),
+                                                              OT::Evaluation(evaluation)));
+    const OT::RandomVector inputs(OT::Normal(size(dimension)));
+    const OT::CompositeRandomVector output(function, inputs);
+    const OT::ThresholdEvent event(output,
+                                   threshold.above ? OT::ComparisonOperator(OT::Greater())
+                                                   : OT::ComparisonOperator(OT::Less()),
+                                   threshold.at);
+    OT::Log::Show(OT::Log::NONE);  // what it warns of is judged below
+    OT::FORM form(OT::AbdoRackwitz(), event, OT::Point(size(dimension), 0.0));
+    form.run();
+    const OT::FORMResult found = form.getResult();
+    result.beta = found.getHasoferReliabilityIndex();
+    result.by_form = found.getEventProbability();
+    const OT::Point u = found.getStandardSpaceDesignPoint();
+    result.point.resize(static_cast<Index>(dimension));
+    for (std::size_t j = 0; j < dimension; ++j) result.point[static_cast<Index>(j)] = u[size(j)];
+    // The search reports no failure: judged by what defines the point.
+    const OT::Point origin(size(dimension), 0.0);
+    const double off = function(u)[0] - threshold.at, from = function(origin)[0] - threshold.at;
+    const OT::Matrix gradient = function.gradient(u);
+    Eigen::VectorXd slope(result.point.size());
+    for (std::size_t j = 0; j < dimension; ++j) slope[static_cast<Index>(j)] = gradient(size(j), 0);
+    const double both = slope.norm() * result.point.norm();
+    result.is_found = std::abs(off) <= near * std::abs(from) &&
+                      std::abs(slope.dot(result.point)) >= aligned * both;
+    OT::RandomGenerator::SetSeed(static_cast<OT::UnsignedInteger>(seed));
+    OT::PostAnalyticalImportanceSampling sampling(found);
+    sampling.setBlockSize(static_cast<OT::UnsignedInteger>(block));
+    sampling.setMaximumOuterSampling(static_cast<OT::UnsignedInteger>(most / block));
+    sampling.setMaximumCoefficientOfVariation(variation);
+    sampling.run();
+    const auto sampled = sampling.getResult();
+    const double half = sampled.getConfidenceLength(level) / 2;
+    result.probability = sampled.getProbabilityEstimate();
+    result.low = std::max(0.0, result.probability - half);
+    result.high = std::min(1.0, result.probability + half);
+    return result;
+}
+
 }  // namespace
 }  // namespace elastocheck::compare::variants::openturns
 
 extern "C" const elastocheck::compare::variants::openturns::Functions*
 elastocheck_openturns_functions() {
     using namespace elastocheck::compare::variants::openturns;
-    static const Functions functions{transformation_by_openturns,   sobol_directions_by_openturns,
-                                     latin_hypercube_by_openturns,  clopper_pearson_by_openturns,
-                                     percentile_ranks_by_openturns, sobol_indices_by_openturns};
+    static const Functions functions{transformation_by_openturns,
+                                     sobol_directions_by_openturns,
+                                     latin_hypercube_by_openturns,
+                                     clopper_pearson_by_openturns,
+                                     percentile_ranks_by_openturns,
+                                     sobol_indices_by_openturns,
+                                     rare_by_openturns};
     return &functions;
 }

@@ -26,13 +26,6 @@ std::mt19937_64 generator(std::uint64_t seed, std::uint64_t k) {
 }
 constexpr std::uint64_t of_the_study = ~std::uint64_t{0};
 
-bool is_continuous(const Distribution& distribution) {
-    return std::visit(
-        overloaded{[](const Levels&) { return false; }, [](const Given&) { return false; },
-                   [](const auto&) { return true; }},
-        distribution);
-}
-
 const std::vector<double>& levels_of(const Variable& variable) {
     return std::visit(
         overloaded{[](const Levels& levels) -> const std::vector<double>& { return levels.values; },
@@ -43,6 +36,13 @@ const std::vector<double>& levels_of(const Variable& variable) {
 }
 
 }  // namespace
+
+bool is_continuous(const Distribution& distribution) {
+    return std::visit(
+        overloaded{[](const Levels&) { return false; }, [](const Given&) { return false; },
+                   [](const auto&) { return true; }},
+        distribution);
+}
 
 std::uint64_t grid_size(const std::vector<Variable>& variables) {
     std::uint64_t size = 1;

@@ -17,6 +17,9 @@ std::uint64_t grid_size(const std::vector<Variable>& variables);
 // How many variants a block of the design has: 1 or, for Sobol indices, variables + 2.
 std::uint64_t block_size(const Study& study);
 
+// Not levels, and not given by the design.
+bool is_continuous(const Distribution& distribution);
+
 class Sampler {
   public:
     // Throws std::invalid_argument without OpenTURNS where the design draws.

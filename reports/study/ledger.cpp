@@ -327,11 +327,34 @@ std::vector<LedgerRow> Ledger::failed(std::uint64_t count, std::size_t most) con
     return rows;
 }
 
-void Ledger::each_row(std::uint64_t count,
+namespace {
+const char* table_of(Ledger::Rows which) {
+    return which == Ledger::Rows::variants ? "variants" : "witnesses";
+}
+}  // namespace
+
+void Ledger::each_row(Rows which, std::uint64_t first, std::uint64_t end,
                       const std::function<void(const LedgerRow&)>& visit) const {
-    Statement found(state_->database, state_->selected() + " FROM variants WHERE k < ? ORDER BY k");
-    found.bind(1, count);
+    Statement found(state_->database, fmt::format("{} FROM {} WHERE k >= ? AND k < ? ORDER BY k",
+                                                  state_->selected(), table_of(which)));
+    found.bind(1, first), found.bind(2, end);
     while (found.step()) visit(row_of(found, state_->figures));
+}
+
+std::uint64_t Ledger::size(Rows which, std::uint64_t count) const {
+    Statement found(state_->database,
+                    fmt::format("SELECT count(*) FROM {} WHERE k < ?", table_of(which)));
+    found.bind(1, count);
+    return found.step() ? found.whole(0) : 0;
+}
+
+std::uint64_t Ledger::longest_reason(Rows which, std::uint64_t count) const {
+    Statement found(
+        state_->database,
+        fmt::format("SELECT coalesce(max(length(CAST(reason AS BLOB))), 0) FROM {} WHERE k < ?",
+                    table_of(which)));
+    found.bind(1, count);
+    return found.step() ? found.whole(0) : 0;
 }
 
 std::string Ledger::content_hash(std::uint64_t count) const {

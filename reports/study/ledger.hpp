@@ -85,7 +85,12 @@ class Ledger {
     std::vector<WitnessDifference> witnesses(std::uint64_t count) const;
     // First failed variants, in their order.
     std::vector<LedgerRow> failed(std::uint64_t count, std::size_t most) const;
-    void each_row(std::uint64_t count, const std::function<void(const LedgerRow&)>& visit) const;
+    enum class Rows { variants, witnesses };
+    // In their order.
+    void each_row(Rows which, std::uint64_t first, std::uint64_t end,
+                  const std::function<void(const LedgerRow&)>& visit) const;
+    std::uint64_t size(Rows which, std::uint64_t count) const;
+    std::uint64_t longest_reason(Rows which, std::uint64_t count) const;  // [bytes]
     // Of all rows and witnesses of variants below `count`: equal for equal content.
     std::string content_hash(std::uint64_t count) const;
 

@@ -1,18 +1,17 @@
 #include "reports/study/ranks.hpp"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "reports/files/files.hpp"
+#include "reports/study/optional_component.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -31,18 +30,6 @@ int processes() {
     return count;
 }
 
-const Ranks::Functions& module() {
-    void* const handle = ::dlopen(Ranks::module_file, RTLD_NOW | RTLD_LOCAL);
-    void* const symbol = handle != nullptr ? ::dlsym(handle, Ranks::module_symbol) : nullptr;
-    if (symbol == nullptr)
-        throw std::invalid_argument(fmt::format(
-            "mpirun has started {} processes, and this program has no MPI, an optional component "
-            "({}); install the package elastocheck-mpi, or libopenmpi-dev and build again; without "
-            "MPI, --shard K/N computes a part",
-            processes(), ::dlerror()));
-    return *reinterpret_cast<const Ranks::Functions* (*)()>(symbol)();
-}
-
 bool is_lock_of_rank(const fs::path& file) {
     const std::string name = file.filename().string();
     return name.starts_with("ledger-rank-") && name.ends_with(".sqlite.lock");
@@ -53,7 +40,13 @@ bool is_lock_of_rank(const fs::path& file) {
 std::optional<Ranks> Ranks::join() {
     if (processes() < 2) return std::nullopt;
     Ranks ranks;
-    ranks.mpi_ = &module();
+    ranks.mpi_ = &optional_component<Functions>(
+        module_file, module_symbol,
+        fmt::format("mpirun has started {} processes, and this program has no MPI, an optional "
+                    "component",
+                    processes()),
+        "install the package elastocheck-mpi, or libopenmpi-dev and build again; without MPI, "
+        "--shard K/N computes a part");
     ranks.mpi_->begin(&ranks.rank_, &ranks.size_);
     return ranks;
 }

@@ -146,6 +146,21 @@ std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& 
     return variants;
 }
 
+std::vector<VariantFigures> solve_values(const StudyFile& file, const Eigen::MatrixXd& values) {
+    std::vector<VariantFigures> all(static_cast<std::size_t>(values.rows()));
+    std::vector<Model> models;
+    std::vector<std::size_t> at;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        auto model = model_of(file, values.row(static_cast<Index>(i)), all[i]);
+        if (!model) continue;
+        models.push_back(std::move(*model));
+        at.push_back(i);
+    }
+    auto solved = file.solver.solve(models);
+    for (std::size_t m = 0; m < models.size(); ++m) all[at[m]] = std::move(solved[m]);
+    return all;
+}
+
 std::size_t check_version(const StudyFile& file, Ledger& ledger) {
     constexpr std::uint64_t most = 64;
     const auto versions = ledger.versions();

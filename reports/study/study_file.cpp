@@ -176,13 +176,6 @@ struct Reading {
         return names;
     }
 
-    static bool is_continuous(const Variable& variable) {
-        return std::visit(
-            overloaded{[](const Levels&) { return false; }, [](const Given&) { return false; },
-                       [](const auto&) { return true; }},
-            variable.distribution);
-    }
-
     void groups() {
         const auto section = whole.optional("groups");
         if (!section) return;
@@ -197,7 +190,7 @@ struct Reading {
             const Cursor names = group.require("variables"), rows = group.require("correlation");
             for (const Cursor& name : names.items()) {
                 const std::size_t k = name.one_of("a variable", variable_names());
-                if (!is_continuous(study.variables[k]))
+                if (!is_continuous(study.variables[k].distribution))
                     name.fail("has no continuous distribution, so that it cannot be correlated");
                 if (grouped[k]) name.fail("is in a group already");
                 grouped[k] = true;

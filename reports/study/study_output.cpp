@@ -17,7 +17,6 @@ namespace {
 
 using namespace compare::variants;
 using compare::Cell;
-using compare::Table;
 using Eigen::Index;
 using json = nlohmann::ordered_json;
 
@@ -50,14 +49,14 @@ std::string describe_distribution(const Distribution& distribution) {
 }
 
 // What was drawn, with the unit of each number: that of the scene is easily another one than meant.
-Table variables_table(const StudyFile& file) {
+compare::Table variables_table(const StudyFile& file) {
     using enum Digits;
-    Table table{{{"variable", "", "", true, words},
-                 {"unit", "", "", true, words},
-                 {"design", "", "of the scene as it is written", false, given},
-                 {"distribution", "", "", true, words},
-                 {"scales", "", "how many numbers, of a factor", false, hidden}},
-                {}};
+    compare::Table table{{{"variable", "", "", true, words},
+                          {"unit", "", "", true, words},
+                          {"design", "", "of the scene as it is written", false, given},
+                          {"distribution", "", "", true, words},
+                          {"scales", "", "how many numbers, of a factor", false, hidden}},
+                         {}};
     for (const Variable& variable : file.study.variables)
         table.rows.push_back({variable.name, variable.unit, variable.nominal,
                               describe_distribution(variable.distribution),
@@ -65,18 +64,18 @@ Table variables_table(const StudyFile& file) {
     return table;
 }
 
-Table figures_table(const StudyFile& file, const StudyResult& result) {
+compare::Table figures_table(const StudyFile& file, const StudyResult& result) {
     using enum Digits;
-    Table table{{{"figure", "", "", true, words},
-                 {"unit", "", "", true, words},
-                 {"read as", "", "output and place", true, hidden},
-                 {"design", "", "of the scene as it is written", false, given},
-                 {"mean", "", "", false, given},
-                 {"mean +-", "", "half of the interval of 95 %", false, size, "+-"},
-                 {"sd", "", "standard deviation", false, given},
-                 {"least", "", "", false, given},
-                 {"largest", "", "", false, given}},
-                {}};
+    compare::Table table{{{"figure", "", "", true, words},
+                          {"unit", "", "", true, words},
+                          {"read as", "", "output and place", true, hidden},
+                          {"design", "", "of the scene as it is written", false, given},
+                          {"mean", "", "", false, given},
+                          {"mean +-", "", "half of the interval of 95 %", false, size, "+-"},
+                          {"sd", "", "standard deviation", false, given},
+                          {"least", "", "", false, given},
+                          {"largest", "", "", false, given}},
+                         {}};
     for (const double p : percentiles) {
         const std::string head = fmt::format("{:g} %", 100 * p);
         table.columns.push_back({head, "", "percentile", false, given});
@@ -110,19 +109,19 @@ Table figures_table(const StudyFile& file, const StudyResult& result) {
     return table;
 }
 
-Table sobol_table(const StudyFile& file, const StudyResult& result) {
+compare::Table sobol_table(const StudyFile& file, const StudyResult& result) {
     using enum Digits;
-    Table table{{{"figure", "", "", true, words},
-                 {"variable", "", "", true, words},
-                 {"first", "", "first-order Sobol index", false, three},
-                 {"first low", "", "bootstrap, 95 %", false, three, "from"},
-                 {"first high", "", "bootstrap, 95 %", false, three, "to"},
-                 {"total", "", "total Sobol index", false, three},
-                 {"total low", "", "bootstrap, 95 %", false, three, "from"},
-                 {"total high", "", "bootstrap, 95 %", false, three, "to"},
-                 {"blocks", "", "complete blocks of variants", false, hidden},
-                 {"left out", "", "blocks with a variant without a value", false, hidden}},
-                {}};
+    compare::Table table{{{"figure", "", "", true, words},
+                          {"variable", "", "", true, words},
+                          {"first", "", "first-order Sobol index", false, three},
+                          {"first low", "", "bootstrap, 95 %", false, three, "from"},
+                          {"first high", "", "bootstrap, 95 %", false, three, "to"},
+                          {"total", "", "total Sobol index", false, three},
+                          {"total low", "", "bootstrap, 95 %", false, three, "from"},
+                          {"total high", "", "bootstrap, 95 %", false, three, "to"},
+                          {"blocks", "", "complete blocks of variants", false, hidden},
+                          {"left out", "", "blocks with a variant without a value", false, hidden}},
+                         {}};
     for (std::size_t j = 0; j < result.figures.size(); ++j) {
         const FigureStatistics& s = result.figures[j];
         if (!s.sobol) continue;
@@ -137,15 +136,15 @@ Table sobol_table(const StudyFile& file, const StudyResult& result) {
     return table;
 }
 
-Table witness_table(const StudyFile& file, const StudyResult& result) {
+compare::Table witness_table(const StudyFile& file, const StudyResult& result) {
     using enum Digits;
-    Table table{{{"figure", "", "", true, words},
-                 {"unit", "", "", true, words},
-                 {"difference", "", "largest, series less equilibrium", false, size},
-                 {"of variant", "", "", false, whole},
-                 {"witnesses", "", "with both values", false, whole},
-                 {"one only", "", "one of the two has no value", false, whole}},
-                {}};
+    compare::Table table{{{"figure", "", "", true, words},
+                          {"unit", "", "", true, words},
+                          {"difference", "", "largest, series less equilibrium", false, size},
+                          {"of variant", "", "", false, whole},
+                          {"witnesses", "", "with both values", false, whole},
+                          {"one only", "", "one of the two has no value", false, whole}},
+                         {}};
     for (std::size_t j = 0; j < result.witnesses.size(); ++j) {
         const WitnessDifference& w = result.witnesses[j];
         table.rows.push_back({file.study.figures[j].name,
@@ -155,25 +154,46 @@ Table witness_table(const StudyFile& file, const StudyResult& result) {
     return table;
 }
 
-Table failed_table(const StudyResult& result) {
+compare::Table rare_table(const StudyFile& file, const StudyResult& result) {
     using enum Digits;
-    Table table{{{"variant", "", "", false, whole},
-                 {"outcome", "", "", true, words},
-                 {"reason", "", "", true, words}},
-                {}};
+    compare::Table table{
+        {{"figure", "", "", true, words},
+         {"limit", "", "", true, words},
+         {"probability", "", "of a figure beyond the limit, by importance sampling", false, three},
+         {"low", "", "95 %", false, three, "from"},
+         {"high", "", "95 %", false, three, "to"},
+         {"FORM", "", "probability by the first-order reliability method", false, three},
+         {"beta", "", "reliability index", false, three},
+         {"variants", "", "solved for it", false, whole},
+         {"at", "", "the most probable failure", true, words, "most probable at"},
+         {"trouble", "", "why there is no result", true, words}},
+        {}};
+    for (const RareFailure& rare : result.rare) {
+        const StudyFigure& figure = file.study.figures[rare.figure];
+        const auto& found = rare.found;
+        const auto known = [&](double value) {
+            return rare.trouble.empty() ? value : compare::nan;
+        };
+        table.rows.push_back({figure.name,
+                              fmt::format("{} {:g} {}", rare.limit.above ? "above" : "below",
+                                          rare.limit.at, symbol(figure.unit)),
+                              known(found.probability), known(found.low), known(found.high),
+                              known(found.by_form), known(found.beta), count(found.evaluations),
+                              rare.at, rare.trouble});
+    }
+    return table;
+}
+
+compare::Table failed_table(const StudyResult& result) {
+    using enum Digits;
+    compare::Table table{{{"variant", "", "", false, whole},
+                          {"outcome", "", "", true, words},
+                          {"reason", "", "", true, words}},
+                         {}};
     for (const LedgerRow& row : result.failed)
         table.rows.push_back(
             {count(row.k), std::string(name(row.figures.outcome)), row.figures.reason});
     return table;
-}
-
-std::string outcomes_text(const StudyResult& result) {
-    std::vector<std::string> parts;
-    for (std::size_t o = 0; o < result.summary.by_outcome.size(); ++o)
-        if (result.summary.by_outcome[o] > 0)
-            parts.push_back(fmt::format("{} {}", result.summary.by_outcome[o],
-                                        name(static_cast<VariantOutcome>(o))));
-    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 void judge_witnesses(const StudyFile& file, StudyResult& result) {
@@ -204,24 +224,46 @@ StudyResult evaluate_study(const StudyFile& file, const Ledger& ledger) {
                        .witnesses = ledger.witnesses(size),
                        .failed = ledger.failed(size, most_shown),
                        .content_hash = ledger.content_hash(size),
-                       .disagreements = {}};
+                       .disagreements = {},
+                       .rare = {}};
     for (std::size_t j = 0; j < file.study.figures.size(); ++j)
         result.figures.push_back(statistics(file.study, j, ledger.values(j, size)));
     judge_witnesses(file, result);
     return result;
 }
 
+std::string outcomes_text(const StudyResult& result) {
+    std::vector<std::string> parts;
+    for (std::size_t o = 0; o < result.summary.by_outcome.size(); ++o)
+        if (result.summary.by_outcome[o] > 0)
+            parts.push_back(fmt::format("{} {}", result.summary.by_outcome[o],
+                                        name(static_cast<VariantOutcome>(o))));
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::vector<std::pair<std::string, compare::Table>> study_tables(const StudyFile& file,
+                                                                 const StudyResult& result) {
+    return {{"Variables", variables_table(file)},
+            {"Figures", figures_table(file, result)},
+            {"Shares of the variance (Sobol indices)", sobol_table(file, result)},
+            {fmt::format("Every {} variants by the equilibrium leg too", file.study.witness),
+             file.study.witness > 0 ? witness_table(file, result) : compare::Table{}},
+            {"Rare failures", rare_table(file, result)},
+            {"The first failed variants", failed_table(result)}};
+}
+
 std::string study_text(const StudyFile& file, const StudyResult& result) {
     const std::uint64_t size = file.study.design.count;
     std::string out =
         fmt::format("{} of {} variants: {}\n\n", result.summary.rows, size, outcomes_text(result));
-    out += text(variables_table(file)) + "\n" + text(figures_table(file, result));
-    if (const Table table = sobol_table(file, result); !table.rows.empty())
-        out += "\nShares of the variance (Sobol indices)\n" + text(table);
-    if (file.study.witness > 0)
-        out += fmt::format("\nEvery {} variants by the equilibrium leg too\n", file.study.witness) +
-               text(witness_table(file, result));
-    if (!result.failed.empty()) out += "\nThe first failed variants\n" + text(failed_table(result));
+    std::string_view between = "";
+    for (const auto& [caption, table] : study_tables(file, result)) {
+        if (table.rows.empty()) continue;
+        // The first two explain themselves.
+        const bool named = caption != "Variables" && caption != "Figures";
+        out += std::string(between) + (named ? caption + "\n" : "") + text(table);
+        between = "\n";
+    }
     out += fmt::format("\nContent {}\n", result.content_hash);
     return out;
 }
@@ -244,20 +286,25 @@ json study_json(const StudyFile& file, const StudyResult& result) {
             {"sobol", table_json(sobol_table(file, result))},
             {"witnesses", table_json(witness_table(file, result))},
             {"disagreements", result.disagreements},
+            {"rare", table_json(rare_table(file, result))},
             {"failed", table_json(failed_table(result))},
             {"content", result.content_hash}};
+}
+
+std::string heading(const Variable& variable) {
+    return variable.unit.empty() ? variable.name
+                                 : fmt::format("{} [{}]", variable.name, variable.unit);
+}
+std::string heading(const StudyFigure& figure) {
+    return fmt::format("{} [{}]", figure.name, symbol(figure.unit));
 }
 
 void write_study_csv(const StudyFile& file, const Ledger& ledger,
                      const std::filesystem::path& output) {
     AtomicFile out(output, variants_file);
     std::string line = "variant,outcome,reason";
-    for (const Variable& variable : file.study.variables)
-        line += "," + for_csv(variable.unit.empty()
-                                  ? variable.name
-                                  : fmt::format("{} [{}]", variable.name, variable.unit));
-    for (const StudyFigure& figure : file.study.figures)
-        line += "," + for_csv(fmt::format("{} [{}]", figure.name, symbol(figure.unit)));
+    for (const Variable& variable : file.study.variables) line += "," + for_csv(heading(variable));
+    for (const StudyFigure& figure : file.study.figures) line += "," + for_csv(heading(figure));
     out.add(line + "\n");
     const Sampler sampler(file.study);
     std::uint64_t first = 0, end = 0;  // of the drawn values
@@ -265,7 +312,7 @@ void write_study_csv(const StudyFile& file, const Ledger& ledger,
     const auto number = [](double value) {
         return std::isnan(value) ? std::string() : fmt::format("{}", value);
     };
-    ledger.each_row(file.study.design.count, [&](const LedgerRow& row) {
+    ledger.each_row(Ledger::Rows::variants, 0, file.study.design.count, [&](const LedgerRow& row) {
         if (row.k >= end) {
             first = row.k - row.k % batch_size;
             end = std::min(first + batch_size, file.study.design.count);

@@ -1,6 +1,7 @@
 // `elastocheck study`: many variants of a scene, and the statistics of their figures.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
@@ -14,20 +15,25 @@
 #include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/study/hdf5.hpp"
 #include "reports/study/ranks.hpp"
+#include "reports/study/rare_failures.hpp"
 #include "reports/study/run_study.hpp"
 #include "reports/study/study_output.hpp"
+#include "reports/study/study_page.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 struct StudyRequest {
-    std::string file, folder, shard, csv;
+    std::string file, folder, shard, csv, hdf5;
     std::vector<std::string> merge;
     int count = 0;
-    bool show = false, as_json = false;
+    bool show = false, rare = false, as_json = false;
     Running running;
 };
+
+constexpr std::uint64_t most_for_rare = 20'000;  // variants, for each limit
 
 constexpr FileKind statistics_file{"statistics of a study", R"({"schema":"elastocheck/study/)"};
 
@@ -133,7 +139,8 @@ void compute(const StudyRequest& request, const StudyFile& file, Ledger& ledger,
                     seconds, static_cast<double>(open.variants()) / seconds);
 }
 
-// Exit code 0: every variant has a row; 3: some have none, none is solved, or witnesses disagree.
+// Exit code 0: every variant has a row; 3: some have none, none is solved, witnesses disagree, or
+// --rare has no result.
 int study(const StudyRequest& request, const Delivery& delivery) {
     const Shard shard = parse_shard(request.shard);
     if (request.show && (!request.merge.empty() || !request.shard.empty()))
@@ -177,24 +184,38 @@ int study(const StudyRequest& request, const Delivery& delivery) {
         write_study_csv(file, ledger, request.csv);
         print_error("Written: {}\n", request.csv);
     }
+    if (!request.hdf5.empty()) {
+        write_study_hdf5(file, ledger, ledger.content_hash(file.study.design.count), request.hdf5);
+        print_error("Written: {}\n", request.hdf5);
+    }
     if (!request.shard.empty()) {
         delivery.print_text(fmt::format("Shard {}/{}: {} variants in {}\n", shard.at, shard.of,
                                         ledger.summary(file.study.design.count).rows,
                                         ledger_file.string()));
         return open > 0 ? could_not_judge : fine;
     }
-    const StudyResult result = evaluate_study(file, ledger);
+    StudyResult result = evaluate_study(file, ledger);
+    if (request.rare) {
+        result.rare = rare_failures(file, most_for_rare, progress);
+        progress("");
+    }
     auto document = document_head(study_schema, delivery.command);
     document.update(study_json(file, result));
     if (!request.show) {
         write_whole(statistics_json, document.dump(1) + "\n", statistics_file);
-        print_error("Written: {}\n", statistics_json.string());
+        const auto page = folder / "study.html";
+        write_study_page(file, result, ledger, delivery.command, page);
+        print_error("Written: {}, {}\n", statistics_json.string(), page.string());
     }
     delivery.print_text(study_text(file, result));
     if (delivery.as_json) print_document(document);
     for (const std::string& sentence : result.disagreements) print_error("{}\n", sentence);
+    const bool rare_unknown =
+        std::ranges::any_of(result.rare, [](const auto& rare) { return !rare.trouble.empty(); });
     const bool nothing_solved = result.summary.by_outcome.front() == 0;
-    return open > 0 || nothing_solved || !result.disagreements.empty() ? could_not_judge : fine;
+    return open > 0 || nothing_solved || rare_unknown || !result.disagreements.empty()
+               ? could_not_judge
+               : fine;
 }
 
 }  // namespace
@@ -208,7 +229,7 @@ Command study_command() {
         {{"STUDY", Text{&request->file, a_file("*.yaml")},
           "file with variables, design and figures", true},
          {"-o,--output", Text{&request->folder, a_folder()},
-          "folder of the ledger (ledger.sqlite) and of statistics.json", true},
+          "folder of the ledger (ledger.sqlite), statistics.json and study.html", true},
          {"--count", Integer{&request->count, 1, 1'000'000'000},
           "number of variants, instead of that in the file; more than before extends the study"},
          {"--shard", Text{&request->shard, Value{.name = "K/N"}},
@@ -218,6 +239,10 @@ Command study_command() {
          {"--show", Flag{&request->show}, "compute nothing, write nothing: show what there is"},
          {"--csv", Text{&request->csv, a_file("*.csv")},
           "write variables and figures of all variants as CSV"},
+         {"--hdf5", Text{&request->hdf5, a_file("*.h5")},
+          "write the same and the witnesses as HDF5, for h5py and pandas"},
+         {"--rare", Flag{&request->rare},
+          "small probabilities of figures beyond their limits, by importance sampling"},
          jobs_option(request->running),
          quiet_option(request->running),
          json_option(request->as_json)},

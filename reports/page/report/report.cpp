@@ -20,6 +20,7 @@
 #include "reports/page/plot.hpp"
 #include "reports/page/sections.hpp"
 #include "reports/page/svg.hpp"
+#include "reports/page/template_data.hpp"
 #include "reports/text/escape.hpp"
 #include "reports/text/numbers.hpp"
 
@@ -30,23 +31,6 @@ namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
 // ---- Page
-
-json table_json(const Table& table) {
-    json columns = json::array(), rows = json::array();
-    for (const auto& column : table.columns)
-        columns.push_back({{"name", column.name}, {"words", column.words}, {"note", column.note}});
-    for (const auto& row : table.rows) {
-        json cells = json::array();
-        for (std::size_t c = 0; c < row.size(); ++c)
-            cells.push_back({{"text", row[c]},
-                             {"words", c < table.columns.size() && table.columns[c].words},
-                             {"note", c < table.columns.size() && table.columns[c].note},
-                             {"head", c == 0}});
-        rows.push_back({{"cells", cells}});
-    }
-    return {
-        {"caption", table.caption}, {"columns", columns}, {"rows", rows}, {"folded", table.folded}};
-}
 
 // Sentences of a section, one paragraph each.
 json paragraphs(const Section& section) {
@@ -104,13 +88,13 @@ struct Page {
                 figures.push_back(figure(part.plots.at(plot++)));
             json entry = {{"caption", group.caption},
                           {"figures", figures},
-                          {"table", table_json(group.table)}};
+                          {"table", table_data(group.table)}};
             entry["wide"] = group.figures.size() > 1;
             entry["broad"] = group.figures.size() > 1 && group.figures.front().sheet &&
                              group.figures.front().sheet->width > 400;
             (group.figures.size() > 1 ? several : single).push_back(entry);
         }
-        for (const auto& table : section.tables) tables.push_back(table_json(table));
+        for (const auto& table : section.tables) tables.push_back(table_data(table));
         json groups = single;
         for (const auto& entry : several) groups.push_back(entry);
         const json all = paragraphs(section);
@@ -233,7 +217,7 @@ json provenance(const JsonCursor& result) {
         table.rows.push_back({name, version.text()});
     for (const auto& scene : result["scenes"].items())
         table.rows.push_back({scene["source"].text(), "hash " + scene["input_hash"].text()});
-    return table_json(table);
+    return table_data(table);
 }
 
 }  // namespace
@@ -380,16 +364,13 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
     const JsonCursor root{&result, "", &file};
     json scenes = json::array();
     for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
-    json tints = json::array();
-    for (std::size_t k = 0; k < palette.size(); ++k)
-        tints.push_back({{"k", k}, {"light", palette[k].light}, {"dark", palette[k].dark}});
     const json data = {{"title", title_of(root)},
                        {"several", scenes.size() > 1},
                        {"scenes", scenes},
-                       {"summary", table_json(summary(draft.parts))},
+                       {"summary", table_data(summary(draft.parts))},
                        {"provenance", provenance(root)},
                        {"reproduce", for_terminal(root["reproduce"].text())},
-                       {"tints", tints}};
+                       {"tints", tints()}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
     if (archive)
