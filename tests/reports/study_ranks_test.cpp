@@ -106,5 +106,55 @@ TEST_F(NightlyStudyRanks, KilledTwentyTimesGoOnToTheSameContent) {
     kill_again_and_again(20, "100000");
 }
 
+// ---- An array of jobs
+
+// Each job computes a shard, one is killed and goes on as a job of its own number.
+TEST_F(StudyCommand, HasOneContentAsAnArrayOfJobs) {
+    write("study.yaml", mcpherson);
+    const std::string one = content(run("-o one"));
+    const std::string array = "cd " + path.string() +
+                              " && PATH=" + fs::path(ELASTOCHECK_COMMAND).parent_path().string() +
+                              ":$PATH sh " ELASTOCHECK_STUDIES "/study.sbatch study.yaml parts 3";
+    for (const char* k : {"1", "3"})
+        expect_said(support::says("export SLURM_ARRAY_TASK_ID=" + std::string(k) + "; " + array),
+                    0);
+    expect_said(run("-o parts --merge parts"), 3, {.err = {"256 variants are missing"}});
+    expect_said(support::says("export SLURM_ARRAY_TASK_ID=2 SLURM_CPUS_PER_TASK=2; " + array), 0);
+    EXPECT_EQ(content(run("-o parts --merge parts")), one);
+    fs::create_directories(path / "empty");
+    expect_said(run("-o parts --merge empty"), 2,
+                {.err = {"empty: no ledger of a shard, ledger-K-of-N.sqlite, in it"}});
+}
+
+using NightlyStudySlurm = StudyCommand;
+TEST_F(NightlyStudySlurm, HasOneContentAsAnArrayOfJobs) {
+    if (support::says("command -v slurmctld slurmd munged sbatch").code != 0)
+        GTEST_SKIP() << "slurm-wlm or munge is not installed";
+    write("study.yaml", mcpherson);
+    const std::string one = content(run("-o one --count 3000"));
+    write("study.yaml", replaced(mcpherson, "count: 780", "count: 3000"));
+    write("submit.sh",
+          "cd " + path.string() +
+              "\n"
+              "job() { sbatch --parsable \"$@\" " ELASTOCHECK_STUDIES
+              "/study.sbatch study.yaml parts 3; }\n"
+              "first=$(job --array=1-3)\n"
+              "for k in $(seq 600); do [ -s parts/ledger-1-of-3.sqlite ] && break; sleep "
+              "0.05; done\n"
+              "scancel ${first}_1\n"
+              "sbatch --wait --dependency=afterany:$first --wrap true >/dev/null\n"
+              "sbatch --parsable --wait --array=1-3 " ELASTOCHECK_STUDIES
+              "/study.sbatch study.yaml parts 3\n"
+              "cat study-*.log >&2\n");
+    const Said said =
+        support::says("PATH=" + fs::path(ELASTOCHECK_COMMAND).parent_path().string() + ":$PATH " +
+                      ELASTOCHECK_ONE_NODE_SLURM + " " + (path / "slurm").string() + " sh " +
+                      (path / "submit.sh").string());
+    if (said.code == 77) GTEST_SKIP() << "Slurm does not start here: " << said.err;
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_NE(said.err.find("variants computed"), std::string::npos) << said.err;
+    EXPECT_EQ(content(run("-o parts --merge parts")), one) << said.err;
+}
+
 }  // namespace
 }  // namespace elastocheck::reports

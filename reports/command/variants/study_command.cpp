@@ -74,6 +74,21 @@ StudyFile read(const StudyRequest& request) {
                                         : std::nullopt);
 }
 
+// Ledgers to be merged: a file, or those of all shards in a folder.
+std::vector<std::string> ledgers_of(const std::string& file_or_folder) {
+    if (!std::filesystem::is_directory(file_or_folder)) return {file_or_folder};
+    std::vector<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(file_or_folder))
+        if (const std::string name = entry.path().filename().string();
+            name.starts_with("ledger-") && name.find("-of-") != name.npos &&
+            name.ends_with(".sqlite"))
+            files.push_back(entry.path().string());
+    if (files.empty())
+        throw FileError(file_or_folder + ": no ledger of a shard, ledger-K-of-N.sqlite, in it");
+    std::ranges::sort(files);
+    return files;
+}
+
 // A rank is a process of a core, unless more threads are requested.
 int threads_of_rank(const StudyRequest& request) {
     const int threads = threads_of(request.running);
@@ -171,7 +186,10 @@ int study(const StudyRequest& request, const Delivery& delivery) {
         accept(file, ledger);
         if (request.shard.empty()) gather(file, ledger, folder);
     }
-    for (const std::string& other : request.merge) {
+    std::vector<std::string> others;
+    for (const std::string& one : request.merge)
+        for (std::string& other : ledgers_of(one)) others.push_back(std::move(other));
+    for (const std::string& other : others) {
         Ledger added(other, file.identity, file.study.figures, Ledger::Access::read);
         accept(file, added);
         ledger.merge(other);
@@ -235,7 +253,8 @@ Command study_command() {
          {"--shard", Text{&request->shard, Value{.name = "K/N"}},
           "compute part K of N, into ledger-K-of-N.sqlite"},
          {"--merge", TextList{&request->merge, TextList::Form::repeated, a_file("*.sqlite")},
-          "add the rows of this ledger and compute nothing; repeat it"},
+          "add the rows of this ledger, or of those of all shards in this folder, and compute "
+          "nothing; repeat it"},
          {"--show", Flag{&request->show}, "compute nothing, write nothing: show what there is"},
          {"--csv", Text{&request->csv, a_file("*.csv")},
           "write variables and figures of all variants as CSV"},
