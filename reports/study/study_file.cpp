@@ -435,6 +435,40 @@ struct Reading {
     }
 };
 
+// The ends of a bounded distribution, the mean of an unbounded one.
+std::vector<double> ends_of(const Distribution& distribution) {
+    return std::visit(overloaded{[](const Normal& d) { return std::vector{d.mean}; },
+                                 [](const Levels& d) {
+                                     const auto [least, largest] = std::ranges::minmax(d.values);
+                                     return std::vector{least, largest};
+                                 },
+                                 [](const Given&) { return std::vector<double>{}; },
+                                 [](const auto& d) {
+                                     return std::vector{d.low, d.high};
+                                 }},
+                      distribution);
+}
+
+// That the scene is valid with each variable at its ends, the others as they are written. Tails and
+// combinations are left to the variants that draw them.
+void check_ends(const Study& study, const reader::ParsedScene& parsed, const Cursor& variables) {
+    Eigen::VectorXd x(static_cast<Index>(study.variables.size()));
+    for (std::size_t j = 0; j < study.variables.size(); ++j)
+        x[static_cast<Index>(j)] = study.variables[j].nominal;
+    for (std::size_t j = 0; j < study.variables.size(); ++j)
+        for (const double end : ends_of(study.variables[j].distribution)) {
+            Eigen::VectorXd at = x;
+            at[static_cast<Index>(j)] = end;
+            try {
+                parsed.read(settings_of(study, at));
+            } catch (const SceneError& error) {
+                variables.require(study.variables[j].name)
+                    .fail(fmt::format("{:g} can be drawn, and with it the scene is invalid: {}",
+                                      end, error.what()));
+            }
+        }
+}
+
 std::string bytes_of(const MatrixXd& matrix) {
     return {reinterpret_cast<const char*>(matrix.data()),
             static_cast<std::size_t>(matrix.size()) * sizeof(double)};
@@ -512,6 +546,7 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
 
     Reading reading{whole, scene, design};
     reading.variables();
+    check_ends(reading.study, parsed, whole.require("variables"));
     reading.groups();
     reading.design(count);
     reading.figures();

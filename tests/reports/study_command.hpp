@@ -72,7 +72,7 @@ scene: mcpherson.yaml
 variables:
   points.tie_rod_inner.z: {normal: {sd: 0.0005}}
   points.strut_top.x: {triangular: {half_width: 0.001}}
-  springs.K1_coil.rate: {truncated_normal: {sd: 2000, low: -1000, high: 40000}}
+  springs.K1_coil.rate: {truncated_normal: {sd: 2000, low: 1000, high: 40000}}
   bushes: {scale: 'bushings.K3_arm_front.rates.*', uniform: {half_width: 0.2}}
 design: {kind: sobol, count: 780, seed: 5}
 figures:

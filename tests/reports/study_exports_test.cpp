@@ -25,10 +25,11 @@ TEST_F(StudyCommand, DrawsAPage) {
     EXPECT_EQ(page.find(">nan"), page.npos);
     EXPECT_EQ(page.find("nan,"), page.npos);
 
+    write("list.csv", "springs.first.rate\n-1\n30\n");
     study(R"(elastocheck_study: 1
 scene: parallel_springs.yaml
-variables: {"springs.first.rate": {list: [-1, 30]}}
-design: {kind: grid}
+variables: {springs.first.rate: {}}
+design: {kind: list, file: list.csv}
 figures: {height: centre_z@up:3000}
 )",
           "-o other");
@@ -62,7 +63,7 @@ TEST_F(StudyPython, ReadsTheRowsOfTheCsv) {
     study(R"(elastocheck_study: 1
 scene: parallel_springs.yaml
 variables:
-  springs.first.rate: {uniform: {low: -10, high: 30}}
+  springs.first.rate: {normal: {mean: 10, sd: 15}}
   factor: {scale: springs.second.rate, normal: {sd: 0.1}}
 design: {kind: sobol, count: 400, seed: 1}
 figures: {height: centre_z@up:3000, low: min centre_z@down}

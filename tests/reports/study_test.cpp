@@ -66,6 +66,11 @@ TEST_F(StudyCommand, RefusesBadInputBeforeTheFirstVariant) {
          "Sobol indices need independent variables"},
         {"variables:\n", "variables:\n  both: {scale: 'springs.*.preload', normal: {sd: 0.1}}\n",
          "springs.first.preload is varied by 'both' too"},
+        {"variables:\n", "variables:\n  springs.second.rate: {uniform: {half_width: 50}}\n",
+         "study.yaml:4: variables.springs.second.rate: -5 can be drawn, and with it the scene is "
+         "invalid: "},
+        {"variables:\n", "variables:\n  springs.second.rate: {list: [30, -1]}\n",
+         "study.yaml:4: variables.springs.second.rate: -1 can be drawn"},
         {"variables:\n", "variables:\n  none: {scale: 'bushings.*', normal: {sd: 0.1}}\n",
          "study.yaml:4: variables.none.scale: the scene has no number 'bushings.*'"},
     };
@@ -172,7 +177,7 @@ TEST_F(StudyCommand, RecordsVariantsThatFailWithTheirReason) {
     const Said said = study(R"(elastocheck_study: 1
 scene: parallel_springs.yaml
 variables:
-  springs.first.rate: {uniform: {low: -10, high: 30}}
+  springs.first.rate: {normal: {mean: 10, sd: 15}}
 design: {kind: sobol, count: 64, seed: 1}
 figures: {height: centre_z@up:3000}
 witness: 1
@@ -184,10 +189,11 @@ witness: 1
     const json figures = statistics()["figures"];
     EXPECT_EQ(cell(figures, 0, "values"), 48);
     EXPECT_EQ(cell(figures, 0, "missing"), 16);
+    write("list.csv", "springs.first.rate\n-1\n");
     expect_said(study(R"(elastocheck_study: 1
 scene: parallel_springs.yaml
-variables: {springs.first.rate: {list: [-1]}}
-design: {kind: grid}
+variables: {springs.first.rate: {}}
+design: {kind: list, file: list.csv}
 figures: {height: centre_z@up:3000}
 )",
                       "-o none"),
