@@ -15,12 +15,12 @@
 #include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/study/hdf5.hpp"
+#include "reports/study/output/hdf5.hpp"
+#include "reports/study/output/study_output.hpp"
+#include "reports/study/output/study_page.hpp"
 #include "reports/study/ranks.hpp"
 #include "reports/study/rare_failures.hpp"
 #include "reports/study/run_study.hpp"
-#include "reports/study/study_output.hpp"
-#include "reports/study/study_page.hpp"
 
 namespace elastocheck::reports {
 namespace {

@@ -1,4 +1,4 @@
-#include "reports/study/study_output.hpp"
+#include "reports/study/output/study_output.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "reports/study/hdf5.hpp"
+#include "reports/study/output/hdf5.hpp"
 
 namespace elastocheck::reports::hdf5 {
 namespace {

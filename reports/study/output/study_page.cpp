@@ -1,4 +1,4 @@
-#include "reports/study/study_page.hpp"
+#include "reports/study/output/study_page.hpp"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "reports/study/ledger.hpp"
+#include "reports/study/output/study_output.hpp"
 #include "reports/study/study_file.hpp"
-#include "reports/study/study_output.hpp"
 
 namespace elastocheck::reports {
 

@@ -1,4 +1,4 @@
-#include "reports/study/hdf5.hpp"
+#include "reports/study/output/hdf5.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include "compare/variants/sampler.hpp"
 #include "reports/files/files.hpp"
 #include "reports/study/optional_component.hpp"
+#include "reports/study/output/study_output.hpp"
 #include "reports/study/run_study.hpp"
-#include "reports/study/study_output.hpp"
 
 namespace elastocheck::reports {
 namespace {
