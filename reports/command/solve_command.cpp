@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
