@@ -17,7 +17,7 @@
 #include "reports/command/options/limits.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/document/inspection.hpp"
-#include "reports/page/picture.hpp"
+#include "reports/page/report/picture.hpp"
 #include "reports/python/convert.hpp"
 #include "reports/tables/csv.hpp"
 

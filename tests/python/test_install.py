@@ -1,6 +1,7 @@
 """The package is installed from the sources without a network, and works where nothing else of the tree is."""
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -26,3 +27,30 @@ def test_pip_installs_the_sources_without_a_network(tmp_path):
     found = subprocess.run(["readelf", "-d", next((tmp_path / "site/elastocheck").glob("_core*.so"))],
                            capture_output=True, text=True, check=True).stdout
     assert str(ROOT) not in found and os.environ["ELASTOCHECK_BUILD"] not in found
+
+
+STUDY = """elastocheck_study: 1
+scene: mine.yaml
+variables: {bushings.tip.rates.z: {normal: {sd: 1}}}
+design: {kind: monte_carlo, count: 20, seed: 1}
+figures: {tip: "tip_z@up:5000"}
+"""
+
+
+@pytest.mark.skipif(not shutil.which("dpkg-shlibdeps"), reason="dpkg-dev is not installed")
+def test_the_debian_packages_work_beside_each_other(tmp_path):
+    """Unpacked elsewhere, the module finds that of elastocheck-study, and declares what it is linked with."""
+    subprocess.run(["cpack", "--config", f"{os.environ['ELASTOCHECK_BUILD']}/CPackConfig.cmake", "-B", tmp_path / "packages",
+                    "-D", "CPACK_COMPONENTS_ALL=python;study"], check=True, capture_output=True)
+    for package in ("python3-elastocheck", "elastocheck-study"):
+        file = next((tmp_path / "packages").glob(f"{package}_*.deb"))
+        subprocess.run(["dpkg-deb", "-x", file, tmp_path / "root"], check=True)
+    depends = subprocess.run(["dpkg-deb", "-f", next((tmp_path / "packages").glob("python3-*.deb")), "Depends"],
+                             capture_output=True, text=True, check=True).stdout
+    assert f"python3 (>= 3.{sys.version_info.minor})" in depends and "python3-numpy" in depends and "libfmt9" in depends
+    (tmp_path / "study.yaml").write_text(STUDY)
+    program = ("import elastocheck; elastocheck.new('pinned_bar', 'mine.yaml');"
+               "print(len(elastocheck.study('study.yaml', 'out').frame()), elastocheck.__file__)")
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=tmp_path,
+                         env={**os.environ, "PYTHONPATH": str(tmp_path / "root/usr/lib/python3/dist-packages")})
+    assert ran.stdout.startswith(f"20 {tmp_path / 'root'}"), ran.stderr

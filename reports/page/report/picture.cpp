@@ -1,4 +1,4 @@
-#include "reports/page/picture.hpp"
+#include "reports/page/report/picture.hpp"
 
 #include <fmt/format.h>
 
