@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A batch takes a hundred times as long; a waiting call of MPI would keep a core busy.
-constexpr std::chrono::microseconds between_looks{100};
+constexpr std::chrono::microseconds between_looks{500};
 constexpr std::chrono::seconds patience{10};
 
 // As mpirun of Open MPI says it; 1 without.

@@ -22,10 +22,12 @@ struct StudyRanks : StudyCommand {
     Said by_ranks(int count, const std::string& options) const {
         return support::says("cd " + path.string() + " && " + ranks(count) + options);
     }
-    bool has_rank_ledgers(const std::string& folder) const {
+    std::string rank_ledgers(const std::string& folder) const {
+        std::string names;
         for (const auto& entry : fs::directory_iterator(path / folder))
-            if (entry.path().filename().string().starts_with("ledger-rank-")) return true;
-        return false;
+            if (const std::string name = entry.path().filename(); name.starts_with("ledger-rank-"))
+                names += name + " ";
+        return names;
     }
 
     // Kills mpirun or one of its processes, in turn, at a random moment after the first rows; each
@@ -52,9 +54,11 @@ struct StudyRanks : StudyCommand {
                 "break; kill -0 $! || break; sleep 0.01; done; sleep " +
                 std::to_string(moment(random)) + "; kill -KILL " + victim +
                 "; wait $!; code=$?; "
-                // the others end by themselves
-                "for k in $(seq 200); do flock -n out/ledger.sqlite.lock true && break; sleep 0.1; "
-                "done; exit $code");
+                // The others end by themselves, some after the next command would have begun.
+                "alive() { for p in /proc/[0-9]*; do [ \"$(readlink $p/cwd)\" = \"$PWD\" ] && [ "
+                "\"$(readlink $p/exe)\" = " ELASTOCHECK_COMMAND
+                " ] && return 0; done; return 1; }; for k in $(seq 300); do alive || break; sleep "
+                "0.1; done; exit $code");
             killed += said.code != 0;
             std::smatch match;
             static const std::regex rows("^([0-9]+) of ");
@@ -66,7 +70,7 @@ struct StudyRanks : StudyCommand {
         EXPECT_GT(part, 0) << "never killed in the middle";
         const Said last = by_ranks(2, "-o out --count " + count);
         EXPECT_EQ(content(last), whole) << last.err;
-        EXPECT_FALSE(has_rank_ledgers("out"));
+        EXPECT_EQ(rank_ledgers("out"), "") << last.err;
     }
 };
 using NightlyStudyRanks = StudyRanks;
@@ -81,7 +85,7 @@ TEST_F(StudyRanks, HaveTheContentOfOneProcess) {
         EXPECT_EQ(said.code, 0) << said.err;
         EXPECT_NE(said.err.find("780 variants computed"), std::string::npos) << said.err;
         EXPECT_EQ(said.err.find(" by " + std::to_string(n) + " ranks") != std::string::npos, n > 1);
-        EXPECT_FALSE(has_rank_ledgers(folder));
+        EXPECT_EQ(rank_ledgers(folder), "");
     }
     // extended: no variant twice
     const Said more = by_ranks(3, "-o ranks2 --count 1000");
