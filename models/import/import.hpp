@@ -14,7 +14,7 @@ namespace elastocheck::importer {
 
 struct Options {
     // wheel carrier, or a marker on it; empty: the default of the format
-    std::string wheel;
+    std::string wheel = {};
     // leave out all that acts only against motion: dampers, friction, masses without gravity
     bool drop_dynamics = false;
     bool allow_missing = false;  // a part that cannot be represented is a warning, not an error

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "compare/comparison/compliance.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"

@@ -29,7 +29,7 @@
 #include "reports/python/convert.hpp"
 #include "reports/python/scene.hpp"
 #include "reports/study/run_study.hpp"
-#include "reports/study/study_output.hpp"
+#include "reports/study/output/study_output.hpp"
 #include "reports/tables/candidate_tables.hpp"
 #include "reports/tables/certify_tables.hpp"
 #include "reports/tables/comparison_tables.hpp"

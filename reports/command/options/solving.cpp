@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 
 namespace elastocheck::reports {
