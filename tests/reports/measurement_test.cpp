@@ -185,7 +185,7 @@ TEST(Measurement, OfALoopIsComparedByTheMeanOfBothWays) {
     const auto& row = m["readings"][0]["channels"][0];
     // next to the turning point the polygon of the other way ends in the point without width
     EXPECT_LE(row["equilibrium"]["rms"].get<double>(), 0.004) << row;
-    const json one_way = measured(csv.substr(0, csv.size() / 2));
+    const json one_way = measured(csv.substr(0, csv.rfind('\n', csv.size() / 2) + 1));
     EXPECT_GE(one_way["readings"][0]["channels"][0]["equilibrium"]["rms"].get<double>(), 0.015);
     EXPECT_TRUE(one_way["loops"].empty());
 }
