@@ -27,6 +27,7 @@
 #include "reports/command/options/candidate_options.hpp"
 #include "reports/command/options/gradients_of.hpp"
 #include "reports/command/options/limits.hpp"
+#include "reports/command/options/live_page.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/command/options/running.hpp"
 #include "reports/document/against.hpp"
@@ -68,6 +69,7 @@ struct ReportRequest {
     bool archive = false;
     bool against = false;  // compare the second of two scenes with the first
     bool as_json = false;  // write the answers as a document to standard output
+    bool live = false;     // live.html beside the page
     bool open = false;     // open the finished page in a browser
 };
 
@@ -375,6 +377,10 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     // Invalid requests are rejected before the work.
     if (request.open && request.archive)
         throw std::invalid_argument("--open: not with --archive, which has no page");
+    if (request.live && (request.archive || request.scenes.size() != 1))
+        throw std::invalid_argument("--live: of one scene, and not with --archive or --from");
+    const std::string live =
+        request.live ? live_page(request.scenes.front(), request.settings) : "";
     const std::string opener = request.open ? browser() : "";
     Staging::check(request.folder);
     (void)compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
@@ -421,7 +427,8 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     const auto answers =
         write_report(result, file, request.folder,
                      {.archive = request.archive,
-                      .progress = [](std::string_view what) { progress(what, 0.95); }});
+                      .progress = [](std::string_view what) { progress(what, 0.95); },
+                      .live = live});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
@@ -485,6 +492,9 @@ Command report_command() {
                     {"--archive", Flag{&request->archive},
                      "the form for version control: README.md, "
                      "numbers.csv, figures/*.svg, without times"},
+                    {"--live", Flag{&request->live},
+                     "write live.html beside the page, which solves the scene again while its "
+                     "hardpoints are moved"},
                     json_option(request->as_json),
                     {"--open", Flag{&request->open}, "open the page with $BROWSER or xdg-open"}});
     return {"report",

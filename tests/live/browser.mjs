@@ -39,8 +39,10 @@ export class Browser {
   }
   send(method, params = {}) {
     return new Promise((resolve, reject) => {
-      this.waiting.set(++this.calls, {resolve, reject});
-      this.process.stdio[3].write(JSON.stringify({id: this.calls, method, params, sessionId: this.session}) + '\0');
+      const id = ++this.calls;
+      this.waiting.set(id, {resolve, reject});
+      setTimeout(() => this.waiting.delete(id) && reject(new Error(`no answer to ${method}`)), 90e3).unref();
+      this.process.stdio[3].write(JSON.stringify({id, method, params, sessionId: this.session}) + '\0');
     });
   }
   async run(expression) {

@@ -6,7 +6,7 @@ import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {Browser} from './browser.mjs';
 
-const [program, scenes, pictures] = process.argv.slice(2);
+const [program, scenes, pictures] = process.argv.slice(2).map(file => path.resolve(file));
 const folder = mkdtempSync(path.join(tmpdir(), 'live-pages-'));
 const scene = name => path.join(scenes, name + '.yaml');
 const pageOf = (file, name) => {
@@ -192,6 +192,10 @@ const tests = {
     await idle();
     check(await run(`document.getElementById('trouble').hidden && state.now !== state.base`), 'and is solved again: ' + await run(`document.getElementById('trouble').textContent`));
     check(await paste(text) === '' && (await run('state.info.title')).includes('McPherson'), 'a pasted scene opens: ' + await run('state.info.title'));
+    const {root} = await browser.send('DOM.getDocument'), {nodeId} = await browser.send('DOM.querySelector', {nodeId: root.nodeId, selector: '#file'});
+    await browser.send('DOM.setFileInputFiles', {nodeId, files: [scene('trailing_arm')]});
+    await browser.until(`state.file === 'trailing_arm.yaml' && !busy && !!state.now`, 'a scene from disk opens');
+    check(await run(`document.getElementById('trouble').hidden && document.querySelectorAll('#charts .chart').length > 2`), 'and is drawn');
     const marked = text.replace(/^name: .*$/m, `name: '<img src=x onerror="window.broken=1"></script><script>window.broken=1</script>'`);
     check(await paste(marked) === '', 'markup in a name is accepted');
     check((await run(`document.getElementById('title').textContent`)).startsWith('<img') && await run(`document.querySelectorAll('img').length === 0 && window.broken === undefined`), 'and stays text');

@@ -360,7 +360,8 @@ std::string title_of(const JsonCursor& root) {
                : fmt::format("{}: {} against {}", first, file(scenes[1]), file(scenes[0]));
 }
 
-Texts texts(Draft draft, const json& result, const std::string& file, bool archive) {
+Texts texts(Draft draft, const json& result, const std::string& file, bool archive,
+            const std::string& live = {}) {
     const JsonCursor root{&result, "", &file};
     json scenes = json::array();
     for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
@@ -370,7 +371,8 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                        {"summary", table_data(summary(draft.parts))},
                        {"provenance", provenance(root)},
                        {"reproduce", for_terminal(root["reproduce"].text())},
-                       {"tints", tints()}};
+                        {"tints", tints()},
+                        {"live", !live.empty()}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
     if (archive)
@@ -381,6 +383,7 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                       {"result.json", result.dump(1) + "\n"},
                       {"curves.csv", curves_csv(result, file)},
                       {"forces.csv", forces_csv(result, file)}};
+    if (!live.empty() && !archive) made.files.push_back({"live.html", live});
     for (const auto& part : draft.parts) made.answers.push_back(answer(part.scene));
     return made;
 }
@@ -403,7 +406,7 @@ std::vector<Answer> write_report(const json& result, const std::string& file,
     Draft report = draft({&result, "", &file});
     if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
     report.page.pictures = draw(report.plots, staging.path(), !options.archive);
-    const Texts made = texts(std::move(report), result, file, options.archive);
+    const Texts made = texts(std::move(report), result, file, options.archive, options.live);
     for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
     staging.publish();
     return made.answers;

@@ -23,6 +23,7 @@ struct ReportOptions {
     // only what belongs in version control: README.md, numbers.csv, figures/*.svg
     bool archive = false;
     std::function<void(std::string_view)> progress = {};
+    std::string live = {};  // text of live.html, which the page links to; empty: none
 };
 
 // Answer of the report for a scene in one sentence, with its source.
