@@ -13,7 +13,7 @@
 
 namespace elastocheck::reports {
 
-// Each is in NAME_command.cpp; inspect, compare, converge and trade are in study_commands.cpp;
+// Each is in NAME_command.cpp, live in live/; inspect, compare, converge and trade are in study_commands.cpp;
 // solve-for, optimise, fit and tolerances in design/, study in variants/.
 Command certify_command();
 Command compare_command();

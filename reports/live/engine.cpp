@@ -51,7 +51,7 @@ std::vector<Point> drawn_points(const Model& model, const json& drawing) {
     return points;
 }
 
-// The rows of one branch in the order of the path.
+// The rows of one branch, in ascending order of the parameter.
 struct Rows {
     std::vector<std::pair<double, std::vector<double>>> rows;  // by the parameter in SI
     std::size_t append_to(std::vector<double>& numbers) {

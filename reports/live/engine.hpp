@@ -44,7 +44,7 @@ struct Request {
 //   drawing   drawing_json() of the trimmed design position
 //   branches  name, unit, outcome, detail, points, start: position of a = 0, at: position of its first number,
 //             published: outcome, detail, steps, points, at; null unless asked for
-// `numbers`, per point of a branch: parameter, channels, positions of the drawing's points [mm], spin axes of the wheels.
+// `numbers`, per point of a branch in ascending order of the parameter: parameter, channels, positions of the drawing's points [mm], spin axes of the wheels.
 // Of a point of the published method: parameter, channels. NaN: not computed; infinite: undefined.
 struct Answer {
     nlohmann::ordered_json head;

@@ -75,7 +75,7 @@ const tests = {
     check(before !== await run(`document.querySelector('[data-channel=toe] path.now').getAttribute('d')`), 'the curve moved');
     check(before === await run(`document.querySelector('[data-channel=toe] path.was')?.getAttribute('d')`) || await run(`document.querySelector('[data-channel=toe] path.was') !== null`), 'the old curve stays');
     for (const branch of await run('state.now.branches.map(b => b.name)')) {
-      const channels = ['toe', 'camber', 'wheel_centre_z', 'track_change'];
+      const channels = ['toe', 'camber', 'wheel_centre_z', 'track_change', ...branch === 'travel' ? ['bump_steer', 'lateral_force_steer', 'roll_centre_height'] : []];
       const rows = byProgram(scene('double_wishbone'), branch, channels, changes);
       const own = await run(`${JSON.stringify(channels)}.map(c => state.now.curve(branchOf(state.now, ${JSON.stringify(branch)}), c))`);
       check(rows.length > 20 && rows.length === own[0].length, `${branch}: ${rows.length} points against ${own[0].length}`);

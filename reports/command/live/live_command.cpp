@@ -4,7 +4,7 @@
 
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
-#include "reports/command/options/live_page.hpp"
+#include "reports/command/live/live_page.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
 

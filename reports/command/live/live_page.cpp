@@ -1,4 +1,4 @@
-#include "reports/command/options/live_page.hpp"
+#include "reports/command/live/live_page.hpp"
 
 #include <fmt/format.h>
 
