@@ -391,6 +391,12 @@ TEST(PropertyFile, LinesMayEndInCarriageReturnsAlone) {
     EXPECT_EQ(importer::import_text(sub, "front.sub", {}).yaml, expected);
 }
 
+importer::Options with_axes(const std::string& axes) {
+    importer::Options options;
+    options.axes = axes;
+    return options;
+}
+
 // A table and a listing of the same points, as kinematics programs export them, give the same scene.
 TEST(Points, OfATableAndOfAListingAreTurnedToTheAxesOfAScene) {
     const std::string table =
@@ -402,12 +408,12 @@ TEST(Points, OfATableAndOfAListingAreTurnedToTheAxesOfAScene) {
     // x turned, y kept: z turned too
     for (const auto& [text, file] : {std::pair{table, "p.csv"}, {listing, "p.shk"}}) {
         const std::string yaml =
-            importer::import_text(text, file, {.axes = "x-rearward,y-left"}).yaml;
+            importer::import_text(text, file, with_axes("x-rearward,y-left")).yaml;
         for (const char* part : {"lower_ball: [12.5, 562.5, 62.5]",
                                  "tie_rod_inner: [-75, 250, -125]", "x-rearward,y-left"})
             EXPECT_TRUE(says(yaml, part));
     }
-    EXPECT_TRUE(says(importer::import_text(listing, "p.shk", {.axes = "x-forward,y-left"}).yaml,
+    EXPECT_TRUE(says(importer::import_text(listing, "p.shk", with_axes("x-forward,y-left")).yaml,
                      "end of file"))
         << "what is left out is listed";
 }
@@ -416,7 +422,7 @@ TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
     const auto refused = [](const std::string& text, const std::string& file,
                             const std::string& axes = "x-forward,y-left") -> std::string {
         try {
-            (void)importer::import_text(text, file, {.axes = axes});
+            (void)importer::import_text(text, file, with_axes(axes));
         } catch (const SceneError& error) {
             return error.what();
         }
