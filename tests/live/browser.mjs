@@ -10,7 +10,8 @@ export class Browser {
     const browser = new Browser();
     browser.profile = mkdtempSync(path.join(tmpdir(), 'live-'));
     browser.process = spawn('chromium', ['--headless=new', '--no-sandbox', '--disable-gpu', '--remote-debugging-pipe', '--no-first-run',
-      '--disable-background-networking', `--user-data-dir=${browser.profile}`, 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
+      '--disable-background-networking', '--disable-renderer-backgrounding', '--disable-backgrounding-occluded-windows',
+      '--disable-background-timer-throttling', `--user-data-dir=${browser.profile}`, 'about:blank'], {stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe']});
     browser.calls = 0;
     browser.waiting = new Map();
     browser.requests = [];

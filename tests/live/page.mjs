@@ -235,7 +235,9 @@ const tests = {
 };
 try {
   for (const [name, test] of Object.entries(tests)) {
+    const start = Date.now();
     try { await test(); } catch (error) { check(false, `${name}: ${error.stack}`); }
+    console.log(`${name}: ${((Date.now() - start) / 1e3).toFixed(1)} s`);
     check(browser.complaints.length === 0, `${name}: the browser complains: ${browser.complaints.splice(0).join('; ')}`);
   }
 } finally {

@@ -91,7 +91,8 @@ const changed = () => {
   buttons();
   pump();
 };
-const nextFrame = () => new Promise(resolve => requestAnimationFrame(resolve));
+// A hidden page gets no frames.
+const nextFrame = () => new Promise(resolve => { requestAnimationFrame(resolve); setTimeout(resolve, 100); });
 const pump = async () => {
   if (busy) return;
   busy = true;
