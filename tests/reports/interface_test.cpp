@@ -308,7 +308,7 @@ TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
 TEST(Completion, OffersEveryCommandAndOption) {
     const std::string help = elastocheck_says("--help").out,
                       commands = "\n" + elastocheck_says("complete 'elastocheck '").out;
-    static const std::regex command("\n  ([a-z]+) "), option("\n  (-.,)?--([a-z-]+)");
+    static const std::regex command("\n  ([a-z]+) "), option("\n  (-.,)?--([a-z0-9-]+)");
     int count = 0;
     for (std::sregex_iterator at(help.begin(), help.end(), command), end; at != end;
          ++at, ++count) {
