@@ -10,6 +10,7 @@
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/extrapolation.hpp"
+#include "compare/definitions/definitions.hpp"
 #include "compare/outputs/curve.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
@@ -244,7 +245,9 @@ py::list branches_of(const SceneOfFile& scene) {
 // Name, unit and definition of every output that can be asked for by its name.
 py::list outputs_of(const SceneOfFile& scene) {
     py::list outputs;
-    for (const compare::Channel& channel : reports::requested_channels(scene.loaded, {"*"}))
+    auto all = reports::requested_channels(scene.loaded, {"*"});
+    std::ranges::move(compare::definition_channels(scene.loaded.model), std::back_inserter(all));
+    for (const compare::Channel& channel : all)
         outputs.append(py::make_tuple(channel.name, symbol(channel.unit), channel.definition));
     return outputs;
 }

@@ -87,9 +87,13 @@ std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all,
     std::vector<std::string> names;
     for (const auto& channel : all) names.push_back(channel.name);
     for (const auto& pattern : patterns) {
+        // "suspension.*" does not mean suspension.motion_ratio@inverse; "suspension.*@*" does
+        const bool with_definitions = pattern.find('@') != std::string::npos;
         bool fits = false;
         for (const auto& channel : all) {
-            if (channel.name != pattern && ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0)
+            if (channel.name != pattern &&
+                ((!with_definitions && channel.name.find('@') != std::string::npos) ||
+                 ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0))
                 continue;
             fits = true;
             if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
