@@ -249,7 +249,7 @@ int export_map(const ExportRequest& request) {
             settings.push_back(
                 setting(fmt::format("branches.{}.hold.{}", request.over, rows.held), held));
         const LoadedScene loaded = load_scene(request.scene, settings);
-        const Branch& branch = branch_named(loaded.model, request.over);
+        const Branch& branch = branch_named(loaded.model, request.over, "--over");
         if (table.channels.empty()) {
             table.channels = requested_channels(loaded, request.channels);
             if (request.channels.empty())

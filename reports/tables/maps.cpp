@@ -43,14 +43,18 @@ std::string lookup_csv(const compare::MapTable& table, const MapAxes& axes) {
 
 std::string polynomial_csv(const compare::MapTable& table,
                            const std::vector<compare::PolynomialMap>& maps, const MapAxes& axes) {
-    std::string text =
-        headed(polynomial_head, table, axes,
-               fmt::format(
-                   "# output = sum of c_ij u^i v^j, u = (x - x_0) / x_1 of x = {}, v = (y - y_0) / "
-                   "y_1 of y = {}\n# error: largest difference at {} points, of which every second "
-                   "one of each variable was fitted\n",
-                   axes.x, axes.y.empty() ? "nothing (v^0 = 1)" : axes.y,
-                   table.x.size() * table.y.size()));
+    const std::string formula =
+        axes.y.empty()
+            ? fmt::format("sum of c_i0 u^i, u = (x - x_0) / x_1 of x = {}", axes.x)
+            : fmt::format(
+                  "sum of c_ij u^i v^j, u = (x - x_0) / x_1 of x = {}, v = (y - y_0) / y_1 "
+                  "of y = {}",
+                  axes.x, axes.y);
+    std::string text = headed(
+        polynomial_head, table, axes,
+        fmt::format("# output = {}\n# error: largest difference at {} points, of which every "
+                    "second one of each variable was fitted\n",
+                    formula, table.x.size() * table.y.size()));
     text += "output,unit,i,j,c_ij,x_0,x_1,y_0,y_1,error\n";
     for (const auto& map : maps) {
         const auto& channel = table.channels[map.channel];

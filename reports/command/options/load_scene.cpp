@@ -157,13 +157,13 @@ nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string&
     return part;
 }
 
-const Branch& branch_named(const Model& model, const std::string& name) {
+const Branch& branch_named(const Model& model, const std::string& name, const char* option) {
     std::vector<std::string> names;
     for (const auto& branch : model.branches) {
         if (branch.name == name) return branch;
         names.push_back(branch.name);
     }
-    throw std::invalid_argument(fmt::format("--branch: the scene has no branch {}{}",
+    throw std::invalid_argument(fmt::format("{}: the scene has no branch {}{}", option,
                                             reader::quote(name),
                                             reader::did_you_mean(name, names, "branches")));
 }

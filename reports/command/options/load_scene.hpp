@@ -52,7 +52,8 @@ nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string&
 std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
                                                  const std::vector<std::string>& patterns);
 
-// The branch of --branch. Throws std::invalid_argument for an unknown name, with the nearest.
-const Branch& branch_named(const Model& model, const std::string& name);
+// The branch that an option names. Throws std::invalid_argument for an unknown name, with the nearest.
+const Branch& branch_named(const Model& model, const std::string& name,
+                           const char* option = "--branch");
 
 }  // namespace elastocheck::reports
