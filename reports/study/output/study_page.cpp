@@ -31,6 +31,7 @@ constexpr FileKind page_file{"page of a study",
 <meta charset="utf-8">
 <meta name="generator" content="elastocheck study">)"};
 constexpr std::uint64_t most_points = 400;  // of a scatter plot
+constexpr double golden_ratio = 0.6180339887498949;
 constexpr std::size_t most_bars = 8, most_scatters = 3;
 
 // Independent variants, evenly spread, with their variables [variants × variables].
@@ -44,7 +45,11 @@ Spread spread(const Study& study) {
     const Sampler sampler(study);
     Spread result{.k = {}, .x = Eigen::MatrixXd(count, study.variables.size())};
     for (std::uint64_t i = 0; i < count; ++i) {
-        const std::uint64_t k = i * bases / count * block;
+        // Not at equal distances: of a Sobol sequence those leave gaps that it does not have.
+        const double within = std::fmod(static_cast<double>(i) * golden_ratio, 1.);
+        const double base = (static_cast<double>(i) + within) / static_cast<double>(count) *
+                            static_cast<double>(bases);
+        const std::uint64_t k = std::min(bases - 1, static_cast<std::uint64_t>(base)) * block;
         result.k.push_back(k);
         result.x.row(static_cast<Index>(i)) = sampler.values(k, 1);
     }
