@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -508,14 +509,20 @@ long memory_of(const std::vector<std::string>& words) {
 }
 
 TEST(SolveCommand, MemoryDoesNotGrowWithTheStepsItTakes) {
+    // The least of three runs: it counts the program's pages that happen to be mapped too, 1 MB now
+    // and then.
     const auto memory = [](const std::string& method, const std::string& steps) {
-        return memory_of({ELASTOCHECK_COMMAND, "solve", scenes + "/pinned_bar.yaml", "--method",
-                          method, "--channels", "tip_z", "--steps", steps});
+        long least = std::numeric_limits<long>::max();
+        for (int run = 0; run < 3; ++run)
+            least = std::min(
+                least, memory_of({ELASTOCHECK_COMMAND, "solve", scenes + "/pinned_bar.yaml",
+                                  "--method", method, "--channels", "tip_z", "--steps", steps}));
+        return least;
     };
     for (const char* method : {"published", "series"}) {
-        const long few = memory(method, "10000"), many = memory(method, "100000");
+        const long few = memory(method, "5000"), many = memory(method, "55000");
         EXPECT_GT(few, 1000);
-        EXPECT_LE(many, few + 1000) << method;  // storing a point per step would take 20 MB
+        EXPECT_LE(many, few + 1000) << method;  // storing a point per step would take 10 MB
     }
 }
 
