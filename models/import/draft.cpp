@@ -29,8 +29,9 @@ std::string printable(std::string_view text) {
 }
 
 std::string described(const SourceLocation& place) {
-    return place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what))
-                          : printable(place.what);
+    const std::string file = place.file.empty() ? "" : printable(place.file) + ", ";
+    return file + (place.line > 0 ? fmt::format("line {}, {}", place.line, printable(place.what))
+                                  : printable(place.what));
 }
 
 // Writes an entry of a section, with line breaks at commas; its source goes at the end or above.

@@ -18,6 +18,7 @@ namespace elastocheck::importer {
 struct SourceLocation {
     int line = 0;
     std::string what;
+    std::string file = {};  // if it is not the draft's source
 };
 
 // ---- Numbers and fields in the format of a scene.
@@ -67,6 +68,7 @@ class Hardpoints {
                    const SourceLocation& from);
     void add(const Eigen::Vector3d& position, std::string_view wanted, const SourceLocation& from);
     const std::vector<Entry>& entries() const { return entries_; }
+    std::vector<Entry>& entries() { return entries_; }
 
   private:
     double size_;

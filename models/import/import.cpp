@@ -26,8 +26,9 @@ std::string where(const SourceLocation& place) {
     std::string message;
     for (std::size_t k = 0; k < std::min(notes.missing.size(), most_errors); ++k) {
         const auto& [place, what] = notes.missing[k];
-        message += fmt::format("{}{}{}: {}: {}", k ? "\n" : "", file, where(place),
-                               reader::shown(place.what), what);
+        message +=
+            fmt::format("{}{}{}: {}: {}", k ? "\n" : "", place.file.empty() ? file : place.file,
+                        where(place), reader::shown(place.what), what);
     }
     if (notes.missing.size() > most_errors)
         message +=
@@ -52,7 +53,7 @@ std::string where(const SourceLocation& place) {
     const SourceLocation from = line > 0 && line <= static_cast<int>(text.line_of.size())
                                     ? text.line_of[line - 1]
                                     : SourceLocation{};
-    throw SceneError(fmt::format("{}{}: {}{}", file, where(from),
+    throw SceneError(fmt::format("{}{}: {}{}", from.file.empty() ? file : from.file, where(from),
                                  from.what.empty() ? "" : reader::shown(from.what) + ": ",
                                  fmt::format("the resulting scene is refused: {}", message)));
 }
@@ -66,16 +67,18 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
     if (ending != ".adm" && ending != ".json" && !points_only)
         reader::fail(
             file, 0, "",
-            fmt::format(
-                "{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
-                ".json (Chrono::Vehicle suspensions), .sub (hardpoints of Adams/Car), .csv, "
-                ".shk (lists of points)",
-                reader::quote(ending)));
+            fmt::format("{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
+                        ".json (Chrono::Vehicle suspensions and vehicles), .sub (hardpoints of "
+                        "Adams/Car), .csv, "
+                        ".shk (lists of points)",
+                        reader::quote(ending)));
     if (!options.axes.empty() && !points_only)
         reader::fail(file, 0, "--axes",
                      "only for hardpoints of Adams/Car (.sub) and lists of points; the axes of a "
                      "model are those "
                      "of its file");
+    if (!options.axle.empty() && ending != ".json")
+        reader::fail(file, 0, "--axle", "only for a vehicle of Chrono::Vehicle (.json)");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)
                         : ending == ".json" ? import_chrono(text, file, options)
                         : list              ? import_points(text, file, options)

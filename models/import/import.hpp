@@ -20,6 +20,9 @@ struct Options {
     bool allow_missing = false;  // a part that cannot be represented is a warning, not an error
     // of a table of hardpoints: "x-rearward,y-right"; empty: the default of the format
     std::string axes = {};
+    // of a vehicle of Chrono: "front" (its first), "rear" (its last), "1", "2", ...; empty: the
+    // only one
+    std::string axle = {};
 };
 
 // Allowed values of `axes`: x, then y; z completes the right-handed frame.

@@ -35,7 +35,7 @@ constexpr const char* import_schema = "elastocheck/import/1";
 struct ImportRequest {
     std::string file;
     std::string output;  // empty: standard output
-    std::string wheel, axes;
+    std::string wheel, axes, axle;
     std::vector<std::string> drop;
     bool allow_missing = false;
     bool as_json = false;
@@ -66,7 +66,8 @@ importer::Options options(const ImportRequest& request) {
     return {.wheel = request.wheel,
             .drop_dynamics = !request.drop.empty(),
             .allow_missing = request.allow_missing,
-            .axes = request.axes};
+            .axes = request.axes,
+            .axle = request.axle};
 }
 
 // Largest distance of the outputs of two scenes, of each unit: "0.0123 mm ('wheel_y' on branch
@@ -362,6 +363,8 @@ Command import_command() {
                                        importer::axes_of_tables[2], importer::axes_of_tables[3]})},
           "axes of a table of hardpoints, turned to ISO 8855: x-rearward,y-right (default of "
           ".sub)"},
+         {"--axle", Text{&request->axle},
+          "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ..."},
          {"--allow-missing", Flag{&request->allow_missing},
           "warn about what a scene cannot represent instead of rejecting the file"},
          json_option(request->as_json)},

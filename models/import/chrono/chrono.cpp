@@ -1,6 +1,6 @@
 // Imports Chrono::Vehicle suspension templates.
-// Points and joints as in the templates; chassis, subchassis and steering do not move, so all three
-// become ground.
+// Points and joints as in the templates; chassis and subchassis are ground, and so is the steering of
+// a suspension without its vehicle.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +9,7 @@
 
 #include "models/import/chrono/json.hpp"
 #include "models/import/chrono/suspension.hpp"
+#include "models/import/chrono/vehicle.hpp"
 #include "models/reader/document/suggestions.hpp"
 
 namespace elastocheck::importer::chrono {
@@ -195,7 +196,7 @@ void shared_tierod(Suspension& s) {
 // The drag link from ground to one of the knuckles, as the sign of y says.
 void draglink(Suspension& s, OuterEnd outer) {
     const FilePoint end = s.left("Knuckle/Location Draglink");
-    s.link("draglink", "Draglink", "ground", s.left("Draglink/Location Chassis"),
+    s.link("draglink", "Draglink", s.steering(), s.left("Draglink/Location Chassis"),
            end.y() > 0 ? "knuckle_left" : "knuckle_right", end, outer);
 }
 
@@ -232,8 +233,8 @@ void solid_axle(Suspension& s) {
                     pivot = s.left("Bell Crank/Location Axle"),
                     pin = s.left("Bell Crank/Location Tierod");
     s.body("bell_crank", (d + pivot + pin) / 3, "Bell Crank");
-    s.link("draglink", "Draglink", "ground", s.left("Draglink/Location Chassis"), "bell_crank", d,
-           OuterEnd::universal);
+    s.link("draglink", "Draglink", s.steering(), s.left("Draglink/Location Chassis"), "bell_crank",
+           d, OuterEnd::universal);
     const Vector3d axis = (d - pivot).cross(pin - pivot);
     if (!(axis.norm() > 1e-12))
         s.at(pivot.path).fail("on one line with the other points of the bell crank");
@@ -273,7 +274,7 @@ void solid_bellcrank_three_link(Suspension& s) {
     const FilePoint pivot = s.left("Bellcrank/Location Axle");
     s.body("bellcrank", pivot, "Bellcrank");
     s.revolute("bellcrank.pivot", "axle", "bellcrank", pivot, Vector3d::UnitZ());
-    s.link("draglink", "Draglink", "ground", s.left("Draglink/Location Steering"), "bellcrank",
+    s.link("draglink", "Draglink", s.steering(), s.left("Draglink/Location Steering"), "bellcrank",
            s.left("Draglink/Location Bellcrank"), OuterEnd::universal);
     both(s, [&] {
         knuckle(s);
@@ -506,7 +507,8 @@ struct Generic {
         } else {
             name = at.text("a body");
         }
-        if (name == "Chassis" || name == "Subchassis" || name == "Steering") return "ground";
+        if (name == "Steering") return s.steering();
+        if (name == "Chassis" || name == "Subchassis") return "ground";
         if (sided.contains(name)) return scene_name(name) + (side > 0 ? "_left" : "_right");
         if (shared.contains(name)) return scene_name(name);
         std::vector<std::string> known{"Chassis", "Subchassis", "Steering"};
@@ -639,16 +641,17 @@ struct Template {
     std::string_view name;
     bool mirrors;  // independent: the left side is written, the scene mirrors it
     void (*make)(Suspension&);
+    const char* antiroll_body = nullptr;  // to which Chrono attaches the links of an anti-roll bar
 };
 
 const Template templates[] = {
-    {"DoubleWishbone", true, double_wishbone},
-    {"DoubleWishboneReduced", true, double_wishbone_reduced},
-    {"MacPhersonStrut", true, mcpherson},
-    {"MultiLink", true, multi_link},
+    {"DoubleWishbone", true, double_wishbone, "lower_arm*"},
+    {"DoubleWishboneReduced", true, double_wishbone_reduced, "upright*"},
+    {"MacPhersonStrut", true, mcpherson, "arm*"},
+    {"MultiLink", true, multi_link, "trailing_link*"},
     {"SemiTrailingArm", true, semi_trailing_arm},
     {"ThreeLinkIRS", true, three_link_irs},
-    {"SingleWishbone", true, single_wishbone},
+    {"SingleWishbone", true, single_wishbone, "arm*"},
     {"SolidAxle", false, solid_axle},
     {"SolidThreeLinkAxle", false, solid_three_link},
     {"SolidBellcrankThreeLinkAxle", false, solid_bellcrank_three_link},
@@ -668,62 +671,70 @@ const Template templates[] = {
 };
 
 }  // namespace
+
+Made make(Suspension& s) {
+    const Cursor& root = s.file();
+    const auto named = root.require("Template");
+    const std::string name = named.text("a template");
+    if (name == "RigidPinnedAxle" || name == "RigidSuspension")
+        named.fail(
+            fmt::format("{}: the template has no spring, so the wheel is not supported", name));
+    const auto found = std::ranges::find(templates, name, &Template::name);
+    if (found == std::end(templates)) {
+        std::vector<std::string> known;
+        for (const Template& t : templates) known.emplace_back(t.name);
+        named.fail(fmt::format("{} is not a supported template{}", reader::quote(name),
+                               reader::did_you_mean(name, known, "known")));
+    }
+    Draft& draft = s.draft();
+    draft.title = root.optional("Name") ? root.require("Name").text("a name") : name;
+    draft.format = "Chrono::Vehicle " + name;
+    draft.units = "{length: m, angle: rad, force: N}";
+    if (found->mirrors) draft.mirror = "left -> right";
+    found->make(s);
+    s.report_unread();
+    return {found->mirrors, found->antiroll_body ? found->antiroll_body : ""};
+}
+
+void add_travel(const Suspension& s, bool roll, Draft& draft) {
+    const char* const range = "from: -0.06, to: 0.06, steps: 120}";
+    draft.branches.push_back(
+        {"travel",
+         fmt::format("{{drive: {}, {}",
+                     s.one_freedom ? "left.travel" : "[left.travel, right.travel]", range),
+         {}});
+    if (roll && !s.one_freedom)
+        draft.branches.push_back(
+            {"roll", fmt::format("{{drive: {{left.travel: 1, right.travel: -1}}, {}", range), {}});
+}
+
 }  // namespace elastocheck::importer::chrono
 
 namespace elastocheck::importer {
 
 Draft import_chrono(std::string_view text, const std::string& file, const Options& options) {
     using namespace chrono;
-    const reader::Value tree = parse_json(text, file);
-    std::vector<Number> numbers;
-    reader::Accesses accesses;
-    const reader::Cursor root{&tree, "", &file, &numbers, {}, &accesses};
-    if (tree.kind != reader::Value::Kind::map)
-        root.fail("expected an object: this is not a suspension of Chrono::Vehicle");
-    const std::string type = root.require("Type").text("a type");
-    if (type != "Suspension")
-        root.require("Type").fail(
-            fmt::format("{} is not a suspension; allowed: Suspension (of a wheeled vehicle; its "
-                        "file is named in the file of the vehicle)",
-                        reader::quote(type)));
-    const auto named = root.require("Template");
-    const std::string name = named.text("a template");
-    if (name == "RigidPinnedAxle" || name == "RigidSuspension")
-        named.fail(
-            fmt::format("{}: the template has no spring, so the wheel is not supported", name));
-    const auto found = std::ranges::find(chrono::templates, name, &Template::name);
-    if (found == std::end(chrono::templates)) {
-        std::vector<std::string> known;
-        for (const Template& t : chrono::templates) known.emplace_back(t.name);
-        named.fail(fmt::format("{} is not a supported template{}", reader::quote(name),
-                               reader::did_you_mean(name, known, "known")));
-    }
+    const JsonFile json(text, file);
+    const std::string type = json.root.require("Type").text("a type");
     if (!options.wheel.empty())
         reader::fail(file, 0, "--wheel",
                      "the wheels of a suspension of Chrono::Vehicle are given by its file");
-
+    if (type == "Vehicle") return import_vehicle(json, options);
+    if (type != "Suspension")
+        json.root.require("Type").fail(fmt::format(
+            "{} is not a suspension; allowed: Suspension, Vehicle (with wheels, not tracks)",
+            reader::quote(type)));
+    if (!options.axle.empty())
+        reader::fail(file, 0, "--axle", "only for a vehicle; this file is one suspension");
     Draft draft;
-    draft.title = root.optional("Name") ? root.require("Name").text("a name") : name;
     draft.source = file;
-    draft.format = "Chrono::Vehicle " + name;
-    draft.units = "{length: m, angle: rad, force: N}";
     draft.remarks = {
         "m, N, kg, rad as in the file; x forward, y left, z up. Chassis, subchassis and steering "
         "are ground.",
         "The file has no gravity and no tyre: the branches move the wheels on jacks."};
-    if (found->mirrors) draft.mirror = "left -> right";
-    Suspension suspension(root, options, draft);
-    found->make(suspension);
-    suspension.report_unread();
-    const char* const range = "from: -0.06, to: 0.06, steps: 120}";
-    draft.branches.push_back(
-        {"travel",
-         fmt::format("{{drive: {}, {}",
-                     suspension.one_freedom ? "left.travel" : "[left.travel, right.travel]", range),
-         {}});
-    if (!found->mirrors && !suspension.one_freedom)
-        draft.branches.push_back(
-            {"roll", fmt::format("{{drive: {{left.travel: 1, right.travel: -1}}, {}", range), {}});
+    Suspension suspension(json.root, options, draft);
+    const Made made = make(suspension);
+    add_travel(suspension, !made.mirrors, draft);
     return draft;
 }
 

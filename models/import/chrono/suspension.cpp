@@ -574,12 +574,12 @@ void Suspension::tierod(const std::string& chassis_end, const std::string& outer
                 ignore(*field,
                        "a tie rod without Mass, Inertia and Radius is a rigid massless distance in "
                        "Chrono");
-        return distance(name, "ground", inner, on_outer, outer);
+        return distance(name, steering(), inner, on_outer, outer);
     }
     body(name, 0.5 * (inner + outer), "Tierod");
     joint_or_bushing(Kind::spherical, name + ".outer", on_outer, name, outer, Matrix3d::Identity(),
                      bushing);
-    joint_or_bushing(Kind::universal, name + ".inner", "ground", name, inner,
+    joint_or_bushing(Kind::universal, name + ".inner", steering(), name, inner,
                      frame_along(outer - inner, Vector3d::UnitX()), bushing);
 }
 

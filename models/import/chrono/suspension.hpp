@@ -38,6 +38,17 @@ class Suspension {
 
     bool one_freedom = false;  // the wheels share one freedom: one is driven, the other follows
 
+    // ---- The rest of the vehicle.
+    std::string steering_link = "ground";
+    bool is_steered = false;  // something is attached to the steering link
+    const std::string& steering() {
+        is_steered = true;
+        return steering_link;
+    }
+    // The frame of the file in that of the scene.
+    Vector3d origin = Vector3d::Zero();
+    Matrix3d turn = Matrix3d::Identity();
+
     // ---- The side. Mirrored scenes are written with left entries only.
     int side = +1;
     std::string sided(const std::string& name) const {
@@ -59,7 +70,10 @@ class Suspension {
     }
     bool has(const std::string& path) const { return optional(path).has_value(); }
     FilePoint left(const std::string& path) const;  // as in the file
-    FilePoint point(const std::string& path) const { return {mirrored(left(path)), path}; }
+    FilePoint point(const std::string& path) const { return placed(left(path), path); }
+    FilePoint placed(const Vector3d& p, const std::string& path) const {
+        return {mirrored(origin + turn * p), path};
+    }
     double real(const std::string& path) const { return at(path).number(); }
     SourceLocation place(const std::string& path) const { return {at(path).value->line, path}; }
 
