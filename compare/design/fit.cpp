@@ -225,8 +225,8 @@ std::vector<Proposal> proposals(const FigureGradient& gradient, const VectorXd& 
         Proposal best;
         for (Index j = 0; j < movement.size(); ++j) {
             const double size = std::abs(movement[j]), rounding = 1e-10 * (1 + std::abs(value[j]));
-            if (!std::isfinite(size) || !(extent[j] > rounding) ||
-                !(size > rounding) || !(size / extent[j] > best.share))
+            if (!std::isfinite(size) || !(extent[j] > rounding) || !(size > rounding) ||
+                !(size / extent[j] > best.share))
                 continue;
             best = {.figure = j, .movement = movement[j], .share = size / extent[j]};
         }

@@ -47,9 +47,7 @@ Figures decay() {
                     return p[0] * std::exp(-p[1] * 0.1 * static_cast<double>(k));
                 }));
             },
-            [rate](const VectorXd& p) {
-                return FigureGradient{rate(p)};
-            }};
+            [rate](const VectorXd& p) { return FigureGradient{rate(p)}; }};
 }
 
 Measured measured(VectorXd value, std::vector<int> column, VectorXd start, VectorXd step) {
@@ -70,9 +68,7 @@ TEST(Fit, OfAStraightLineHasTheIntervalsOfTheTextbook) {
     MatrixXd J(12, 2);
     J << VectorXd::Ones(12), t;
     const Figures line{[&](const VectorXd& p) { return VectorXd(J * p); },
-                       [&](const VectorXd&) {
-                           return FigureGradient{J};
-                       }};
+                       [&](const VectorXd&) { return FigureGradient{J}; }};
     const Fitted found =
         fit(line, measured(y, std::vector<int>(12, 0), VectorXd::Zero(2), VectorXd::Ones(2)));
     const double mean = t.mean(), sxx = (t.array() - mean).square().sum();
@@ -191,10 +187,8 @@ TEST(Fit, ProposesTheFigureThatMovesMostWithAnUndeterminedCombination) {
     EXPECT_EQ(found[0].figure, 1);
     EXPECT_NEAR(found[0].movement, 2, 1e-14);
     EXPECT_NEAR(found[0].share, 2, 1e-14);
-    EXPECT_EQ(proposals({gradient.rate.row(2)}, value.head(1),
-                        extent.tail(1), step, open)[0]
-                  .figure,
-              -1);
+    EXPECT_EQ(
+        proposals({gradient.rate.row(2)}, value.head(1), extent.tail(1), step, open)[0].figure, -1);
 }
 
 // ---- Fits to the references.

@@ -371,8 +371,8 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                        {"summary", table_data(summary(draft.parts))},
                        {"provenance", provenance(root)},
                        {"reproduce", for_terminal(root["reproduce"].text())},
-                        {"tints", tints()},
-                        {"live", !live.empty()}};
+                       {"tints", tints()},
+                       {"live", !live.empty()}};
     const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
     if (archive)
