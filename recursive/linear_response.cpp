@@ -1,5 +1,4 @@
 #include "recursive/linear_response.hpp"
-#include "recursive/diagnosis/analysis.hpp"
 
 #include <fmt/format.h>
 
@@ -78,14 +77,15 @@ std::string words(Outcome outcome, const Disturbance& disturbance, const Model& 
 
 // The responses [coordinates + rows of Φ × disturbances], with the matrix of `s`.
 Response responses(SteppingState<double>& s, const Branch& branch, const Analysis& analysis,
-                   bool consistent, std::span<const Disturbance> disturbances, Matrix<double>* X) {
+                   ResponseOrders& orders, bool consistent,
+                   std::span<const Disturbance> disturbances, Matrix<double>* X) {
     const Model& model = s.model;
     Response response;
     const auto fail = [&](Outcome outcome, std::string detail) {
         response = {outcome, fmt::format("branch '{}': {}", branch.name, detail), {}};
         return response;
     };
-    if (const Outcome outcome = factorise_response(s, consistent); outcome != Outcome::converged)
+    if (const Outcome outcome = factorise_response(s, consistent, orders); outcome != Outcome::converged)
         return fail(outcome, "the response to a small disturbance is not unique at the state");
     if (X != nullptr) X->resize(s.n() + s.m(), static_cast<Eigen::Index>(disturbances.size()));
     for (const Disturbance& disturbance : disturbances) {
@@ -180,7 +180,8 @@ Eigen::Vector3d turn_of(BodyId b, const Eigen::Ref<const Vector<double>>& x) {
 
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances, const Method& method,
-                         const Analysis& analysis) {
+                         ResponseAnalysis& of) {
+    const Analysis& analysis = of.analysis;
     check(model, branch);
     check(model, state, disturbances);
     if (std::isnan(analysis.diagnosis.constraint_error))
@@ -190,19 +191,21 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
     SteppingState<double> s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
-    return responses(s, branch, analysis, !std::holds_alternative<Linear>(method.kind),
+    return responses(s, branch, analysis, of.orders, !std::holds_alternative<Linear>(method.kind),
                      disturbances, nullptr);
 }
 
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances, const Method& method) {
     check(model, branch);
-    return linear_response(model, branch, state, disturbances, method, analyse(model));
+    ResponseAnalysis analysis{analyse(model)};
+    return linear_response(model, branch, state, disturbances, method, analysis);
 }
 
 ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,
                              std::span<const Disturbance> disturbances,
-                             std::span<const Model> rates, const Analysis& analysis) {
+                             std::span<const Model> rates, ResponseAnalysis& of) {
+    const Analysis& analysis = of.analysis;
     check(model, branch);
     check(model, state, disturbances);
     ResponseRates all;
@@ -214,7 +217,7 @@ ResponseRates response_rates(const Model& model, const Branch& branch, const Equ
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     Matrix<double> X;
-    all.at = responses(s, branch, analysis, true, disturbances, &X);
+    all.at = responses(s, branch, analysis, of.orders, true, disturbances, &X);
     if (all.at.outcome != Outcome::converged) return all;
 
     const Eigen::Index count = X.cols();

@@ -7,8 +7,16 @@
 #include "elastocheck/recursive.hpp"
 #include "models/response.hpp"
 #include "models/state_rate.hpp"
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/response_system.hpp"
 
 namespace elastocheck::recursive {
+
+// Of a model for its responses at many states; the orders are those of the last state.
+struct ResponseAnalysis {
+    Analysis analysis;
+    ResponseOrders orders = {};
+};
 
 // Response (dr, dπ) of every body to a unit of each disturbance, at the poses and load factor of
 // `state`:
@@ -31,7 +39,7 @@ namespace elastocheck::recursive {
 // the state is of another model; else as solve().
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances, const Method& method,
-                         const Analysis& analysis);
+                         ResponseAnalysis& analysis);
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances, const Method& method = {});
 
@@ -40,6 +48,6 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
 // numbers. Throws as above.
 ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,
                              std::span<const Disturbance> disturbances,
-                             std::span<const Model> rates, const Analysis& analysis);
+                             std::span<const Model> rates, ResponseAnalysis& analysis);
 
 }  // namespace elastocheck::recursive

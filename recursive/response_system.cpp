@@ -58,10 +58,21 @@ void leave_out_idle_motion(SteppingState<double>& s) {
     }
 }
 
+// Factorises at (s.q, s.lambda), first in `order`.
+Outcome factorise_in(SteppingState<double>& s, Elimination& order) {
+    SparseLU<double>& lu = s.system.lu;
+    const bool known = !order.row.empty();
+    if (known) take_order(lu, order);
+    const int before = lu.orders;
+    const Outcome outcome = factorise_at(s, s.q, s.lambda);
+    if (!known || lu.orders != before) order = lu.order;
+    return outcome;
+}
+
 }  // namespace
 
-Outcome factorise_response(SteppingState<double>& s, bool consistent) {
-    if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
+Outcome factorise_response(SteppingState<double>& s, bool consistent, ResponseOrders& orders) {
+    if (const Outcome outcome = factorise_in(s, orders.with_K); outcome != Outcome::converged)
         return outcome;
     if (!consistent) return Outcome::converged;
     residual_at(s, s.q, s.lambda);  // λ = 0: f_ext - f_elast
@@ -70,7 +81,7 @@ Outcome factorise_response(SteppingState<double>& s, bool consistent) {
     if (!s.x.allFinite()) return Outcome::not_finite;
     s.lambda = s.x.tail(s.m());
     s.consistent = true;
-    return factorise_at(s, s.q, s.lambda);
+    return factorise_in(s, orders.with_tangent);
 }
 
 Outcome answer_response(SteppingState<double>& s, Judged judged) {

@@ -6,12 +6,21 @@
 
 namespace elastocheck::recursive {
 
+// Elimination orders of both matrices at one state; empty for those of the analysis. Neighbouring
+// states have similar matrices: with the orders of one the other needs no search for its own, which
+// costs ten factorisations.
+struct ResponseOrders {
+    Elimination with_K, with_tangent;
+};
+
 // Assembles and factorises the matrix of (24) at s.q and the present inputs: with K of (19), or with
 // the consistent tangent in its place, for which λ is computed first with K:
 //
 // ⎡ K    Φ_qᵀ ⎤ ⎧ Δq ⎫   ⎧ f_ext - f_elast ⎫
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
-Outcome factorise_response(SteppingState<double>& s, bool consistent);
+//
+// Begins with `orders`, and leaves there those that were used.
+Outcome factorise_response(SteppingState<double>& s, bool consistent, ResponseOrders& orders);
 
 // Which held directions of the border must carry no load.
 enum class Judged { idle_motions, all };

@@ -40,9 +40,10 @@ std::vector<StateRate> sensitivity(const Model& model, const Branch& branch,
     SteppingState<double> s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
+    ResponseOrders orders;
     const Outcome ready = std::isnan(analysis.diagnosis.constraint_error)
                               ? Outcome::not_finite
-                              : factorise_response(s, true);
+                              : factorise_response(s, true, orders);
     std::vector<StateRate> all;
     for (const Model& rate : rates) {
         check_rate(model, branch, rate);

@@ -8,7 +8,7 @@
 #include "compare/outputs/positions.hpp"
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
-#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/linear_response.hpp"
 #include "recursive/linear_response.hpp"
 #include "reference/energy/linear_response.hpp"
 #include "reference/equilibrium/linear_response.hpp"
@@ -257,9 +257,9 @@ int steering_joint(const Model& model) {
 
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
-                         std::optional<recursive::Analysis>& analysis) {
+                         std::optional<recursive::ResponseAnalysis>& analysis) {
     const auto recursion = [&](const recursive::Method& method) {
-        if (!analysis) analysis = recursive::analyse(model);
+        if (!analysis) analysis.emplace(recursive::analyse(model));
         return recursive::linear_response(model, branch, state, disturbances, method, *analysis);
     };
     switch (solver.leg) {
@@ -295,7 +295,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     const std::size_t first = freed_case.model.joints.size();
     const bool steers =
         steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
-    const auto on_jacks = [&](std::size_t count, std::optional<recursive::Analysis>& analysis) {
+    const auto on_jacks = [&](std::size_t count, std::optional<recursive::ResponseAnalysis>& analysis) {
         const ResponseCase up = jacked_up(freed_case, count);
         std::vector<Disturbance> changes = wrenches;
         for (std::size_t w = 0; w < count; ++w)
@@ -330,11 +330,11 @@ namespace {
 ResponseRates response_rates(Leg leg, const ResponseCase& of,
                              std::span<const Disturbance> disturbances,
                              std::span<const Model> rates,
-                             std::optional<recursive::Analysis>& analysis) {
+                             std::optional<recursive::ResponseAnalysis>& analysis) {
     switch (leg) {
         case Leg::recursive:
         case Leg::series:
-            if (!analysis) analysis = recursive::analyse(of.model);
+            if (!analysis) analysis.emplace(recursive::analyse(of.model));
             return recursive::response_rates(of.model, of.branch, of.state, disturbances, rates,
                                              *analysis);
         case Leg::equilibrium:
@@ -430,7 +430,7 @@ WheelResponseRates wheel_response_rates(const BranchSide& side, Leg leg, int ste
     const std::size_t first = free.model.joints.size();
     const bool steers =
         steering >= 0 && free.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
-    const auto on_jacks = [&](std::size_t count, std::optional<recursive::Analysis>& analysis) {
+    const auto on_jacks = [&](std::size_t count, std::optional<recursive::ResponseAnalysis>& analysis) {
         const ResponseCase up = jacked_up(free, count);
         std::vector<Model> up_rates;
         for (std::size_t k = 0; k < rates.size(); ++k)

@@ -22,7 +22,7 @@
 #include "compare/comparison/legs.hpp"
 #include "models/response.hpp"
 #include "models/state_rate.hpp"
-#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/linear_response.hpp"
 
 namespace elastocheck::compare {
 
@@ -36,7 +36,7 @@ inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 // Cached analyses of the recursion for the response models of a branch side; they do not depend on
 // the state.
 struct Analyses {
-    std::optional<recursive::Analysis> free, jacked, tied;  // computed on first use
+    std::optional<recursive::ResponseAnalysis> free, jacked, tied;  // computed on first use
 };
 
 struct WheelResponse {
@@ -92,7 +92,7 @@ WheelResponseRates wheel_response_rates(const BranchSide& side, Leg leg, int ste
 // Response by one leg. `analysis` is that of the recursion, computed here if empty.
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,
                          const Equilibrium& state, std::span<const Disturbance> disturbances,
-                         std::optional<recursive::Analysis>& analysis);
+                         std::optional<recursive::ResponseAnalysis>& analysis);
 
 // Displacement of a point of a body, and rotation of the body.
 Eigen::Vector3d moved(const Equilibrium& state, const Motions& motions, const Point& point);

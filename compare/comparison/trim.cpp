@@ -326,17 +326,18 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     TrimAttempt here;
     bool settled = false;
     if (start != nullptr && start->J.rows() == p.size() && start->J.cols() == p.size()) {
-        const auto factors = start->J.colPivHouseholderQr();
         p = start->p, changes = start->J;
         here = settle(problem, p, problem.solver);
+        // Broyden (1965): J is corrected along every step, J ← J + (Δc - J s) sᵀ / sᵀs, J s = -c.
         for (TrimAttempt next; here.outcome == Outcome::converged && here.missed.norm() > met;
              here = next, ++record.iterations) {
-            const VectorXd dp = h.cwiseProduct(factors.solve(-here.missed));
-            next = settle(problem, p + dp, problem.solver);
+            const VectorXd s = changes.colPivHouseholderQr().solve(-here.missed);
+            next = settle(problem, p + h.cwiseProduct(s), problem.solver);
             if (next.outcome != Outcome::converged ||
                 !(next.missed.norm() < contraction * here.missed.norm()))
                 break;
-            p += dp;
+            p += h.cwiseProduct(s);
+            changes += next.missed * s.transpose() / s.squaredNorm();
         }
         settled = here.outcome == Outcome::converged && here.missed.norm() <= met;
     }

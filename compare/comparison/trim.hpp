@@ -28,7 +28,7 @@ struct TrimStart {
 
 // trim() by the series alone, without a second reference: `confirmed` of its conditions is NaN, and
 // `confirmed_by` is the series. For a program without the references. With a `start` the equations
-// are solved from there with the same J where that converges, to the same accuracy, else as by
+// are solved from there by the method of Broyden where it converges, to the same accuracy, else as by
 // trim(); a start of another size, such as an empty one, is not used. A trim that is reached
 // replaces it.
 Trimmed trim_by_series(const Scene& scene, TrimStart* start = nullptr);

@@ -4,12 +4,17 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/linear_algebra/saddle_point.hpp"
 
 namespace elastocheck::recursive {
+
+namespace series {
+struct Start;
+}
 
 // Least reduced stiffness of an equilibrium (stiffness.hpp).
 struct LeastStiffness {
@@ -37,6 +42,7 @@ struct Analysis {
     // R_d and Φ_d are below rounding: the design position is an equilibrium
     bool at_rest = false;
     StartStability start;  // of the design position, if it is an equilibrium and has no curves
+    std::shared_ptr<const series::Start> settled;  // null before series::keep_start()
 };
 
 // Analyses the model. A model far from the origin is first moved to its centre (recentre.hpp).

@@ -227,6 +227,13 @@ void choose_order(SparseLU<Real>& lu, const Real* values) {
     lay_out(lu);
 }
 
+// Goes on in another order for the same pattern; not factorised.
+template <class Real>
+void take_order(SparseLU<Real>& lu, const Elimination& order) {
+    lu.order = order;
+    lu.LU.assign(order.column.size(), 0);
+}
+
 // Prepares for matrices of this pattern, with the elimination order chosen from `values`. The caller
 // has set `source` and `factor`.
 template <class Real>

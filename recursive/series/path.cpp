@@ -399,17 +399,18 @@ Outcome cross_knots(Continuation& w, const std::vector<Crossing>& over) {
     return outcome;
 }
 
+std::vector<Piece> pieces_of(const std::vector<Followed>& curves) {
+    std::vector<Piece> all;
+    for (const auto& curve : curves) all.push_back(curve.piece);
+    return all;
+}
+
 // Expands at the present point on the pieces that the motion enters. A deformation that starts at a
 // knot and leaves its piece at once belongs to the neighbouring piece. Each change of piece changes
 // the motion: a linear complementarity problem. All such curves change piece together, or one at a
 // time where the set of pieces would repeat. Where no set agrees with its motion, the path turns
 // back at the knot.
 Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
-    const auto pieces = [&] {
-        std::vector<Piece> all;
-        for (const auto& curve : w.curves) all.push_back(curve.piece);
-        return all;
-    };
     std::vector<std::vector<Piece>> tried;
     for (;;) {
         expand(w.s, w.e, w.c, w.first, w.by_arc(), w.ahead);
@@ -418,9 +419,9 @@ Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
             o != Outcome::converged)
             return o;
         if (end.at_once.empty()) return Outcome::converged;
-        tried.push_back(pieces());
+        tried.push_back(pieces_of(w.curves));
         const auto would_repeat = [&] {
-            auto next = pieces();
+            auto next = pieces_of(w.curves);
             for (const auto& [k, direction] : end.at_once) next[k] += direction;
             return std::ranges::find(tried, next) != tried.end();
         };
@@ -548,6 +549,7 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                       std::optional<Begun>* begun = nullptr) {
     SteppingState<double>& s = w.s;
     std::size_t gone_over = 0;
+    const std::vector<Piece> pieces = pieces_of(w.curves);
     while (w.path.expansions.size() < most_expansions(w, gone_over)) {
         const bool starts = w.path.expansions.empty();
         const bool again = starts && begun != nullptr && *begun;
@@ -563,9 +565,10 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
         if (const int here = again ? (*begun)->side : side(w, w.to); starts) {
             w.side = here;
             if (w.e.drive == Drive::rate && !w.by_arc()) {
-                const StartStability start = again              ? (*begun)->stability
-                                             : known != nullptr ? *known
-                                                                : start_stability(s);
+                const bool is_known = known != nullptr && pieces_of(w.curves) == pieces;
+                const StartStability start = again      ? (*begun)->stability
+                                             : is_known ? *known
+                                                        : start_stability(s);
                 w.softest = start.softest;
                 w.stable = start.least.of_energy && start.least.value > 0;
                 if (const Outcome o = check_start_stability(s, start); o != Outcome::converged)
@@ -662,26 +665,77 @@ bool same(const LoadKind& a, const LoadKind& b) {
         a, b);
 }
 
+bool is_same(const elastocheck::Driven& a, const elastocheck::Driven& b) {
+    return std::visit(
+        overloaded{
+            [](const Load& l, const Load& m) { return same(l.kind, m.kind); },
+            [](const Motion& m, const Motion& n) { return m.joint == n.joint; },
+            [](const FreeLength& f, const FreeLength& g) { return f.elastic == g.elastic; },
+            [](const Preload& p, const Preload& r) {
+                return p.elastic == r.elastic && p.direction == r.direction;
+            },
+            [](const auto&, const auto&) { return false; }},
+        a, b);
+}
+
 }  // namespace
 
 bool same_drivers(const Branch& a, const Branch& b) {
     return std::ranges::equal(a.drivers, b.drivers, [](const Driver& x, const Driver& y) {
-        return x.start == y.start && x.rate == y.rate &&
-               std::visit(
-                   overloaded{[](const Load& l, const Load& m) { return same(l.kind, m.kind); },
-                              [](const Motion& m, const Motion& n) { return m.joint == n.joint; },
-                              [](const FreeLength& f, const FreeLength& g) {
-                                  return f.elastic == g.elastic;
-                              },
-                              [](const Preload& p, const Preload& r) {
-                                  return p.elastic == r.elastic && p.direction == r.direction;
-                              },
-                              [](const auto&, const auto&) { return false; }},
-                   x.what, y.what);
+        return x.start == y.start && x.rate == y.rate && is_same(x.what, y.what);
     });
 }
 
 namespace {
+
+SteppingState<double> series_state(const Model& model, const Branch& branch,
+                                   const Analysis& analysis) {
+    SteppingState<double> s(model, branch, analysis);
+    s.consistent = true;
+    s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
+    return s;
+}
+
+// From the design position to the start, with the constraint error of the analysis in s.Phi_d: the
+// closing tolerance is no exact equilibrium.
+Outcome settle(Continuation& settling, const Analysis& analysis) {
+    SteppingState<double>& s = settling.s;
+    if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged) return o;
+    const Outcome walked = follow_to_end(settling);
+    if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
+    return settled(s, walked, 0.0);
+}
+
+bool is_at_rest(const Branch& branch) {
+    return std::ranges::all_of(branch.drivers, [](const Driver& d) { return d.rate == 0; });
+}
+
+// The path of a branch on which nothing moves, from its start.
+Outcome stay(Continuation& w, const StartStability* known) {
+    SteppingState<double>& s = w.s;
+    const Outcome outcome =
+        check_start_stability(s, known != nullptr ? *known : start_stability(s));
+    if (outcome != Outcome::converged) return outcome;
+    Expansion here{poses_of(s.q), Matrix<double>::Zero(s.n() + s.m(), 2), Vector<double>::Zero(2),
+                   1, 0, {}, {}};
+    here.x.col(0).tail(s.m()) = s.lambda;
+    here.load[1] = w.to;
+    w.path.expansions.push_back(std::move(here));
+    return Outcome::converged;
+}
+
+// The drivers that act at load factor 0.
+std::vector<Driver> start_values(const Branch& branch) {
+    std::vector<Driver> list;
+    std::ranges::copy_if(branch.drivers, std::back_inserter(list),
+                         [](const Driver& driver) { return driver.start != 0; });
+    return list;
+}
+bool same_values(std::span<const Driver> a, std::span<const Driver> b) {
+    return std::ranges::equal(a, b, [](const Driver& x, const Driver& y) {
+        return x.start == y.start && is_same(x.what, y.what);
+    });
+}
 
 // Follows one side. `begun`: empty, or of another side with the same drivers; filled where the side
 // may be begun alike.
@@ -693,9 +747,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         none.outcome = Outcome::not_finite, none.detail = not_finite(model);
         return none;
     }
-    SteppingState<double> s(model, branch, analysis);
-    s.consistent = true;
-    s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
+    SteppingState<double> s = series_state(model, branch, analysis);
     std::vector<Followed> curves = curves_of(model);
     const auto finish = [&](Continuation& w, Outcome outcome) {
         w.path.outcome = outcome;
@@ -704,6 +756,12 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         w.path.arc_length = options.arc_length;
         if (w.e.drive == Drive::start) w.path.expansions.clear();
         return std::move(w.path);
+    };
+    const auto finish_from_start = [&](const StartStability* stability) {
+        Continuation w(s, curves, options, Drive::rate);
+        w.go_to(0);
+        if (is_at_rest(branch)) return finish(w, stay(w, stability));
+        return finish(w, follow_to_end(w, stability, begun));
     };
     if (!curves.empty() || options.arc_length) begun = nullptr;
     if (begun != nullptr && *begun) {
@@ -716,21 +774,21 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         w.go_to(0);
         return finish(w, loaded == Outcome::converged ? follow_to_end(w, nullptr, begun) : loaded);
     }
+    if (const Start* start = analysis.settled.get();
+        start != nullptr && same_values(start->drivers, start_values(branch))) {
+        s.q = start->q, s.lambda = start->lambda, s.Phi_d = start->Phi_d;
+        s.system = start->system;
+        for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start->pieces[k];
+        return finish_from_start(&start->stability);
+    }
     // The factors of the analysis belong to the design position. If that is no equilibrium,
     // settling starts there; if it is, the branch does.
     if (!analysis.at_rest || !starts_as_drawn(branch)) {
-        // without the closing tolerance: the series needs an exact equilibrium
         s.Phi_d = analysis.Phi_d;
         Continuation settling(s, curves, options, Drive::start);
-        if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged)
+        if (const Outcome o = settle(settling, analysis); o != Outcome::converged)
             return finish(settling, o);
-        const Outcome walked = follow_to_end(settling);
-        if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
-        if (const Outcome o = settled(s, walked, 0.0); o != Outcome::converged)
-            return finish(settling, o);
-        Continuation w(s, curves, options, Drive::rate);
-        w.go_to(0);
-        return finish(w, follow_to_end(w, nullptr, begun));
+        return finish_from_start(nullptr);
     }
     Continuation w(s, curves, options, Drive::rate);
     if (const Outcome o = begin_at_design(w, analysis); o != Outcome::converged)
@@ -743,6 +801,23 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
 Path follow(const Model& model, const Branch& branch, const recursive::Series& options,
             const Analysis& analysis) {
     return follow(model, branch, options, analysis, nullptr);
+}
+
+void keep_start(const Model& model, const Branch& branch, const recursive::Series& options,
+                Analysis& analysis) {
+    check(model, branch);
+    analysis.settled.reset();
+    const bool as_drawn = analysis.at_rest && starts_as_drawn(branch);
+    if (as_drawn || std::isnan(analysis.diagnosis.constraint_error)) return;
+    SteppingState<double> s = series_state(model, branch, analysis);
+    std::vector<Followed> curves = curves_of(model);
+    s.Phi_d = analysis.Phi_d;
+    Continuation settling(s, curves, options, Drive::start);
+    if (settle(settling, analysis) != Outcome::converged) return;
+    go_to(s, {1, 0});
+    analysis.settled = std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d,
+                                                     s.system, pieces_of(curves),
+                                                     start_stability(s));
 }
 
 std::vector<Path> follow_sides(const Model& model, std::span<const Branch> sides,

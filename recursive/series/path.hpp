@@ -18,6 +18,7 @@
 #include "elastocheck/model.hpp"
 #include "elastocheck/recursive_method.hpp"
 #include "recursive/diagnosis/analysis.hpp"
+#include "recursive/formula/inputs.hpp"
 
 namespace elastocheck::recursive::series {
 
@@ -58,6 +59,22 @@ struct Path {
     int rejected = 0;  // expansions shortened because the error at their end was too large
     Counts counts;     // iterations: back-substitutions; evaluations: residuals, not coefficients
 };
+
+// The settled equilibrium at load factor 0, with its factors. Branches whose drivers have the same
+// values there start in it, whatever their rates.
+struct Start {
+    std::vector<Driver> drivers;  // whose value at load factor 0 is not 0
+    State<double> q;
+    Vector<double> lambda, Phi_d;
+    SaddlePoint<double> system;
+    std::vector<Piece> pieces;  // of the curves
+    StartStability stability;
+};
+
+// Settles the start of the branch and keeps it in the analysis, for follow(). Keeps nothing where it
+// does not settle, for which follow() has the words.
+void keep_start(const Model& model, const Branch& branch, const recursive::Series& options,
+                Analysis& analysis);
 
 // Follows the branch from load factor 0 to branch.to. With the load as parameter, ends with
 // `limit_point` where no equilibrium continues the branch.

@@ -16,6 +16,7 @@
 #include "compare/outputs/positions.hpp"
 #include "elastocheck/compile.hpp"
 #include "recursive/diagnosis/analysis.hpp"
+#include "recursive/series/path.hpp"
 #include "reports/document/drawing.hpp"
 
 namespace elastocheck::live {
@@ -118,14 +119,19 @@ json outcome_json(const EquilibriumPath& path) {
     return {{"outcome", name(path.outcome)}, {"detail", path.detail}};
 }
 
+// With the settled start, which all branches of the same active parts have.
+std::shared_ptr<const recursive::Analysis> analysis_of(const compare::BranchSide& side) {
+    auto analysis = std::make_shared<recursive::Analysis>(recursive::analyse(side.model));
+    recursive::series::keep_start(side.model, side.branch, {}, *analysis);
+    return analysis;
+}
+
 json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& branch,
                  const Request& request, bool full, std::vector<double>& numbers) {
     auto sides = compare::sides_of(solver.model, branch, request.points);
     const auto parts = parts_of(sides.front().model);
     auto known = std::ranges::find(shared, parts, &Shared::parts);
-    if (known == shared.end())
-        known = shared.insert(known, {parts, std::make_shared<const recursive::Analysis>(
-                                                 recursive::analyse(sides.front().model))});
+    if (known == shared.end()) known = shared.insert(known, {parts, analysis_of(sides.front())});
     for (auto& side : sides) side.analysis = known->analysis;
     Rows rows;
     const EquilibriumPath path = solver.walk(branch, sides, {.leg = compare::Leg::series}, full,

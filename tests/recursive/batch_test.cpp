@@ -163,6 +163,42 @@ TEST(Sides, ShareTheirStartAndAreAsAlone) {
     }
 }
 
+// A start settles under a preload, one over curves; a branch with other values at load factor 0 does
+// not use it, and the last rests on what is kept.
+TEST(Start, ThatIsKeptServesItsBranchesAlone) {
+    for (const char* name : {"chrono_mcpherson_preload", "double_wishbone"}) {
+        const Model model = on_sides(compile(support::scene(name)), 0);
+        const Analysis analysis = analyse(model);
+        Analysis kept = analysis;
+        series::keep_start(model, model.branches.front(), {}, kept);
+        ASSERT_TRUE(kept.settled) << name;
+        std::vector<Branch> branches(3, model.branches.front());
+        branches[1].to *= -0.5;
+        for (Driver& driver : branches[2].drivers) driver.start += 0.01 * branches[2].to * driver.rate;
+        for (std::size_t k = 0; k < branches.size(); ++k) {
+            const series::Path own = series::follow(model, branches[k], {}, analysis),
+                               from = series::follow(model, branches[k], {}, kept);
+            EXPECT_EQ(own.outcome, Outcome::converged) << own.detail;
+            EXPECT_EQ(from.outcome, own.outcome) << name;
+            EXPECT_LE(difference(series::sample(model, from, branches[k], 20),
+                                 series::sample(model, own, branches[k], 20)),
+                      1e-12)
+                << name << ", branch " << k;
+            EXPECT_EQ(from.counts.iterations < own.counts.iterations, k < 2) << name;
+        }
+        for (Driver& driver : branches[0].drivers) driver.rate = 0;
+        const series::Path still = series::follow(model, branches[0], {}, kept);
+        EXPECT_EQ(still.outcome, Outcome::converged);
+        EXPECT_EQ(still.counts.iterations, 0) << "nothing is to be solved";
+        const auto points = series::sample(model, still, branches[0], 2).points;
+        ASSERT_EQ(points.size(), 3u);
+        const auto first =
+            series::sample(model, series::follow(model, branches[1], {}, analysis), branches[1], 1);
+        for (std::size_t b = 0; b < model.bodies.size(); ++b)
+            EXPECT_LE((points[2].poses[b].r - first.points[0].poses[b].r).norm(), 1e-12);
+    }
+}
+
 Model mcpherson() { return compile(support::scene("chrono_mcpherson")); }
 AxialSpring& coil(Model& model) {
     for (auto& elastic : model.elastics)

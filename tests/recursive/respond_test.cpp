@@ -67,6 +67,28 @@ TEST(Respond, MethodsWithOneMatrixAnswerAlike) {
     EXPECT_GT(apart(linear, consistent), 1e-3);
 }
 
+// The orders that a state leaves serve the next one: the same response, and no search for an order
+// where the neighbours are near.
+TEST(Respond, NextStateBeginsWithTheOrdersOfTheLast) {
+    const OneWay way = way_of("double_wishbone", "vertical", 1);
+    const auto path = solve(way.model, way.branch, {.method = rung("series"), .steps = 8});
+    ASSERT_EQ(path.points.size(), 9u);
+    ResponseAnalysis kept{analyse(way.model)};
+    const auto orders = [&] { return kept.orders.with_tangent.row; };
+    int searches = 0;
+    for (const Equilibrium& state : path.points) {
+        const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
+        const auto before = orders();
+        const Response response = linear_response(way.model, way.branch, bare(state), {&side, 1},
+                                                  rung("series"), kept);
+        ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
+        searches += before != orders();
+        EXPECT_LE(apart(stacked(response.increments[0]), one(way, state, side)), 1e-10);
+    }
+    EXPECT_GE(searches, 1) << "the first state leaves its own";
+    EXPECT_LE(searches, 3);
+}
+
 TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
     const OneWay way = way_of("front_axle", "vertical", 1);
     const Equilibrium state = end_of(way.model, way.branch);
@@ -75,7 +97,7 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
     const std::vector<Disturbance> both{UnitWrench{at, f}, UnitWrench{at, Vector3d::Zero(), m},
                                         UnitWrench{at, f, m}};
     const auto response =
-        linear_response(way.model, way.branch, state, both, rung("series"), analyse(way.model));
+        linear_response(way.model, way.branch, state, both, rung("series"));
     ASSERT_EQ(response.increments.size(), 3u) << response.detail;
     EXPECT_EQ(stacked(response.increments[0]), one(way, state, both[0]));
     EXPECT_LE(apart(stacked(response.increments[0]) + stacked(response.increments[1]),

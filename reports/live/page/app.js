@@ -314,22 +314,23 @@ const numberRow = (number, words, slides) => {
   const entry = make('input', {type: 'text', inputmode: 'decimal', 'aria-label': number.path, autocomplete: 'off'});
   const row = make('div', {class: 'row', 'data-path': number.path}, make('span', {class: 'path'}, words));
   entry.onchange = () => { remember(); put(number.path, entry.value.trim()); changed(); settle(); };
-  let slider = null;
+  row.title = `as opened: ${number.value} ${number.unit}`;
+  let slider = null, slid = null;  // the text that the slider stands at
   if (slides && number.value !== 0) {
     const size = Math.abs(number.value);
     slider = make('input', {type: 'range', 'aria-label': `${number.path}, slider`, min: number.value - .5 * size, max: number.value + .5 * size, step: size / 200});
     slider.onpointerdown = remember;
     slider.onkeydown = event => { if (event.key.startsWith('Arrow')) remember(); };
-    slider.oninput = () => { put(number.path, written(+slider.value)); changed(); };
+    slider.oninput = () => { put(number.path, written(+slider.value)); slid = null; changed(); };
     slider.onchange = settle;
   }
   row.append(slider ?? make('span'), entry, make('span', {class: 'unit'}, number.unit));
+  // Sets only what differs: the browser paints an entry again that is set to its own value.
   row.fill = () => {
     const text = state.settings.get(number.path) ?? String(number.value);
-    if (document.activeElement !== entry || entry.value.trim() !== text) entry.value = text;
-    if (slider && document.activeElement !== slider) slider.value = text;
+    if (entry.value !== text && (document.activeElement !== entry || entry.value.trim() !== text)) entry.value = text;
+    if (slider && slid !== text && document.activeElement !== slider) slider.value = slid = text;
     row.classList.toggle('changed', state.settings.has(number.path));
-    row.title = `as opened: ${number.value} ${number.unit}`;
   };
   rowsOf.set(number.path, [...(rowsOf.get(number.path) ?? []), row]);
   row.fill();
@@ -340,9 +341,11 @@ const fillNumbers = () => { for (const rows of rowsOf.values()) for (const row o
 const invalid = () => {
   const text = $('trouble').textContent;
   for (const [path, rows] of rowsOf)
-    for (const row of rows)
-      row.querySelector('input[type=text]').setAttribute('aria-invalid',
-        String(state.settings.has(path) && text !== '' && (text.includes(path) || !Number.isFinite(+state.settings.get(path)) || state.settings.get(path) === '')));
+    for (const row of rows) {
+      const entry = row.querySelector('input[type=text]'), given = state.settings.get(path);
+      const wrong = String(given !== undefined && text !== '' && (text.includes(path) || !Number.isFinite(+given) || given === ''));
+      if (entry.getAttribute('aria-invalid') !== wrong) entry.setAttribute('aria-invalid', wrong);
+    }
 };
 const makeNumbers = () => {
   rowsOf.clear();
@@ -438,7 +441,11 @@ for (const name of ['dragover', 'drop'])
     const [file] = event.dataTransfer.files;
     if (name === 'drop' && file) await tryOpen(await file.text(), file.name);
   });
-new ResizeObserver(() => state.now && draw3d()).observe($('suspension'));
+new ResizeObserver(() => { measureView(); draw3d(); }).observe($('suspension'));
+// The browser compiles anew what has run often: solves that nobody waits for, until there is something to do.
+const warmUp = async () => {
+  for (let k = 0; k < 10 && state.info && !busy && !due; ++k) await ask('solve', {request: {...request(), points: 20}});
+};
 
 setUpView();
 (async () => {
@@ -447,6 +454,7 @@ setUpView();
     const {text, name} = JSON.parse($('scene').textContent);
     await tryOpen(text, name);
     window.live.ready = performance.now();
+    await warmUp();
   } catch (error) {
     trouble(error.message);
     $('state').textContent = 'the solver did not start';

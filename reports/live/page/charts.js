@@ -59,7 +59,6 @@ const chartOf = (branchName, name, withBranch) => {
   if (x1 === x0) x1 = x0 + 1;
   [y0, y1] = [y0 - .06 * (y1 - y0), y1 + .06 * (y1 - y0)];
   const at = ([a, v]) => [left + (W - left - right) * (a - x0) / (x1 - x0), H - footroom - (H - headroom - footroom) * (Math.min(y1 + (y1 - y0), Math.max(y0 - (y1 - y0), v)) - y0) / (y1 - y0)];
-  const id = `clip-${++chartOf.count}`;
   const svg = make('svg', {viewBox: `0 0 ${W} ${H}`, role: 'img', 'aria-label': `${name} over ${branchName}`});
   for (const v of ticks(y0, y1, 4)) {
     const y = px(at([x0, v])[1]);
@@ -106,7 +105,6 @@ const chartOf = (branchName, name, withBranch) => {
     : `published recursion off by up to ${shown(+off.toPrecision(2))} ${channel.unit}`), aim));
   return figure;
 };
-chartOf.count = 0;
 // The target band of one curve: met where every point of the branch lies in it.
 const editTarget = (name, branchName) => {
   const form = $('target'), key = `${branchName}|${name}`, given = state.targets.get(key) ?? [-Infinity, Infinity];

@@ -90,8 +90,6 @@ const drawHandles = axes => {
 const draw3d = () => {
   const svg = $('drawing'), {now, base} = state;
   if (!now) return;
-  view.wide = svg.clientWidth || 640;
-  view.high = Math.round(view.wide * .74);
   svg.setAttribute('viewBox', `0 0 ${view.wide} ${view.high}`);
   const axes = axesOf(), [branch, k] = stationOf(now);
   const layers = [];
@@ -104,6 +102,11 @@ const draw3d = () => {
   $('scenery').replaceChildren(...layers);
   drawHandles(axes);
   for (const button of $('views').children) button.setAttribute('aria-pressed', String(button.textContent === view.name));
+};
+// Asks for the width only where it may have changed: the answer costs a layout of the page.
+const measureView = () => {
+  view.wide = $('drawing').clientWidth || 640;
+  view.high = Math.round(view.wide * .74);
 };
 const pointers = new Map();
 let held = null;  // what a pointer moves: {name, from: coordinates, x, y} or {turn: true, ...}
@@ -119,6 +122,7 @@ const moved3d = (from, dx, dy) => {
 };
 const setUpView = () => {
   const svg = $('drawing');
+  measureView();
   svg.append(make('g', {id: 'scenery'}), make('g', {id: 'arrows'}), make('g', {id: 'handles'}));
   for (const name of Object.keys(views)) {
     const button = make('button', {type: 'button'}, name);
