@@ -85,7 +85,8 @@ Response responses(SteppingState<double>& s, const Branch& branch, const Analysi
         response = {outcome, fmt::format("branch '{}': {}", branch.name, detail), {}};
         return response;
     };
-    if (const Outcome outcome = factorise_response(s, consistent, orders); outcome != Outcome::converged)
+    if (const Outcome outcome = factorise_response(s, consistent, orders);
+        outcome != Outcome::converged)
         return fail(outcome, "the response to a small disturbance is not unique at the state");
     if (X != nullptr) X->resize(s.n() + s.m(), static_cast<Eigen::Index>(disturbances.size()));
     for (const Disturbance& disturbance : disturbances) {

@@ -9,7 +9,6 @@
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
 #include "recursive/linear_response.hpp"
-#include "recursive/linear_response.hpp"
 #include "reference/energy/linear_response.hpp"
 #include "reference/equilibrium/linear_response.hpp"
 
@@ -295,7 +294,8 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     const std::size_t first = freed_case.model.joints.size();
     const bool steers =
         steering >= 0 && freed_case.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
-    const auto on_jacks = [&](std::size_t count, std::optional<recursive::ResponseAnalysis>& analysis) {
+    const auto on_jacks = [&](std::size_t count,
+                              std::optional<recursive::ResponseAnalysis>& analysis) {
         const ResponseCase up = jacked_up(freed_case, count);
         std::vector<Disturbance> changes = wrenches;
         for (std::size_t w = 0; w < count; ++w)
@@ -430,7 +430,8 @@ WheelResponseRates wheel_response_rates(const BranchSide& side, Leg leg, int ste
     const std::size_t first = free.model.joints.size();
     const bool steers =
         steering >= 0 && free.model.joints[static_cast<std::size_t>(steering)].driven >= 0;
-    const auto on_jacks = [&](std::size_t count, std::optional<recursive::ResponseAnalysis>& analysis) {
+    const auto on_jacks = [&](std::size_t count,
+                              std::optional<recursive::ResponseAnalysis>& analysis) {
         const ResponseCase up = jacked_up(free, count);
         std::vector<Model> up_rates;
         for (std::size_t k = 0; k < rates.size(); ++k)

@@ -667,14 +667,13 @@ bool same(const LoadKind& a, const LoadKind& b) {
 
 bool is_same(const elastocheck::Driven& a, const elastocheck::Driven& b) {
     return std::visit(
-        overloaded{
-            [](const Load& l, const Load& m) { return same(l.kind, m.kind); },
-            [](const Motion& m, const Motion& n) { return m.joint == n.joint; },
-            [](const FreeLength& f, const FreeLength& g) { return f.elastic == g.elastic; },
-            [](const Preload& p, const Preload& r) {
-                return p.elastic == r.elastic && p.direction == r.direction;
-            },
-            [](const auto&, const auto&) { return false; }},
+        overloaded{[](const Load& l, const Load& m) { return same(l.kind, m.kind); },
+                   [](const Motion& m, const Motion& n) { return m.joint == n.joint; },
+                   [](const FreeLength& f, const FreeLength& g) { return f.elastic == g.elastic; },
+                   [](const Preload& p, const Preload& r) {
+                       return p.elastic == r.elastic && p.direction == r.direction;
+                   },
+                   [](const auto&, const auto&) { return false; }},
         a, b);
 }
 
@@ -716,8 +715,13 @@ Outcome stay(Continuation& w, const StartStability* known) {
     const Outcome outcome =
         check_start_stability(s, known != nullptr ? *known : start_stability(s));
     if (outcome != Outcome::converged) return outcome;
-    Expansion here{poses_of(s.q), Matrix<double>::Zero(s.n() + s.m(), 2), Vector<double>::Zero(2),
-                   1, 0, {}, {}};
+    Expansion here{poses_of(s.q),
+                   Matrix<double>::Zero(s.n() + s.m(), 2),
+                   Vector<double>::Zero(2),
+                   1,
+                   0,
+                   {},
+                   {}};
     here.x.col(0).tail(s.m()) = s.lambda;
     here.load[1] = w.to;
     w.path.expansions.push_back(std::move(here));
@@ -815,9 +819,9 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
     Continuation settling(s, curves, options, Drive::start);
     if (settle(settling, analysis) != Outcome::converged) return;
     go_to(s, {1, 0});
-    analysis.settled = std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d,
-                                                     s.system, pieces_of(curves),
-                                                     start_stability(s));
+    analysis.settled =
+        std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d, s.system,
+                                      pieces_of(curves), start_stability(s));
 }
 
 std::vector<Path> follow_sides(const Model& model, std::span<const Branch> sides,

@@ -174,7 +174,8 @@ TEST(Start, ThatIsKeptServesItsBranchesAlone) {
         ASSERT_TRUE(kept.settled) << name;
         std::vector<Branch> branches(3, model.branches.front());
         branches[1].to *= -0.5;
-        for (Driver& driver : branches[2].drivers) driver.start += 0.01 * branches[2].to * driver.rate;
+        for (Driver& driver : branches[2].drivers)
+            driver.start += 0.01 * branches[2].to * driver.rate;
         for (std::size_t k = 0; k < branches.size(); ++k) {
             const series::Path own = series::follow(model, branches[k], {}, analysis),
                                from = series::follow(model, branches[k], {}, kept);

@@ -79,8 +79,8 @@ TEST(Respond, NextStateBeginsWithTheOrdersOfTheLast) {
     for (const Equilibrium& state : path.points) {
         const Disturbance side = at_wheel(way.model, Vector3d::UnitY(), Vector3d::Zero());
         const auto before = orders();
-        const Response response = linear_response(way.model, way.branch, bare(state), {&side, 1},
-                                                  rung("series"), kept);
+        const Response response =
+            linear_response(way.model, way.branch, bare(state), {&side, 1}, rung("series"), kept);
         ASSERT_EQ(response.outcome, Outcome::converged) << response.detail;
         searches += before != orders();
         EXPECT_LE(apart(stacked(response.increments[0]), one(way, state, side)), 1e-10);
@@ -96,8 +96,7 @@ TEST(Respond, AnswersAreThoseOfEachDisturbanceAloneAndLinear) {
     const Vector3d f(0.3, -2, 0.7), m(5, 1, -3);
     const std::vector<Disturbance> both{UnitWrench{at, f}, UnitWrench{at, Vector3d::Zero(), m},
                                         UnitWrench{at, f, m}};
-    const auto response =
-        linear_response(way.model, way.branch, state, both, rung("series"));
+    const auto response = linear_response(way.model, way.branch, state, both, rung("series"));
     ASSERT_EQ(response.increments.size(), 3u) << response.detail;
     EXPECT_EQ(stacked(response.increments[0]), one(way, state, both[0]));
     EXPECT_LE(apart(stacked(response.increments[0]) + stacked(response.increments[1]),
