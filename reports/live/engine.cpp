@@ -18,6 +18,7 @@
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/path.hpp"
 #include "reports/document/drawing.hpp"
+#include "reports/live/outputs.hpp"
 
 namespace elastocheck::live {
 namespace {
@@ -28,13 +29,6 @@ using Eigen::Vector3d;
 
 constexpr double not_computed = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_points = 400;
-
-std::vector<Channel> channels_of(const Model& model) {
-    auto all = compare::channels(model);
-    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
-    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
-    return all;
-}
 
 // Points of a drawing_json() in their bodies.
 std::vector<Point> drawn_points(const Model& model, const json& drawing) {
@@ -138,6 +132,7 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
                                              true, known->responses, rows);
     json result = {{"name", branch.name}, {"unit", symbol(compare::unit_of(branch.unit))}};
     result.update(outcome_json(path));
+    result["idle"] = recursive::told_idle_modes(known->analysis->diagnosis);
     result["points"] = rows.rows.size();
     result["at"] = rows.append_to(numbers);
     const auto start = std::ranges::min_element(
@@ -159,9 +154,17 @@ json branch_json(const Solver& solver, std::list<Shared>& shared, const Branch& 
 
 }  // namespace
 
-json open(Session& session, std::string_view text, const std::string& name) {
+std::vector<Channel> channels_of(const Model& model) {
+    auto all = compare::channels(model);
+    std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    std::ranges::move(compare::characteristics(model), std::back_inserter(all));
+    return all;
+}
+
+json open(Session& session, std::string_view text, const std::string& name,
+          const reader::Folder& folder) {
     session = {std::string(text), name, std::nullopt, {}};
-    session.parsed.emplace(session.text, name, std::nullopt);
+    session.parsed.emplace(session.text, name, folder);
     std::vector<std::string> warnings;
     const Scene scene = session.parsed->read({}, &warnings);
     json answer = {{"title", scene.name}, {"warnings", warnings}};

@@ -2,6 +2,7 @@
 // same code runs in the page as WebAssembly (reports/live/wasm) and natively in tests.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,19 +15,24 @@
 
 namespace elastocheck::live {
 
+struct Prepared;  // prepared.hpp
+
 struct Session {
     std::string text, name;  // of the scene, and of its file for messages
     std::optional<reader::ParsedScene> parsed;
-    compare::TrimStart trim;  // of the last solve, from which the next one starts
+    compare::TrimStart trim;                  // of the last solve, from which the next one starts
+    std::shared_ptr<Prepared> prepared = {};  // for calls about the same numbers
 };
 
-// Reads a scene and keeps it in the session. Throws SceneError. The answer:
+// Reads a scene and keeps it in the session; `folder` is that of the files it refers to, empty: none.
+// Throws SceneError. The answer:
 //   title, warnings      of the reader, "file:line: field: ..."
 //   numbers              path, value, unit of every number of the file, as written
 //   points               hardpoints [mm]: name, position
 //   branches             name, unit, from, to [unit], steps
 //   channels             name, unit, kind, main, definition, undefined, of all that solve() returns
-nlohmann::ordered_json open(Session& session, std::string_view text, const std::string& name);
+nlohmann::ordered_json open(Session& session, std::string_view text, const std::string& name,
+                            const reader::Folder& folder = std::nullopt);
 
 struct Request {
     std::vector<Setting> settings;
@@ -42,8 +48,8 @@ struct Request {
 //   trim      adjusted: name, by, unit, makes; null without a trim
 //   channels  names; normally those of open()
 //   drawing   drawing_json() of the trimmed design position
-//   branches  name, unit, outcome, detail, points, start: position of a = 0, at: position of its first number,
-//             published: outcome, detail, steps, points, at; null unless asked for
+//   branches  name, unit, outcome, detail, idle: motions that nothing resists, as text,
+//             points, start: position of a = 0, at: position of its first number, published: outcome, detail, steps, points, at; null unless asked for
 // `numbers`, per point of a branch in ascending order of the parameter: parameter, channels, positions of the drawing's points [mm], spin axes of the wheels.
 // Of a point of the published method: parameter, channels. NaN: not computed; infinite: undefined.
 struct Answer {

@@ -15,7 +15,7 @@ const check = (met, what) => { if (!met) failures.push(what); };
 // difference of positions, and a characteristic near a pole a quotient of such differences.
 const bounds = {parameter: 0, geometry: 1e-12, motion: 1e-11, drive: 1e-11, reaction: 1e-11, element: 1e-10, characteristic: 1e-8};
 const worsts = {};
-let compared = 0, worst = 0, where = '', identical = 0;
+let matrices = 0, proved = 0, compared = 0, worst = 0, where = '', identical = 0;
 
 const compare = (name, settings) => {
   const there = JSON.parse(execFileSync(native, [path.join(folder, name), ...settings.map(s => s.join('='))], {maxBuffer: 1 << 30}));
@@ -29,6 +29,24 @@ const compare = (name, settings) => {
   }
   check(JSON.stringify(opened.head) === JSON.stringify(there.open), `${name}: opened otherwise`);
   if (there.error !== undefined || there.head.trouble) { check(solved.head.trouble === there.head?.trouble, `${name}: ${solved.head.trouble}`); return; }
+  // Compliance matrices, and proofs of the same points: by the same rounding, but of states that differ by some ulp.
+  const request = {settings, points: 40, only: opened.head.branches.at(-1)?.name};
+  if (there.compliance) {
+    const own = ask('compliance', {request});
+    check(own.why_not === there.compliance.why_not && String(own.causes) === String(there.compliance.causes), `${name}: compliance: ${own.why_not}`);
+    for (const point of own.why_not === undefined ? ['patch', 'centre'] : []) {
+      const rows = there.compliance[point], most = Math.max(...rows.flatMap(r => r.values.map(Math.abs)));
+      rows.forEach((row, r) => row.values.forEach((v, c) => { ++matrices; check(Math.abs(own[point][r].values[c] - v) <= 1e-8 * most && row.name === own[point][r].name, `${name}: ${row.name} ${c}: ${v} ${own[point][r].values[c]}`); }));
+    }
+    const {proof} = ask('prove', {request, first: 0, count: 3});
+    check(proof.stations.length === there.proof.stations.length && JSON.stringify(proof.claim) === JSON.stringify(there.proof.claim), `${name}: proofs`);
+    proof.stations.forEach((own, k) => {
+      const station = there.proof.stations[k];
+      for (const key of ['a', 'answer', 'stable']) check(own[key] === station[key], `${name}: ${request.only} proof at ${station.a}: ${key} ${own[key]} is not ${station[key]}`);
+      proved += own.answer === 'proved';
+      check(own.answer !== 'proved' || (own.error_mm <= proof.claim.mm && own.error_mm < 10 * station.error_mm && station.error_mm < 10 * own.error_mm), `${name}: bound ${own.error_mm} ${station.error_mm}`);
+    });
+  }
   const {head} = there, wide = 1 + head.channels.length + 3 * head.drawing.points.length + 3 * head.drawing.wheels.length;
   check(solved.numbers.length === there.numbers.length, `${name}: another count of numbers`);
   head.branches.forEach((branch, b) => {
@@ -85,10 +103,21 @@ says('x'.repeat((1 << 20) + 1), 'larger than 1 MiB');
 for (const request of [{settings: 1}, {settings: [['a']]}, {settings: [], points: 0}, {settings: [], points: 1.5}, {settings: [], full: 'all'}])
   try { ask('solve', {request}); check(false, `accepted: ${JSON.stringify(request)}`); } catch (error) { check(error.kind === 'input', error.message); }
 check(ask('solve', {request: {settings: [], points: 8}}).head.branches.length === 7, 'the scene opened last is solved after errors');
+// All points of a branch are proved, in ascending order. Requests that are none are refused.
+ask('open', {source: scene, name: 'a.yaml'});
+const points = ask('prove', {request: {settings: [], points: 40, only: 'travel'}, first: 0, count: 99}).proof.stations;
+check(points.length === 41 && points.every((s, k) => s.answer === 'proved' && (!k || s.a > points[k - 1].a)), 'all points of a branch are proved, in order');
+for (const request of [{settings: [], only: 'nowhere'}, {settings: [['a']]}])
+  try { ask('prove', {request, first: 0, count: 1}); check(false, 'proved nothing'); } catch (error) { check(error.kind === 'input', error.message); }
+for (const [given, part] of [[{}, 'as wishes.hpp'], [{vary: [], want: []}, 'at least one'], [{vary: [['points.nowhere.z', 0, 1]], want: [['toe', 'travel', 0, 0]]}, 'no such number'],
+  [{vary: [['springs.coil.rate', 1, 2]], want: [['toe', 'travel', 0, 0]]}, 'not within its limits'], [{vary: [['springs.coil.rate', 8e4, 1e5]], want: [['toe', 'nowhere', 0, 0]]}, 'no output'],
+  [{vary: [['springs.coil.rate', 8e4, '1e5']], want: [['toe', 'travel', 0, 0]]}, 'as wishes.hpp'], [{vary: [['springs.coil.rate', -8e4, 1e5]], want: [['wheel_rate', 'travel', 0, 1]]}, 'springs.coil.rate']])
+  try { ask('wish', {request: {settings: [], ...given}}); check(false, `granted: ${JSON.stringify(given)}`); } catch (error) { check(error.kind === 'input' && error.message.includes(part), `"${error.message}" has no "${part}"`); }
 const text = ask('rewrite', {request: {settings: [['points.tie_rod_inner.z', '0.006']]}}).text;
 check(text.includes('tie_rod_inner: [-0.279, 0.596, 0.006]') && text.includes('# Front suspension with double wishbones'), 'rewritten text');
 
+console.log(`${matrices} entries of compliance matrices, ${proved} points proved`);
 console.log(`${scenes.length} scenes, ${compared} numbers compared, ${identical} identical, largest difference ${worst.toExponential(1)} of the largest of its unit (${where})`);
 for (const [kind, [off, at]] of Object.entries(worsts)) console.log(`  ${kind}: ${off.toExponential(1)}  ${at}`);
 for (const failure of failures.slice(0, 20)) console.error(failure);
-if (failures.length || compared < 10000) { console.error(`${failures.length} failures`); process.exit(1); }
+if (failures.length || compared < 10000 || matrices < 500 || proved < 50) { console.error(`${failures.length} failures`); process.exit(1); }

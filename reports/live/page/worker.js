@@ -18,19 +18,26 @@ const imports = () => {
 const fresh = () => {
   api = new WebAssembly.Instance(module, imports()).exports;
   api._initialize();
-  if (scene) call('open', scene.text, scene.name);
+  if (scene) enter(scene);
 };
+const enter = ({text, name, files}) => {
+  for (const [file, content] of Object.entries(files ?? {})) call('file', file, content);
+  return call('open', text, name);
+};
+// Texts, as their place and size, and integers.
 const call = (name, ...words) => {
   if (!api) fresh();
-  const given = [];
+  const given = [], reserved = [];
   try {
     for (const word of words) {
+      if (typeof word === 'number') { given.push(word); continue; }
       const bytes = utf8.encode(word), at = api.reserve(bytes.length);
       new Uint8Array(api.memory.buffer, at, bytes.length).set(bytes);
       given.push(at, bytes.length);
+      reserved.push(at);
     }
     api[name](...given);
-    for (let k = 0; k < given.length; k += 2) api.release(given[k]);
+    for (const at of reserved) api.release(at);
     return text.decode(new Uint8Array(api.memory.buffer, api.text(), api.text_size()).slice());
   } catch (error) {
     api = null;
@@ -41,12 +48,13 @@ const call = (name, ...words) => {
 };
 const answers = {
   start: ({bytes}) => { module = new WebAssembly.Module(bytes); return {}; },
-  open: ({source, name}) => {
-    const before = scene;
+  open: ({source, name, files}) => {
+    const before = scene, given = {text: source, name, files};
     scene = null;
+    if (files || before?.files) api = null;  // files belong to one scene
     try {
-      const head = JSON.parse(call('open', source, name));
-      scene = {text: source, name};
+      const head = JSON.parse(enter(given));
+      scene = given;
       return {head};
     } catch (error) {
       scene = before;
@@ -58,6 +66,9 @@ const answers = {
     const numbers = new Float64Array(api.memory.buffer, api.numbers(), api.numbers_size()).slice();
     return {head, numbers, seconds: (performance.now() - start) / 1e3};
   },
+  prove: ({request, first, count}) => ({proof: JSON.parse(call('prove', JSON.stringify(request), first, count))}),
+  compliance: ({request}) => JSON.parse(call('compliance', JSON.stringify(request))),
+  wish: ({request}) => ({found: JSON.parse(call('wish', JSON.stringify(request)))}),
   rewrite: ({request}) => ({text: call('rewrite', JSON.stringify(request))})
 };
 self.onmessage = ({data}) => {

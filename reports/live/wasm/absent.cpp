@@ -1,11 +1,10 @@
-// What the sources name and the page has not: the two references, files, and the clock of the processor. The page asks
+// What the sources name and the page has not: the two references, and the clock of the processor. The page asks
 // for none of it; a call would be a fault, and says so.
 #include <stdexcept>
 
 #include "compare/jobs/jobs.hpp"
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
-#include "models/reader/document/text_file.hpp"
 #include "reference/energy/linear_response.hpp"
 #include "reference/equilibrium/linear_response.hpp"
 
@@ -49,14 +48,6 @@ ResponseRates response_rates(const Model&, const Branch&, const Equilibrium&,
     absent("the energy leg");
 }
 }  // namespace reference::energy
-
-// A scene in a page has no folder, which the reader reports before it would read a file.
-namespace reader {
-TextFile read_text(const std::filesystem::path&, Pipes, std::size_t) {
-    return {"", "a live page reads no files"};
-}
-bool leads_out_of(const std::filesystem::path&, const std::filesystem::path&) { return true; }
-}  // namespace reader
 
 namespace compare {
 double processor_time() { return 0; }

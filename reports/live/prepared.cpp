@@ -1,0 +1,56 @@
+#include "reports/live/prepared.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "compare/comparison/trim.hpp"
+#include "elastocheck/compile.hpp"
+
+namespace elastocheck::live {
+namespace {
+
+bool same(const std::vector<Setting>& a, const std::vector<Setting>& b) {
+    return std::ranges::equal(a, b, [](const Setting& x, const Setting& y) {
+        return x.path == y.path && x.value == y.value;
+    });
+}
+
+}  // namespace
+
+Prepared& prepared(Session& session, const std::vector<Setting>& settings) {
+    if (!session.parsed) throw std::logic_error("no scene is open");
+    if (session.prepared && same(session.prepared->settings, settings)) return *session.prepared;
+    auto made = std::make_shared<Prepared>();
+    made->settings = settings;
+    made->trimmed = compare::trim_by_series(session.parsed->read(settings), &session.trim);
+    if (made->trimmed.record && !made->trimmed.record->reached())
+        throw std::invalid_argument("trim: " + made->trimmed.record->detail);
+    made->model = compile(made->trimmed.scene);
+    session.prepared = std::move(made);
+    return *session.prepared;
+}
+
+Prepared& prepared(Session& session, const Request& request) {
+    Prepared& at = prepared(session, request.settings);
+    if (at.branch == request.only && at.points == request.points) return at;
+    const auto branch = std::ranges::find(at.model.branches, request.only, &Branch::name);
+    if (branch == at.model.branches.end())
+        throw std::invalid_argument(fmt::format("there is no branch '{}'", request.only));
+    at.stations.clear(), at.paths.clear();
+    at.sides = compare::sides_of(at.model, *branch, request.points);
+    for (std::size_t side = 0; side < at.sides.size(); ++side)
+        at.paths.push_back(compare::walk(at.sides[side], {.leg = compare::Leg::series},
+                                         [&](const Equilibrium& state) {
+                                             if (side == 0 || state.load != 0)
+                                                 at.stations.push_back({side, state});
+                                         }));
+    std::ranges::sort(at.stations, {}, [](const auto& station) { return station.state.load; });
+    at.branch = request.only, at.points = request.points;
+    return at;
+}
+
+}  // namespace elastocheck::live
