@@ -9,6 +9,8 @@
 
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/text_file.hpp"
+#include "models/reader/document/yaml.hpp"
+#include "models/reader/parsed_scene.hpp"
 #include "reports/files/files.hpp"
 
 namespace elastocheck::reports {
@@ -42,6 +44,17 @@ std::string in_markup(const nlohmann::ordered_json& value) {
     return text;
 }
 
+// The tables that a valid scene refers to, by their names in it: what stands at a key `file`.
+void add_files(const reader::Value& value, const fs::path& folder, nlohmann::ordered_json& files) {
+    for (std::size_t k = 0; k < value.items.size(); ++k) {
+        const reader::Value& item = value.items[k];
+        if (k < value.keys.size() && value.keys[k] == "file" &&
+            item.kind == reader::Value::Kind::scalar)
+            files[item.text] = reader::read_text(folder / item.text, reader::Pipes::refused).text;
+        add_files(item, folder, files);
+    }
+}
+
 }  // namespace
 
 std::string live_page(const std::string& scene, const Settings& settings) {
@@ -53,10 +66,13 @@ std::string live_page(const std::string& scene, const Settings& settings) {
     if (!read.trouble.empty()) throw SceneError(fmt::format("{}: {}", scene, read.trouble));
     const std::string text =
         settings.empty() ? read.text : rewrite_scene(read.text, scene, settings);
-    // The page has no folder of files that a scene may refer to.
-    parse_scene(text, scene);
-    page.replace(place, scene_goes_here.size(),
-                 in_markup({{"name", fs::path(scene).filename().string()}, {"text", text}}));
+    const fs::path folder = fs::path(scene).parent_path();
+    (void)reader::ParsedScene(text, scene, folder).read({});
+    nlohmann::ordered_json data = {{"name", fs::path(scene).filename().string()}, {"text", text}},
+                           files = nlohmann::ordered_json::object();
+    add_files(reader::parse_yaml(text, scene), folder, files);
+    if (!files.empty()) data["files"] = std::move(files);
+    page.replace(place, scene_goes_here.size(), in_markup(data));
     return page;
 }
 
