@@ -1,7 +1,7 @@
 // The live page in a browser: what a hand does with it, against the program.
 // node page.mjs ELASTOCHECK SCENES-FOLDER [PICTURES-FOLDER]
 import {execFileSync} from 'node:child_process';
-import {mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import path from 'node:path';
 import {Browser} from './browser.mjs';
@@ -160,6 +160,121 @@ const tests = {
       [...document.querySelectorAll('#views button')].find(b => b.textContent === 'Front').click()`);
     await idle();
   },
+  async pointsAreProvedWhileNothingMoves() {
+    const all = `shownBranches().every(b => proofOf(b.name)?.done)`, strips = kind => run(`[...document.querySelectorAll('#charts .chart')].map(c => c.querySelectorAll('.proof .${kind}').length)`);
+    await browser.until(all, 'the points of the branch are proved');
+    check((await strips('proved')).every(n => n === 41) && (await strips('unproved')).every(n => n === 0), 'each curve has 41 proved points: ' + await strips('proved'));
+    const words = await run(`document.querySelector('#notes .proof').textContent`);
+    check(/^41 of 41 points proved: .*within 1e−6 mm.*no other within .* mm, stable$/.test(words), 'in words: ' + words);
+    // The program proves the points of the same branch, fewer of them.
+    const certified = execFileSync(program, ['certify', scene('double_wishbone'), '--json'], {stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 26}).toString();
+    check(certified.includes('"conclusive": true'), 'the program proves them: ' + certified.slice(0, 200));
+    // A point that is not proved, of a state as the solver would return it.
+    await run(`{ const s = proofOf('travel').stations[3]; s.answer = 'open'; s.detail = 'reason'; drawCharts(); }`);
+    check((await strips('unproved')).every(n => n === 1) && /^40 of 41 points proved.* at −68 mm not proved: reason$/.test(await run(`document.querySelector('#notes .proof').textContent`)), 'one not proved: ' + await run(`document.querySelector('#notes .proof').textContent`));
+    // A change of a number discards them at once.
+    await run(`remember(); put('springs.coil.rate', '96000'); changed()`);
+    await idle();
+    check((await strips('unproved')).every(n => n === 0) && !(await run(all)), 'proofs belong to the numbers');
+    await browser.until(all, 'proved again');
+    check((await strips('proved')).every(n => n === 41), 'and again for the new ones');
+    await run(`document.getElementById('reset').click()`);
+    await idle();
+  },
+  async tablesAreTheProgramsFigures() {
+    const cells = name => run(`[...document.querySelectorAll('#static [data-channel=${name}] td')].map(td => td.textContent)`), value = text => +text.replaceAll('−', '-');
+    const figures = ['lateral_force_steer', 'lateral_force_camber', 'braking_force_steer', 'traction_force_steer', 'aligning_torque_steer', 'aligning_torque_camber', 'camber', 'caster'];
+    const groups = await run(`[...document.querySelectorAll('#static .group')].map(row => row.textContent)`);
+    for (const title of ['adjusted by the trim', 'static values after the trim', 'lateral force at the contact patch', 'braking force at the contact patch', 'traction force at the wheel centre', 'aligning torque', 'steering'])
+      check(groups.includes(title), `"${title}" is in ${groups}`);
+    const change = [['bushings.lower_front.rates.x', '3000000'], ['springs.coil.bump_stop.clearance', '0.03']];
+    await run(`remember(); for (const [p, v] of ${JSON.stringify(change)}) put(p, v); changed()`);
+    await idle();
+    const start = changes => byProgram(scene('double_wishbone'), 'travel', figures, changes).find(row => row[0] === 0).slice(1);
+    const was = start([]), now = start(change);
+    for (const [k, name] of figures.entries()) {
+      const [, , old, is, by] = await cells(name);
+      near(value(old), was[k], 6e-4 * Math.abs(was[k]), `${name} as opened`);
+      near(value(is), now[k], 6e-4 * Math.abs(now[k]), `${name} now`);
+      if (name !== 'caster') near(value(by), now[k] - was[k], 2e-3 * Math.abs(now[k] - was[k]) + 1e-9, `change of ${name}`);
+    }
+    // At the shown position too.
+    await run(`document.getElementById('motion').value = 30; document.getElementById('motion').dispatchEvent(new Event('input')); document.getElementById('table-at').value = 'shown'; document.getElementById('table-at').dispatchEvent(new Event('change'))`);
+    const [, , , there] = await cells('lateral_force_steer');
+    const moved = byProgram(scene('double_wishbone'), 'travel', ['lateral_force_steer'], change).find(row => row[0] === 40)[1];
+    near(value(there), moved, 6e-4 * Math.abs(moved), 'lateral force steer at 40 mm');
+    check((await run(`document.getElementById('table-place').textContent`)) === 'travel 40 mm', await run(`document.getElementById('table-place').textContent`));
+    // The largest force of a bushing over all branches.
+    await run(`document.getElementById('forces').open = true; document.getElementById('forces-at').value = 'largest'; document.getElementById('forces-at').dispatchEvent(new Event('change'))`);
+    await browser.until(`document.querySelector('#forces [data-channel="lower_front.elastic_force_y"]')`, 'forces');
+    const force = await run(`[...document.querySelectorAll('#forces [data-channel="lower_front.elastic_force_y"] td')].map(td => td.textContent)`);
+    const branches = await run('state.now.branches.map(b => b.name)');
+    const most = branches.flatMap(b => byProgram(scene('double_wishbone'), b, ['lower_front.elastic_force_y'], change).map(row => [row[1], b])).reduce((a, b) => Math.abs(b[0]) > Math.abs(a[0]) ? b : a);
+    near(value(force[3]), most[0], 6e-4 * Math.abs(most[0]), 'largest force of a bushing');
+    check(force[5] === most[1], `on branch ${force[5]}, ${most[1]}`);
+    // Curves of all bushings over every branch, with those of the scene as opened.
+    await run(`document.getElementById('preset').value = 'forces of bushings'; document.getElementById('preset').dispatchEvent(new Event('change')); [...document.querySelectorAll('#branches button')].at(-1).click()`);
+    await wait(.2);
+    await idle();
+    check(await run(`document.querySelectorAll('#charts .chart').length`) === 12 * branches.length && await run(`document.querySelectorAll('#charts path.was').length`) === 12 * branches.length, 'twelve curves a branch, and pale ones');
+    await pictureOf('bushings');
+    // Where the stop closes, and closed before.
+    const note = await run(`[...document.querySelectorAll('#notes .stop')].map(li => li.textContent).find(t => t.startsWith('travel: coil.bump_stop closes'))`);
+    const closing = changes => execFileSync(program, ['solve', scene('double_wishbone'), '--method', 'series', '--steps', '400', '--channels', 'coil.bump_stop.force', ...changes.flatMap(([p, v]) => ['--set', `${p}=${v}`])], {stdio: ['ignore', 'pipe', 'ignore'], maxBuffer: 1 << 26})
+      .toString().split('\n').map(line => line.split(',')).find(c => c[0] === 'travel' && +c[2] > 0 && Math.abs(+c.at(-1)) > 0)[2];
+    const [, nearNow, nearBefore] = note?.match(/near (\S+) mm, as opened near (\S+)/) ?? [];
+    near(+nearNow, +closing(change) - .2, .2, `the stop closes (${note})`);
+    near(+nearBefore, +closing([]) - .2, .2, 'and closed');
+    await run(`document.getElementById('preset').value = 'usual curves'; document.getElementById('preset').dispatchEvent(new Event('change')); document.querySelector('#branches button').click(); document.getElementById('forces').open = false;
+      document.getElementById('table-at').value = 'start'; document.getElementById('reset').click()`);
+    await wait(.2);
+    await idle();
+  },
+  async severalWishesAreTheProgramsSolveFor() {
+    const set = (list, row, texts) => run(`{ const inputs = [...document.getElementById('${list}').children[${row}].querySelectorAll('input')]; ${JSON.stringify(texts)}.forEach((t, k) => { if (t !== null) inputs[k].value = t; }); wishLine(); }`);
+    const answer = () => run(`document.getElementById('wish-answer').textContent`), go = async () => {
+      await run(`document.getElementById('wish-go').click()`);
+      await browser.until(`!document.getElementById('wish-go').disabled`, 'an answer to the wishes');
+      await idle();
+      return answer();
+    };
+    await run(`document.getElementById('wishes').open = true`);
+    await browser.until(`document.getElementById('wants').children.length === 1`, 'a first wish');
+    await run(`document.getElementById('wants').replaceChildren(); document.getElementById('varies').replaceChildren(); addWant('toe', 'travel', 80, ''); addWant('camber', 'travel', 80, '-1.5');
+      for (const p of ['points.tie_rod_inner.z', 'points.upper_ball.z', 'springs.coil.rate']) addVaried(p)`);
+    check((await go()).startsWith('Each wish needs'), 'a wish needs a value: ' + await answer());
+    await set('wants', 0, ['80', 'nothing']);
+    check((await go()).startsWith('Each wish needs') && await run(`document.querySelectorAll('#wants [aria-invalid=true]').length`) === 1, 'a number');
+    await set('wants', 0, ['80', '-0.1']);
+    await set('varies', 1, [null, '0.1', '0.3']);
+    const line = await run(`document.getElementById('wish-line').textContent`);
+    check((await go()).startsWith('Met, with the smallest change: toe'), 'met: ' + await answer());
+    await pictureOf('wishes', true);
+    const found = await settings(), rows = byProgram(scene('double_wishbone'), 'travel', ['toe', 'camber'], found);
+    near(rows.at(-1)[1], -.1, 1e-6, 'toe at full jounce as wished');
+    near(rows.at(-1)[2], -1.5, 1e-6, 'camber at full jounce as wished');
+    // The command line on the page finds the same numbers, by the equilibrium leg and exact gradients.
+    check(/^elastocheck solve-for double_wishbone.yaml( --vary \S+){3}( --want \S+){2}$/.test(line), line);
+    const words = line.replaceAll("'", '').split(' ').slice(2), result = JSON.parse(execFileSync(program, ['solve-for', scene('double_wishbone'), ...words.slice(1), '--json', '--quiet'], {stdio: ['ignore', 'pipe', 'ignore']}).toString());
+    const table = result.numbers, [name, to] = ['number', 'to'].map(c => table.columns.findIndex(column => column.name === c));
+    check(table.rows.length === 3, 'three numbers');
+    for (const row of table.rows) near(+(found.find(([p]) => p === row[name])?.[1] ?? await run(`state.of.get('${row[name]}').value`)), row[to], 1e-6 * Math.max(.1, Math.abs(row[to])), `${row[name]} as by solve-for`);
+    // What cannot be met: the nearest, with the number at its limit; undone in one step.
+    await run(`document.getElementById('undo').click()`);
+    await idle();
+    check((await settings()).length === 0, 'undone in one step');
+    await run(`document.getElementById('varies').replaceChildren(); addVaried('points.upper_ball.y'); document.getElementById('wants').children[0].remove()`);
+    await set('wants', 0, ['80', '5']);
+    check(/^Not met, this is nearest: camber .*upper_ball\.y at its (upper|lower) limit\.$/.test(await go()), 'nearest: ' + await answer());
+    await run(`document.getElementById('reset').click()`);
+    await idle();
+    await run(`document.getElementById('varies').replaceChildren(); addVaried('springs.coil.rate')`);
+    await run(`document.getElementById('wants').replaceChildren(); addWant('toe', 'travel', 0, '1')`);
+    check((await go()).includes('none of these numbers moves it') && (await settings()).length === 0, 'nothing moves it: ' + await answer());
+    await set('varies', 0, [null, '-1', '2']);
+    check((await go()).includes('not within its limits') && (await settings()).length === 0, 'limits: ' + await answer());
+    await run(`document.getElementById('wishes').open = false`);
+  },
   async keyboardAlone() {
     await run(`document.activeElement.blur(); document.getElementById('snap').focus()`);
     await browser.key('Tab');
@@ -204,9 +319,92 @@ const tests = {
     await browser.open(pageOf(file, 'marked'));
     check((await run(`document.getElementById('title').textContent`)).startsWith('<img') && await run(`document.querySelectorAll('img').length === 0 && window.broken !== 1`), 'in the file too');
   },
+  async aFileIsDroppedOnThePage() {
+    const drop = async (text, name) => {
+      await run(`{ const data = new DataTransfer(); data.items.add(new File([${JSON.stringify(text)}], ${JSON.stringify(name)}));
+        for (const type of ['dragover', 'drop']) document.dispatchEvent(new DragEvent(type, {dataTransfer: data, bubbles: true, cancelable: true})); }`);
+      await wait(.2);
+      await idle();
+      return run(`document.getElementById('trouble').textContent`);
+    };
+    const text = readFileSync(scene('semi_trailing_arm'), 'utf8'), title = await run('state.info.title');
+    const line = text.split('\n').findIndex(l => /^springs:/.test(l)) + 1, wrong = text.replace(/^springs:$/m, 'springs:\n  broken: {bodies: [arm, ground], rate: fast}');
+    const message = await drop(wrong, 'dropped.yaml');
+    check(line > 0 && message.startsWith(`dropped.yaml:${line + 1}: springs.broken`), 'file, line and field: ' + message);
+    check(await run('state.info.title') === title, 'the scene before stays');
+    check(await drop(text, 'dropped.yaml') === '' && await run('state.file') === 'dropped.yaml' && (await run('state.info.title')).includes('railing'), 'a dropped scene opens: ' + await run('state.info.title'));
+    check(await run(`document.querySelectorAll('#charts .chart').length`) > 2, 'and is drawn');
+    // A file with an error by the button.
+    const file = path.join(folder, 'wrong.yaml');
+    writeFileSync(file, wrong);
+    const {root} = await browser.send('DOM.getDocument'), {nodeId} = await browser.send('DOM.querySelector', {nodeId: root.nodeId, selector: '#file'});
+    await browser.send('DOM.setFileInputFiles', {nodeId, files: [file]});
+    await browser.until(`document.getElementById('trouble').textContent.startsWith('wrong.yaml:${line + 1}: springs.broken')`, 'the message of a file with an error');
+    check(await run('state.file') === 'dropped.yaml', 'the scene before stays');
+  },
+  async tablesOfTheSceneAreInTheFile() {
+    const file = path.join(folder, 'with_table.yaml'), tables = path.join(folder, 'tables');
+    const text = readFileSync(scene('double_wishbone'), 'utf8').replace('bump_stop: {clearance: 0.025, rate: 400e3}', 'bump_stop: {clearance: 0.025, curve: {file: tables/stop.csv}}');
+    check(text.includes('tables/stop.csv'), 'a scene with a table');
+    mkdirSync(tables);
+    writeFileSync(file, text);
+    writeFileSync(path.join(tables, 'stop.csv'), 'deflection,force\n0,0\n0.005,1000\n0.010,4000\n0.015,9000\n');
+    await browser.open(pageOf(file, 'with_table'));
+    check(await run(`document.getElementById('trouble').hidden`), 'it opens: ' + await run(`document.getElementById('trouble').textContent`));
+    const rows = byProgram(file, 'travel', ['toe', 'coil.bump_stop.force'], []), own = await run(`['toe', 'coil.bump_stop.force'].map(c => state.now.curve(branchOf(state.now, 'travel'), c))`);
+    check(rows.length > 20 && rows.length === own[0].length && Math.abs(rows.at(-1)[2]) > 1000, `${rows.length} points, force ${rows.at(-1)[2]}`);
+    rows.forEach((row, k) => [0, 1].forEach(c => near(own[c][k][1], row[c + 1], 1e-7 * Math.max(1, Math.abs(row[c + 1])), `point ${k}`)));
+    // After an error, which ends the solver's instance, the tables are there again.
+    const paste = async source => {
+      await run(`document.getElementById('paste').click(); document.querySelector('#dialog textarea').value = ${JSON.stringify(source)}; document.getElementById('dialog-ok').click()`);
+      await wait(.2);
+      await idle();
+      return run(`document.getElementById('trouble').textContent`);
+    };
+    const message = await paste(text);
+    check(/^pasted\.yaml:52: springs\.coil\.bump_stop\.curve\.file: .*not a file/.test(message), 'a pasted scene has no tables: ' + message);
+    await run(`remember(); put('springs.coil.rate', '96000'); changed()`);
+    await idle();
+    check(await run(`document.getElementById('trouble').hidden && state.now !== state.base`), 'the scene of the file is solved again: ' + await run(`document.getElementById('trouble').textContent`));
+    // Opened together with its table.
+    await run(`openFiles([new File([${JSON.stringify(text.replace('tables/', ''))}], 'a.yaml'), new File(['deflection,force\\n0,0\\n0.015,9000\\n'], 'stop.csv')])`);
+    await idle();
+    check(await run(`state.file === 'a.yaml' && document.getElementById('trouble').hidden`), 'a scene and its table: ' + await run(`document.getElementById('trouble').textContent`));
+  },
+  async idleMotionsAreNoted() {
+    await browser.open(pageOf(scene('mcpherson'), 'mcpherson'));
+    const inspected = execFileSync(program, ['inspect', scene('mcpherson')], {stdio: ['ignore', 'pipe', 'ignore']}).toString();
+    const note = await run(`document.querySelector('#notes .idle')?.textContent`), [, motion] = note?.match(/nothing resists: (strut: rotation [^,]*)/) ?? [];
+    check(motion !== undefined && inspected.includes(motion.slice(7)), `idle motion as inspected: ${note}`);
+    await browser.until(`shownBranches().every(b => proofOf(b.name)?.done)`, 'the points are proved');
+    check((await run(`document.querySelector('#notes .proof').textContent`)).startsWith('41 of 41 points proved'), 'with an idle motion');
+  },
+  async reportLinksToThePage() {
+    const report = path.join(folder, 'report');
+    execFileSync(program, ['report', scene('double_wishbone'), '--quick', '--live', '--branch', 'travel', '-o', report], {stdio: 'ignore'});
+    await browser.send('Page.navigate', {url: 'file://' + path.join(report, 'report.html')});
+    await browser.until(`document.readyState === 'complete' && document.querySelector('a[href="live.html"]') !== null`, 'the report links to the page');
+    await run(`document.querySelector('a[href="live.html"]').click()`);
+    await browser.until(`document.readyState === 'complete' && window.live?.ready > 0`, 'the link leads to the page');
+    check(await run('state.info.title') === 'Double wishbone' && (await run('location.href')).endsWith('report/live.html'), 'of the scene');
+    // Its compliance matrices are those of the report's equilibrium leg.
+    await run(`document.getElementById('matrix').open = true`);
+    await browser.until(`document.querySelectorAll('#matrix td').length > 40`, 'the compliance matrix');
+    const {scenes: [{characteristics: {compliance}}]} = JSON.parse(readFileSync(path.join(report, 'result.json'), 'utf8')), at = name => compliance.columns.findIndex(c => c.name === name);
+    let compared = 0;
+    for (const [point, key] of [['contact patch', 'patch'], ['wheel centre', 'centre']]) {
+      const rows = compliance.rows.filter(r => r[at('leg')] === 'equilibrium' && r[at('point')] === point && r[at('a')] === 0), own = await run(`matrices.now.${key}`);
+      const numbers = rows.map(r => r.slice(-7).filter(v => typeof v === 'number').slice(0, 6));
+      rows.forEach((row, k) => own[k]?.values.forEach((v, c) => { ++compared; near(v, numbers[k][c], 1e-6, `${point}: ${own[k].name}, column ${c}`); }));
+    }
+    check(compared === 72, `${compared} entries of the matrices`);
+  },
   async limitPointIsShown() {
     await browser.open(pageOf(path.join(scenes, '..', 'extremes', 'over_centre.yaml'), 'over_centre'));
     check((await run(`document.getElementById('ending').textContent`)).includes('limit point'), 'limit point: ' + await run(`document.getElementById('ending').textContent`));
+    await browser.until(`proofOf('pull')?.done`, 'the points are proved');
+    const [, from, to] = (await run(`document.getElementById('ending').textContent`)).match(/limit point proved: its parameter is between (\S+) and (\S+) /) ?? [];
+    check(+from < +to && to - from < 1e-6 && +to < 64 && +from > 63, `bounds of the limit point: ${from} ${to}`);
     await pictureOf('over_centre', true);
   },
   async frontAxle() {

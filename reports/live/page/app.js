@@ -103,7 +103,7 @@ const pump = async () => {
     try {
       const answer = await ask('solve', {request: request()});
       if (answer.head.trouble) throw new Error(answer.head.trouble);
-      state.now = new Run(answer);
+      state.now = Object.assign(new Run(answer), {settings: [...settings]});
       if (!settings.size) state.base = state.now;
       trouble('');
       const begun = performance.now();
@@ -203,8 +203,8 @@ $('effect').onchange = measureEffects;
 const trouble = text => { $('trouble').hidden = !text; $('trouble').textContent = text; };
 
 // ---- Opening
-const open = async (source, file) => {
-  const {head} = await ask('open', {source, name: file});
+const open = async (source, file, files) => {
+  const {head} = await ask('open', {source, name: file, files});
   Object.assign(state, {info: head, source, file, of: new Map(head.numbers.map(n => [n.path, n])),
     channel: new Map(head.channels.map(c => [c.name, c])), settings: new Map(), undo: [], redo: [], curves: null, point: null, targets: new Map(), effects: null,
     station: null, branch: head.branches[0]?.name ?? '', now: null, base: null});
@@ -217,6 +217,8 @@ const open = async (source, file) => {
   makeNumbers();
   makeBranches();
   makeChoice();
+  resetWishes();
+  $('preset').selectedIndex = 0;
   $('point').hidden = $('target').hidden = $('effects').hidden = true;
   trouble('');
   buttons();
@@ -225,8 +227,8 @@ const open = async (source, file) => {
   await pump();
   if (state.base) { fitView(state.base); draw(); }
 };
-const tryOpen = async (source, file) => {
-  try { await open(source, file); } catch (error) { trouble(error.message); $('state').textContent = 'not opened'; }
+const tryOpen = async (source, file, files) => {
+  try { await open(source, file, files); } catch (error) { trouble(error.message); $('state').textContent = 'not opened'; }
 };
 
 // ---- Drawing all that depends on the answer
@@ -239,6 +241,7 @@ const draw = () => {
   drawMotion();
   listEffects();
   measureSoon();
+  proveSoon();
 };
 const drawMotion = () => {
   const [branch, k] = stationOf(state.now), slider = $('motion');
@@ -259,6 +262,7 @@ const makeBranches = () => {
       for (const other of $('branches').children) other.setAttribute('aria-pressed', String(other === button));
       drawCharts();
       listEffects();
+      proveSoon();
       solveBase().then(changed);
     };
     return button;
@@ -286,28 +290,6 @@ $('choose').addEventListener('toggle', () => {
   const list = state.curves ?? defaultCurves(state.base, branchOf(state.base, state.branch) ?? state.base.branches[0]);
   for (const tick of $('choose').querySelectorAll('input')) tick.checked = list.includes(tick.value);
 });
-const staticFigures = ['toe', 'camber', 'caster', 'kingpin_inclination', 'scrub_radius', 'mechanical_trail', 'track'];
-const drawTables = () => {
-  const {base, now, info} = state, first = info.branches[0]?.name;
-  const old = branchOf(base, first), is = branchOf(now, first);
-  const row = (channel, was, value) => {
-    const by = value - was, differs = Number.isFinite(by) && Math.abs(by) > 1e-9 * Math.max(1, Math.abs(was));
-    return make('tr', {'data-channel': channel.name}, make('td', {title: channel.definition}, words(channel.name)), make('td', {}, channel.unit),
-      make('td', {}, shown(was)), make('td', {}, shown(value)), make('td', {class: differs ? 'changed' : ''}, differs ? signed(by) : ''));
-  };
-  const head = () => make('thead', {}, make('tr', {}, ...['', 'unit', 'as opened', 'now', 'change'].map(t => make('th', {scope: 'col'}, t))));
-  const at = (run, branch, name, k) => branch?.points ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
-  const figures = info.channels.filter(c => (c.kind === 'motion' && staticFigures.includes(last(c.name))) || c.kind === 'characteristic');
-  const rows = (figures.length ? figures : info.channels.filter(c => c.kind === 'motion' && c.main))
-    .map(c => row(c, at(base, old, c.name, old?.start), at(now, is, c.name, is?.start)));
-  $('static').replaceChildren(head(), make('tbody', {}, ...rows));
-  if (!$('forces').open) return;
-  const [b, k] = stationOf(now), [o, j] = stationOf(base);
-  $('forces').querySelector('table').replaceChildren(head(), make('tbody', {}, ...info.channels
-    .filter(c => c.kind === 'element' && ['N', 'N·m'].includes(c.unit)).map(c => row(c, at(base, o, c.name, j), at(now, b, c.name, k)))));
-};
-$('forces').addEventListener('toggle', () => state.now && drawTables());
-
 // ---- The list of numbers, and the entry of the chosen hardpoint
 const rowsOf = new Map();  // path -> [row, ...]
 const numberRow = (number, words, slides) => {
@@ -393,7 +375,7 @@ $('motion').oninput = () => {
   draw3d();
   drawCharts();
   drawMotion();
-  if ($('forces').open) drawTables();
+  if ($('forces').open || $('table-at').value === 'shown') drawTables();
   measureSoon();
 };
 document.addEventListener('keydown', event => {
@@ -429,17 +411,22 @@ const dialog = (title, text, write, then) => {
 $('line').onclick = () => dialog('The numbers that differ from the scene as opened, as a command line', commandLine(), false);
 $('target').onsubmit = event => event.preventDefault();
 $('paste').onclick = () => dialog('Text of a scene (YAML)', '', true, text => tryOpen(text, 'pasted.yaml'));
+// A scene, and the tables that it refers to by their names.
+const openFiles = async list => {
+  const all = [...list], scene = all.find(f => /\.ya?ml$/i.test(f.name)) ?? all[0], others = all.filter(f => f !== scene);
+  if (!scene) return;
+  const files = await Promise.all(others.map(async f => [f.name, await f.text()]));
+  await tryOpen(await scene.text(), scene.name, files.length ? Object.fromEntries(files) : undefined);
+};
 $('file').onchange = async () => {
-  const [file] = $('file').files;
-  if (file) await tryOpen(await file.text(), file.name);
+  await openFiles($('file').files);
   $('file').value = '';
 };
 for (const name of ['dragover', 'drop'])
   document.addEventListener(name, async event => {
     if (!event.dataTransfer?.types.includes('Files')) return;
     event.preventDefault();
-    const [file] = event.dataTransfer.files;
-    if (name === 'drop' && file) await tryOpen(await file.text(), file.name);
+    if (name === 'drop') await openFiles(event.dataTransfer.files);
   });
 new ResizeObserver(() => { measureView(); draw3d(); }).observe($('suspension'));
 // The browser compiles anew what has run often: solves that nobody waits for, until there is something to do.
@@ -451,8 +438,8 @@ setUpView();
 (async () => {
   try {
     await startWorker();
-    const {text, name} = JSON.parse($('scene').textContent);
-    await tryOpen(text, name);
+    const {text, name, files} = JSON.parse($('scene').textContent);
+    await tryOpen(text, name, files);
     window.live.ready = performance.now();
     await warmUp();
   } catch (error) {

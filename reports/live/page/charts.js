@@ -30,11 +30,6 @@ const worst = (curve, fast) => {
   }
   return compared ? off : NaN;
 };
-// Where stops of springs close: the parameter of the first point at which one bears a force.
-const stopsOf = (run, branch) => run.channels.filter(name => /(bump|rebound)(_stop)?\.force$/.test(name)).flatMap(name => {
-  const curve = run.curve(branch, name), closed = curve.map(p => Math.abs(p[1]) > 1e-6);
-  return curve.flatMap(([a], k) => k && closed[k] !== closed[k - 1] ? [[a, name.slice(0, -6)]] : []);
-});
 const W = 264, H = 142, left = 38, right = 8, headroom = 6, footroom = 28;
 const chartOf = (branchName, name, withBranch) => {
   const channel = state.channel.get(name), now = branchOf(state.now, branchName), old = branchOf(state.base, branchName);
@@ -74,7 +69,7 @@ const chartOf = (branchName, name, withBranch) => {
     for (const p of points) Number.isFinite(p[1]) ? parts.at(-1).push(at(p)) : parts.push([]);
     return parts.map(p => path(p)).join('');
   };
-  const inner = make('svg', {x: left, y: 0, width: W - left - right, height: H - footroom, viewBox: `${left} 0 ${W - left - right} ${H - footroom}`});
+  const inner = make('svg', {x: left, y: 0, width: W - left - right, height: H - footroom + 3, viewBox: `${left} 0 ${W - left - right} ${H - footroom + 3}`});
   if (target) {
     const [from, to] = [Math.max(y0, target[0]), Math.min(y1, target[1])].map(v => at([x0, v])[1]);
     if (from > to) inner.append(make('rect', {class: 'target', x: left, width: W - left - right, y: px(to), height: px(from - to)}));
@@ -91,9 +86,13 @@ const chartOf = (branchName, name, withBranch) => {
     inner.append(make('line', {class: 'here', x1: x, x2: x, y1: headroom, y2: H - footroom}));
     if (Number.isFinite(here[1])) inner.append(make('circle', {class: 'dot', cx: x, cy: px(at(here)[1]), r: 2.8}));
   }
-  for (const [a, stop] of stopsOf(state.now, now)) {
+  Object.assign(inner.dataset, {branch: branchName, x0, x1});
+  const strip = make('g', {class: 'proof'});
+  inner.append(strip);
+  fillStrip(strip);
+  for (const [a, stop, way] of stopsOf(state.now, now)) {
     const x = at([a, y0])[0];
-    inner.append(make('path', {class: 'stop', d: `M${px(x)},${H - footroom - 6}l4,6h-8Z`}, make('title', {}, `${stop} closes or opens near ${shown(a)} ${now.unit}`)));
+    inner.append(make('path', {class: 'stop', d: `M${px(x)},${H - footroom - 6}l4,6h-8Z`}, make('title', {}, `${stop} ${way} near ${shown(a)} ${now.unit}`)));
   }
   if (now && now.outcome !== 'converged' && curve.length)
     for (const p of [curve[0], curve.at(-1)].filter(p => Number.isFinite(p[1]) && !onEnd(branchName, p[0])))
@@ -132,13 +131,10 @@ const onEnd = (branchName, a) => {
 const drawCharts = () => {
   const {now} = state;
   if (!now) return;
-  const shownBranches = state.branch === '' ? now.branches : now.branches.filter(b => b.name === state.branch);
-  const list = shownBranches.flatMap(branch => {
+  const list = shownBranches().flatMap(branch => {
     const names = state.curves ?? defaultCurves(state.base, branchOf(state.base, branch.name) ?? branch);
     return (state.branch === '' && !state.curves ? names.slice(0, 3) : names).map(name => chartOf(branch.name, name, state.branch === ''));
   });
   $('charts').replaceChildren(...list);
-  const ended = shownBranches.filter(b => b.outcome !== 'converged').map(b => `${b.name}: ${b.outcome}: ${b.detail}`);
-  $('ending').hidden = !ended.length;
-  $('ending').textContent = ended.join('\n');
+  drawNotes();
 };

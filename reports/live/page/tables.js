@@ -1,0 +1,96 @@
+// ---- Tables: what the trim adjusts, static values, characteristics by what acts, forces, compliance matrices; each as
+// opened, now, and the change
+const staticFigures = ['toe', 'camber', 'caster', 'kingpin_inclination', 'scrub_radius', 'mechanical_trail', 'track'];
+// What a characteristic is a response to, by its name.
+const causes = [
+  ['lateral force at the contact patch', /^lateral_/], ['braking force at the contact patch', /^(braking_|longitudinal_stiffness$)/],
+  ['traction force at the wheel centre', /^(traction_|longitudinal_stiffness_at_centre$)/], ['aligning torque', /^aligning_/],
+  ['steering', /(^steer_|_steered$|^ackermann|^turning)/], ['roll', /(^roll_|_in_roll$)/], ['vertical travel and load', /./]];
+const causeOf = name => causes.find(([, pattern]) => pattern.test(last(name)))[0];
+const tableHead = (...columns) => make('thead', {}, make('tr', {}, ...columns.map(t => make('th', {scope: 'col'}, t))));
+const differs = (was, value) => Number.isFinite(value - was) && Math.abs(value - was) > 1e-9 * Math.max(1, Math.abs(was));
+const tableRow = (name, unit, was, value, more = {}, ...cells) => make('tr', more, make('td', {title: more.title ?? ''}, name), make('td', {}, unit),
+  make('td', {}, shown(was)), make('td', {}, shown(value)), make('td', {class: differs(was, value) ? 'changed' : ''}, differs(was, value) ? signed(value - was) : ''), ...cells);
+const channelRow = (channel, was, value, ...cells) => tableRow(words(channel.name), channel.unit, was, value, {'data-channel': channel.name, title: channel.definition}, ...cells);
+const group = (title, rows) => rows.length ? [make('tr', {class: 'group'}, make('th', {colspan: 5, scope: 'rowgroup'}, title)), ...rows] : [];
+const valueAt = (run, branch, name, k) => branch?.points ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
+const drawTables = () => {
+  const {base, now, info} = state, first = info.branches[0]?.name;
+  if (!base || !now) return;
+  const here = $('table-at').value === 'shown', [is, k] = here ? stationOf(now) : [branchOf(now, first), branchOf(now, first)?.start];
+  const [old, j] = here ? stationOf(base) : [branchOf(base, first), branchOf(base, first)?.start];
+  const rowOf = c => channelRow(c, valueAt(base, old, c.name, j), valueAt(now, is, c.name, k));
+  const adjusted = (now.trim ?? []).map(t => tableRow(t.name, t.unit, (base.trim ?? []).find(b => b.name === t.name)?.by ?? NaN, t.by, {title: t.makes, 'data-trim': t.name}));
+  const rates = info.channels.filter(c => c.kind === 'characteristic'), angles = info.channels.filter(c => c.kind === 'motion' && staticFigures.includes(last(c.name)));
+  const plain = rates.length + angles.length ? angles : info.channels.filter(c => c.kind === 'motion' && c.main);
+  $('static').replaceChildren(tableHead('', 'unit', 'as opened', 'now', 'change'), make('tbody', {}, ...group('adjusted by the trim', adjusted),
+    ...group(now.trim ? 'static values after the trim' : 'static values', plain.map(rowOf)),
+    ...causes.flatMap(([title]) => group(title, rates.filter(c => causeOf(c.name) === title).map(rowOf)))));
+  $('table-place').textContent = is ? `${here ? '' : 'start of the first branch, '}${is.name} ${shown(now.a(is, k) ?? NaN)} ${is.unit}` : '';
+  drawForces();
+  drawMatrix();
+};
+// Forces at the shown position, or the largest of all branches.
+const forceChannels = () => state.info.channels.filter(c => c.kind === 'element' && ['N', 'N·m'].includes(c.unit));
+const largest = (run, name) => {
+  let most = [0, ''];
+  for (const branch of run.branches)
+    for (const [, v] of run.curve(branch, name)) if (Math.abs(v) > Math.abs(most[0])) most = [v, branch.name];
+  return most;
+};
+const drawForces = () => {
+  if (!$('forces').open) return;
+  const {base, now} = state, all = $('forces-at').value === 'largest';
+  const [b, k] = stationOf(now), [o, j] = stationOf(base);
+  $('forces').querySelector('table').replaceChildren(tableHead('', 'unit', 'as opened', 'now', 'change', ...all ? ['on branch'] : []), make('tbody', {}, ...forceChannels().map(c => {
+    if (!all) return channelRow(c, valueAt(base, o, c.name, j), valueAt(now, b, c.name, k));
+    const [was] = largest(base, c.name), [value, where] = largest(now, c.name);
+    return channelRow(c, was, value, make('td', {class: 'word'}, where));
+  })));
+};
+// The compliance matrices at the start of the first branch, asked for while they are shown.
+const matrices = {run: null, now: null, base: null};
+const drawMatrix = async () => {
+  const {now, base} = state;
+  if (!$('matrix').open || !now || !base) return;
+  if (matrices.run !== now) {
+    if (!resting()) return;
+    matrices.run = now;
+    try {
+      const found = await ask('compliance', {request: {settings: now.settings}});
+      const before = base === now ? found : matrices.base?.of === base ? matrices.base.found : await ask('compliance', {request: {settings: []}});
+      if (state.now !== now) return;
+      matrices.base = {of: base, found: before};
+      matrices.now = found;
+    } catch (error) { matrices.now = {why_not: error.message}; }
+  }
+  const {now: found, base: before} = matrices, point = $('matrix-at').value, table = $('matrix').querySelector('table');
+  if (!found) return;
+  if (found.why_not !== undefined) { table.replaceChildren(make('tbody', {}, make('tr', {}, make('td', {}, found.why_not)))); return; }
+  table.replaceChildren(tableHead('', ...found.causes), make('tbody', {}, ...found[point].map((row, r) => make('tr', {},
+    make('td', {}, row.name.replace(/^[^,]*, /, '')), ...row.values.map((v, c) => {
+      const was = before.found?.[point]?.[r]?.values[c] ?? NaN, other = Math.abs(v - was) > 1e-6;
+      return make('td', {class: other ? 'changed' : ''}, shown(Math.abs(v) < 1e-9 ? 0 : v), other ? make('small', {}, shown(was)) : null);
+    })))));
+};
+for (const id of ['forces', 'matrix']) $(id).addEventListener('toggle', () => state.now && drawTables());
+for (const id of ['table-at', 'forces-at', 'matrix-at']) $(id).onchange = () => state.now && drawTables();
+
+// ---- Curves chosen together
+const presets = {
+  'usual curves': () => null,
+  'steering and camber': c => ['toe', 'camber', 'bump_steer', 'bump_camber', 'roll_steer', 'roll_camber', 'steer_gradient', 'caster'].includes(last(c.name)),
+  'compliance': c => c.kind === 'characteristic' && !['vertical travel and load', 'roll', 'steering'].includes(causeOf(c.name)),
+  'forces of bushings': c => c.kind === 'element' && /\.elastic_force_[xyz]$/.test(c.name),
+  'moments of bushings': c => c.kind === 'element' && /\.elastic_moment_[xyz]$/.test(c.name),
+  'forces of springs, stops and links': c => c.kind === 'element' && c.unit === 'N' && !/elastic_force/.test(c.name),
+};
+$('preset').replaceChildren(...Object.keys(presets).map(name => make('option', {value: name}, name)));
+$('preset').onchange = () => {
+  const chosen = state.info?.channels.filter(presets[$('preset').value]) ?? [];
+  state.curves = chosen.length ? chosen.map(c => c.name) : null;
+  if (!chosen.length && $('preset').selectedIndex) $('preset').selectedIndex = 0;
+  drawCharts();
+  listEffects();
+  proveSoon();
+};
