@@ -35,14 +35,14 @@ const chartOf = (branchName, name, withBranch) => {
   const channel = state.channel.get(name), now = branchOf(state.now, branchName), old = branchOf(state.base, branchName);
   const curve = state.now.curve(now, name), before = state.base.curve(old, name), fast = state.now.published(now, name);
   const both = [...curve, ...before, ...fast].filter(p => Number.isFinite(p[1]));
-  const figure = make('div', {class: 'chart', 'data-channel': name, 'data-branch': branchName});
+  const figure = sketch('div', {class: 'chart', 'data-channel': name, 'data-branch': branchName});
   const here = curve[Math.min(stationIn(now), curve.length - 1)];
-  const aim = make('button', {type: 'button', class: 'aim', title: 'Target band', 'aria-label': `Target band of ${name} on ${branchName}`}, 'target');
-  aim.onclick = () => editTarget(name, branchName);
+  const aim = sketch('button', {type: 'button', class: 'aim', title: 'Target band', 'aria-label': `Target band of ${name} on ${branchName}`,
+    onclick: () => editTarget(name, branchName)}, 'target');
   const target = state.targets.get(`${branchName}|${name}`);
-  figure.append(make('h3', {title: channel?.definition ?? ''}, make('span', {}, words(name) + (withBranch ? ' · ' + branchName : '')),
-    make('span', {class: 'value'}, here ? `${shown(here[1])} ${channel?.unit ?? ''}` : '–')));
-  if (!both.length) { figure.append(make('p', {class: 'fast'}, 'not computed, or without a value on this branch')); return figure; }
+  figure.children.push(sketch('h3', {title: channel?.definition ?? ''}, sketch('span', {}, words(name) + (withBranch ? ' · ' + branchName : '')),
+    sketch('span', {class: 'value'}, here ? `${shown(here[1])} ${channel?.unit ?? ''}` : '–')));
+  if (!both.length) { figure.children.push(sketch('p', {class: 'fast'}, 'not computed, or without a value on this branch')); return figure; }
   let [x0, x1] = [Math.min(...both.map(p => p[0])), Math.max(...both.map(p => p[0]))];
   // A pole of a figure does not flatten the rest of its curve.
   const sorted = both.map(p => p[1]).sort((a, b) => a - b), q = share => sorted[Math.round(share * (sorted.length - 1))];
@@ -54,53 +54,50 @@ const chartOf = (branchName, name, withBranch) => {
   if (x1 === x0) x1 = x0 + 1;
   [y0, y1] = [y0 - .06 * (y1 - y0), y1 + .06 * (y1 - y0)];
   const at = ([a, v]) => [left + (W - left - right) * (a - x0) / (x1 - x0), H - footroom - (H - headroom - footroom) * (Math.min(y1 + (y1 - y0), Math.max(y0 - (y1 - y0), v)) - y0) / (y1 - y0)];
-  const svg = make('svg', {viewBox: `0 0 ${W} ${H}`, role: 'img', 'aria-label': `${name} over ${branchName}`});
+  const svg = sketch('svg', {viewBox: `0 0 ${W} ${H}`, role: 'img', 'aria-label': `${name} over ${branchName}`});
   for (const v of ticks(y0, y1, 4)) {
     const y = px(at([x0, v])[1]);
-    svg.append(make('line', {class: 'grid', x1: left, x2: W - right, y1: y, y2: y}), make('text', {x: left - 4, y: +y + 3, 'text-anchor': 'end'}, shown(v)));
+    svg.children.push(sketch('line', {class: 'grid', x1: left, x2: W - right, y1: y, y2: y}), sketch('text', {x: left - 4, y: +y + 3, 'text-anchor': 'end'}, shown(v)));
   }
   for (const v of ticks(x0, x1, 4)) {
     const x = px(at([v, y0])[0]);
-    svg.append(make('line', {class: 'grid', x1: x, x2: x, y1: headroom, y2: H - footroom}), make('text', {x, y: H - 17, 'text-anchor': 'middle'}, shown(v)));
+    svg.children.push(sketch('line', {class: 'grid', x1: x, x2: x, y1: headroom, y2: H - footroom}), sketch('text', {x, y: H - 17, 'text-anchor': 'middle'}, shown(v)));
   }
-  svg.append(make('text', {x: W - right, y: H - 4, 'text-anchor': 'end'}, `${branchName} [${now?.unit ?? ''}]`));
+  svg.children.push(sketch('text', {x: W - right, y: H - 4, 'text-anchor': 'end'}, `${branchName} [${now?.unit ?? ''}]`));
   const lines = points => {
     const parts = [[]];
     for (const p of points) Number.isFinite(p[1]) ? parts.at(-1).push(at(p)) : parts.push([]);
     return parts.map(p => path(p)).join('');
   };
-  const inner = make('svg', {x: left, y: 0, width: W - left - right, height: H - footroom + 3, viewBox: `${left} 0 ${W - left - right} ${H - footroom + 3}`});
+  const inner = sketch('svg', {x: left, y: 0, width: W - left - right, height: H - footroom + 3, viewBox: `${left} 0 ${W - left - right} ${H - footroom + 3}`});
   if (target) {
     const [from, to] = [Math.max(y0, target[0]), Math.min(y1, target[1])].map(v => at([x0, v])[1]);
-    if (from > to) inner.append(make('rect', {class: 'target', x: left, width: W - left - right, y: px(to), height: px(from - to)}));
-    figure.classList.add(curve.length && curve.every(p => p[1] >= target[0] && p[1] <= target[1]) ? 'met' : 'missed');
+    if (from > to) inner.children.push(sketch('rect', {class: 'target', x: left, width: W - left - right, y: px(to), height: px(from - to)}));
+    figure.attributes.class += curve.length && curve.every(p => p[1] >= target[0] && p[1] <= target[1]) ? ' met' : ' missed';
   }
-  if (state.base !== state.now) inner.append(make('path', {class: 'was', d: lines(before)}));
+  if (state.base !== state.now) inner.children.push(sketch('path', {class: 'was', d: lines(before)}));
   const same = new Map(fast.map(p => [p[0], p[1]])), pairs = curve.filter(p => Number.isFinite(p[1]) && Number.isFinite(same.get(p[0])));
   if (pairs.length > 1)
-    inner.append(make('path', {class: 'band', d: path([...pairs.map(at), ...pairs.map(p => at([p[0], same.get(p[0])])).reverse()], 'Z')}),
-                 make('path', {class: 'fastline', d: lines(fast)}));
-  inner.append(make('path', {class: 'now', d: lines(curve)}));
+    inner.children.push(sketch('path', {class: 'band', d: path([...pairs.map(at), ...pairs.map(p => at([p[0], same.get(p[0])])).reverse()], 'Z')}),
+                 sketch('path', {class: 'fastline', d: lines(fast)}));
+  inner.children.push(sketch('path', {class: 'now', d: lines(curve)}));
   if (here) {
     const x = px(at(here)[0]);
-    inner.append(make('line', {class: 'here', x1: x, x2: x, y1: headroom, y2: H - footroom}));
-    if (Number.isFinite(here[1])) inner.append(make('circle', {class: 'dot', cx: x, cy: px(at(here)[1]), r: 2.8}));
+    inner.children.push(sketch('line', {class: 'here', x1: x, x2: x, y1: headroom, y2: H - footroom}));
+    if (Number.isFinite(here[1])) inner.children.push(sketch('circle', {class: 'dot', cx: x, cy: px(at(here)[1]), r: 2.8}));
   }
-  Object.assign(inner.dataset, {branch: branchName, x0, x1});
-  const strip = make('g', {class: 'proof'});
-  inner.append(strip);
-  fillStrip(strip);
+  inner.children.push(sketch('g', {class: 'proof'}, ...proofStrip(branchName, a => at([a, y0])[0])));
   for (const [a, stop, way] of stopsOf(state.now, now)) {
     const x = at([a, y0])[0];
-    inner.append(make('path', {class: 'stop', d: `M${px(x)},${H - footroom - 6}l4,6h-8Z`}, make('title', {}, `${stop} ${way} near ${shown(a)} ${now.unit}`)));
+    inner.children.push(sketch('path', {class: 'stop', d: `M${px(x)},${H - footroom - 6}l4,6h-8Z`}, sketch('title', {}, `${stop} ${way} near ${shown(a)} ${now.unit}`)));
   }
   if (now && now.outcome !== 'converged' && curve.length)
     for (const p of [curve[0], curve.at(-1)].filter(p => Number.isFinite(p[1]) && !onEnd(branchName, p[0])))
-      inner.append(make('circle', {class: 'end', cx: px(at(p)[0]), cy: px(at(p)[1]), r: 3.5}, make('title', {}, now.detail)));
-  svg.append(inner);
-  figure.append(svg);
+      inner.children.push(sketch('circle', {class: 'end', cx: px(at(p)[0]), cy: px(at(p)[1]), r: 3.5}, sketch('title', {}, now.detail)));
+  svg.children.push(inner);
+  figure.children.push(svg);
   const off = worst(curve, fast), r = range(curve), far = r && off > .01 * (r[1] - r[0]);
-  figure.append(make('p', {class: far ? 'fast far' : 'fast'}, make('span', {}, !now?.published || Number.isNaN(off) ? '' : off < 5e-7 ? 'published recursion: no error'
+  figure.children.push(sketch('p', {class: far ? 'fast far' : 'fast'}, sketch('span', {}, !now?.published || Number.isNaN(off) ? '' : off < 5e-7 ? 'published recursion: no error'
     : `published recursion off by up to ${shown(+off.toPrecision(2))} ${channel.unit}`), aim));
   return figure;
 };
@@ -135,6 +132,6 @@ const drawCharts = () => {
     const names = state.curves ?? defaultCurves(state.base, branchOf(state.base, branch.name) ?? branch);
     return (state.branch === '' && !state.curves ? names.slice(0, 3) : names).map(name => chartOf(branch.name, name, state.branch === ''));
   });
-  $('charts').replaceChildren(...list);
+  show($('charts'), ...list);
   drawNotes();
 };

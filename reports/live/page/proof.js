@@ -24,8 +24,7 @@ const prove = async () => {
       // some 20 ms at a time, so that a move does not wait
       count = Math.max(1, Math.min(20, Math.round(count * 20 / (performance.now() - begun + .1))));
       if (run !== state.now) return;
-      for (const strip of document.querySelectorAll('#charts .proof')) if (strip.parentNode.dataset.branch === name) fillStrip(strip);
-      drawNotes();
+      drawCharts();
     }
     if (!more()) return;
   }
@@ -33,12 +32,11 @@ const prove = async () => {
 const proveSoon = () => { ++proving; clearTimeout(provePause); provePause = setTimeout(prove, 300); };
 
 // The strip below a curve: one piece for each point, proved or not. `x`: from a parameter to the drawing.
-const fillStrip = strip => {
-  const {branch, x0, x1} = strip.parentNode.dataset, stations = proofOf(branch)?.stations ?? [];
-  const x = a => left + (W - left - right) * (a - x0) / (x1 - x0), wide = (W - left - right) / 41;
-  strip.replaceChildren(...stations.map(({a, answer, stable, detail}) => make('rect', {class: answer === 'proved' ? stable ? 'proved' : 'proved unstable' : 'unproved',
+const proofStrip = (branch, x) => {
+  const wide = (W - left - right) / 41;
+  return (proofOf(branch)?.stations ?? []).map(({a, answer, stable, detail}) => sketch('rect', {class: answer === 'proved' ? stable ? 'proved' : 'proved unstable' : 'unproved',
     x: px(x(a) - wide / 2 + .4), width: px(wide - .8), y: H - footroom - 2.5, height: 5},
-    make('title', {}, `${shown(a)}: ${answer === 'proved' ? 'proved' + (stable ? ', stable' : '') : answer === 'excluded' ? 'proved to be no equilibrium' : 'not proved'}${detail ? ': ' + detail : ''}`))));
+    sketch('title', {}, `${shown(a)}: ${answer === 'proved' ? 'proved' + (stable ? ', stable' : '') : answer === 'excluded' ? 'proved to be no equilibrium' : 'not proved'}${detail ? ': ' + detail : ''}`)));
 };
 const power = value => minus(String(+value.toPrecision(2)).replace(/^0\.0+1$/, () => value.toExponential(0)));
 // The proof of a branch in a sentence.

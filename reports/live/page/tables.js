@@ -7,12 +7,12 @@ const causes = [
   ['traction force at the wheel centre', /^(traction_|longitudinal_stiffness_at_centre$)/], ['aligning torque', /^aligning_/],
   ['steering', /(^steer_|_steered$|^ackermann|^turning)/], ['roll', /(^roll_|_in_roll$)/], ['vertical travel and load', /./]];
 const causeOf = name => causes.find(([, pattern]) => pattern.test(last(name)))[0];
-const tableHead = (...columns) => make('thead', {}, make('tr', {}, ...columns.map(t => make('th', {scope: 'col'}, t))));
+const tableHead = (...columns) => sketch('thead', {}, sketch('tr', {}, ...columns.map(t => sketch('th', {scope: 'col'}, t))));
 const differs = (was, value) => Number.isFinite(value - was) && Math.abs(value - was) > 1e-9 * Math.max(1, Math.abs(was));
-const tableRow = (name, unit, was, value, more = {}, ...cells) => make('tr', more, make('td', {title: more.title ?? ''}, name), make('td', {}, unit),
-  make('td', {}, shown(was)), make('td', {}, shown(value)), make('td', {class: differs(was, value) ? 'changed' : ''}, differs(was, value) ? signed(value - was) : ''), ...cells);
+const tableRow = (name, unit, was, value, more = {}, ...cells) => sketch('tr', more, sketch('td', {title: more.title ?? ''}, name), sketch('td', {}, unit),
+  sketch('td', {}, shown(was)), sketch('td', {}, shown(value)), sketch('td', {class: differs(was, value) ? 'changed' : ''}, differs(was, value) ? signed(value - was) : ''), ...cells);
 const channelRow = (channel, was, value, ...cells) => tableRow(words(channel.name), channel.unit, was, value, {'data-channel': channel.name, title: channel.definition}, ...cells);
-const group = (title, rows) => rows.length ? [make('tr', {class: 'group'}, make('th', {colspan: 5, scope: 'rowgroup'}, title)), ...rows] : [];
+const group = (title, rows) => rows.length ? [sketch('tr', {class: 'group'}, sketch('th', {colspan: 5, scope: 'rowgroup'}, title)), ...rows] : [];
 const valueAt = (run, branch, name, k) => branch?.points ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
 const drawTables = () => {
   const {base, now, info} = state, first = info.branches[0]?.name;
@@ -23,7 +23,7 @@ const drawTables = () => {
   const adjusted = (now.trim ?? []).map(t => tableRow(t.name, t.unit, (base.trim ?? []).find(b => b.name === t.name)?.by ?? NaN, t.by, {title: t.makes, 'data-trim': t.name}));
   const rates = info.channels.filter(c => c.kind === 'characteristic'), angles = info.channels.filter(c => c.kind === 'motion' && staticFigures.includes(last(c.name)));
   const plain = rates.length + angles.length ? angles : info.channels.filter(c => c.kind === 'motion' && c.main);
-  $('static').replaceChildren(tableHead('', 'unit', 'as opened', 'now', 'change'), make('tbody', {}, ...group('adjusted by the trim', adjusted),
+  show($('static'), tableHead('', 'unit', 'as opened', 'now', 'change'), sketch('tbody', {}, ...group('adjusted by the trim', adjusted),
     ...group(now.trim ? 'static values after the trim' : 'static values', plain.map(rowOf)),
     ...causes.flatMap(([title]) => group(title, rates.filter(c => causeOf(c.name) === title).map(rowOf)))));
   $('table-place').textContent = is ? `${here ? '' : 'start of the first branch, '}${is.name} ${shown(now.a(is, k) ?? NaN)} ${is.unit}` : '';
@@ -42,10 +42,10 @@ const drawForces = () => {
   if (!$('forces').open) return;
   const {base, now} = state, all = $('forces-at').value === 'largest';
   const [b, k] = stationOf(now), [o, j] = stationOf(base);
-  $('forces').querySelector('table').replaceChildren(tableHead('', 'unit', 'as opened', 'now', 'change', ...all ? ['on branch'] : []), make('tbody', {}, ...forceChannels().map(c => {
+  show($('forces').querySelector('table'), tableHead('', 'unit', 'as opened', 'now', 'change', ...all ? ['on branch'] : []), sketch('tbody', {}, ...forceChannels().map(c => {
     if (!all) return channelRow(c, valueAt(base, o, c.name, j), valueAt(now, b, c.name, k));
     const [was] = largest(base, c.name), [value, where] = largest(now, c.name);
-    return channelRow(c, was, value, make('td', {class: 'word'}, where));
+    return channelRow(c, was, value, sketch('td', {class: 'word'}, where));
   })));
 };
 // The compliance matrices at the start of the first branch, asked for while they are shown.
@@ -66,11 +66,11 @@ const drawMatrix = async () => {
   }
   const {now: found, base: before} = matrices, point = $('matrix-at').value, table = $('matrix').querySelector('table');
   if (!found) return;
-  if (found.why_not !== undefined) { table.replaceChildren(make('tbody', {}, make('tr', {}, make('td', {}, found.why_not)))); return; }
-  table.replaceChildren(tableHead('', ...found.causes), make('tbody', {}, ...found[point].map((row, r) => make('tr', {},
-    make('td', {}, row.name.replace(/^[^,]*, /, '')), ...row.values.map((v, c) => {
+  if (found.why_not !== undefined) { show(table, sketch('tbody', {}, sketch('tr', {}, sketch('td', {}, found.why_not)))); return; }
+  show(table, tableHead('', ...found.causes), sketch('tbody', {}, ...found[point].map((row, r) => sketch('tr', {},
+    sketch('td', {}, row.name.replace(/^[^,]*, /, '')), ...row.values.map((v, c) => {
       const was = before.found?.[point]?.[r]?.values[c] ?? NaN, other = Math.abs(v - was) > 1e-6;
-      return make('td', {class: other ? 'changed' : ''}, shown(Math.abs(v) < 1e-9 ? 0 : v), other ? make('small', {}, shown(was)) : null);
+      return sketch('td', {class: other ? 'changed' : ''}, shown(Math.abs(v) < 1e-9 ? 0 : v), other ? sketch('small', {}, shown(was)) : null);
     })))));
 };
 for (const id of ['forces', 'matrix']) $(id).addEventListener('toggle', () => state.now && drawTables());

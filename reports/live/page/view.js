@@ -39,28 +39,28 @@ const fitView = run => {
   view.size = Math.hypot(...low.map((v, k) => high[k] - v)) * .8 || 1;
 };
 const scenery = (run, branch, k, axes, was) => {
-  const group = make('g'), at = run.drawing.points.map((_, i) => flat(run.point(branch, k, i), axes));
+  const group = sketch('g'), at = run.drawing.points.map((_, i) => flat(run.point(branch, k, i), axes));
   if (!was)
-    for (const face of run.drawing.faces) group.append(make('path', {class: 'face', d: path(face.points.map(i => at[i]), 'Z')}));
+    for (const face of run.drawing.faces) group.children.push(sketch('path', {class: 'face', d: path(face.points.map(i => at[i]), 'Z')}));
   for (const link of run.drawing.links) {
     const [a, b] = link.points.map(i => at[i]), d = (shapes[link.kind] ?? ((p, q) => path([p, q])))(a, b);
-    if (d) group.append(make('path', {class: 'l ' + (was ? 'was' : link.kind), d}));
+    if (d) group.children.push(sketch('path', {class: 'l ' + (was ? 'was' : link.kind), d}));
   }
-  run.drawing.wheels.forEach((wheel, w) => group.append(make('path',
+  run.drawing.wheels.forEach((wheel, w) => group.children.push(sketch('path',
     {class: was ? 'tyre was' : 'tyre', d: path(circle(run, branch, k, wheel, w).map(p => flat(p, axes)), 'Z')})));
   if (!was)
     for (const i of run.drawing.bushings) {
-      group.append(make('circle', {class: 'bush', cx: px(at[i][0]), cy: px(at[i][1]), r: 9}));
+      group.children.push(sketch('circle', {class: 'bush', cx: px(at[i][0]), cy: px(at[i][1]), r: 9}));
     }
   return group;
 };
 const triad = axes => {
-  const group = make('g', {class: 'axes'}), from = [30, view.high - 30];
+  const group = sketch('g', {class: 'axes'}), from = [30, view.high - 30];
   ['x', 'y', 'z'].forEach((name, k) => {
     const to = [from[0] + 22 * axes.right[k], from[1] - 22 * axes.up[k]];
     if (Math.hypot(to[0] - from[0], to[1] - from[1]) < 4) return;
-    group.append(make('line', {x1: from[0], y1: from[1], x2: px(to[0]), y2: px(to[1])}),
-                 make('text', {x: px(to[0] + 3), y: px(to[1] - 2)}, name));
+    group.children.push(sketch('line', {x1: from[0], y1: from[1], x2: px(to[0]), y2: px(to[1])}),
+                 sketch('text', {x: px(to[0] + 3), y: px(to[1] - 2)}, name));
   });
   return group;
 };
@@ -83,9 +83,9 @@ const drawHandles = axes => {
     const d = [dot(g, axes.right), -dot(g, axes.up)].map(v => 60 * v / longest), size = Math.hypot(...d), [x, y] = flat(placeOf(point), axes);
     if (!(size > 3)) continue;
     const tip = [x + d[0], y + d[1]], u = d.map(v => v / size), side = s => [tip[0] - 6 * u[0] - s * 4 * u[1], tip[1] - 6 * u[1] + s * 4 * u[0]];
-    arrows.push(make('path', {class: 'arrow', d: path([[x, y], tip]) + path([side(1), tip, side(-1)])}));
+    arrows.push(sketch('path', {class: 'arrow', d: path([[x, y], tip]) + path([side(1), tip, side(-1)])}));
   }
-  $('arrows').replaceChildren(...arrows);
+  show($('arrows'), ...arrows);
 };
 const draw3d = () => {
   const svg = $('drawing'), {now, base} = state;
@@ -99,7 +99,7 @@ const draw3d = () => {
   }
   if (branch && branch.points) layers.push(scenery(now, branch, k, axes, false));
   layers.push(triad(axes));
-  $('scenery').replaceChildren(...layers);
+  show($('scenery'), ...layers);
   drawHandles(axes);
   for (const button of $('views').children) button.setAttribute('aria-pressed', String(button.textContent === view.name));
 };
