@@ -63,7 +63,7 @@ export class Browser {
     await this.send('Emulation.setDeviceMetricsOverride', {width, height, deviceScaleFactor: 1, mobile: width < 500});
     await this.send('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: dark ? 'dark' : 'light'}]});
     await this.send('Page.navigate', {url: pathToFileURL(file).href});
-    await this.until(`document.readyState === 'complete' && window.live && window.live.ready > 0`, 'the page is ready');
+    await this.until(`document.readyState === 'complete' && window.live && window.live.ready > 0 && !busy && !due`, 'the page is ready');
   }
   mouse(type, x, y, more = {}) { return this.send('Input.dispatchMouseEvent', {type, x, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1, ...more}); }
   async key(key) {

@@ -13,7 +13,7 @@ let worker, calls = 0;
 const waiting = new Map();
 const ask = (what, data = {}) => new Promise((resolve, reject) => {
   waiting.set(++calls, {resolve, reject});
-  worker.postMessage({id: calls, what, ...data});
+  worker.postMessage({id: calls, what, ...data}, data.bytes ? [data.bytes] : []);
 });
 const startWorker = async () => {
   const blob = new Blob([$('worker').textContent], {type: 'text/javascript'});
@@ -23,7 +23,8 @@ const startWorker = async () => {
     waiting.delete(data.id);
     data.error === undefined ? call.resolve(data) : call.reject(Object.assign(new Error(data.error), {kind: data.kind}));
   };
-  const packed = Uint8Array.from(atob($('solver').textContent.trim()), c => c.charCodeAt(0));
+  const coded = atob($('solver').textContent.trim()), packed = new Uint8Array(coded.length);
+  for (let k = 0; k < coded.length; ++k) packed[k] = coded.charCodeAt(k);
   const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   await ask('start', {bytes: await new Response(plain).arrayBuffer()});
 };
@@ -101,7 +102,9 @@ const pump = async () => {
     const asked = since, settings = new Map(state.settings);
     since = 0;
     try {
-      const answer = await ask('solve', {request: request()});
+      // The first picture needs one branch; the others follow.
+      const first = !state.now;
+      const answer = await ask('solve', {request: first ? {...request(), only: state.branch} : request()});
       if (answer.head.trouble) throw new Error(answer.head.trouble);
       state.now = Object.assign(new Run(answer), {settings: [...settings]});
       if (!settings.size) state.base = state.now;
@@ -109,9 +112,11 @@ const pump = async () => {
       const begun = performance.now();
       draw();
       const done = performance.now();
+      window.live.ready ||= done;
       window.live.draws.push({solve: answer.seconds, draw: (done - begun) / 1e3, all: (done - asked) / 1e3});
       $('state').textContent = `${state.now.branches.length} branch${state.now.branches.length === 1 ? '' : 'es'} solved in ${(1e3 * answer.seconds).toFixed(0)} ms` +
         (settings.size ? ` · ${settings.size} number${settings.size > 1 ? 's' : ''} changed` : '');
+      if (first && state.info.branches.length > 1) due = true, since = performance.now();
     } catch (error) {
       $('state').textContent = 'not solved: the curves are those of the last numbers that could be solved';
       trouble(error.message);
@@ -440,7 +445,6 @@ setUpView();
     await startWorker();
     const {text, name, files} = JSON.parse($('scene').textContent);
     await tryOpen(text, name, files);
-    window.live.ready = performance.now();
     await warmUp();
   } catch (error) {
     trouble(error.message);
