@@ -15,6 +15,7 @@
 #include "models/branch.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
+#include "recursive/series/path.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -34,10 +35,11 @@ constexpr double known = 1e-6;       // of the largest singular value: resolutio
 // The trim equations for any p.
 struct Problem {
     const Trim* trim = nullptr;
-    BranchSide side;                // branch on which the adjustments are held
-    std::vector<Channel> channels;  // read by the conditions
-    VectorXd target;                // [m, rad]
-    Leg solver = Leg::equilibrium;  // by which the trim equations are solved
+    BranchSide side;                                // branch on which the adjustments are held
+    std::vector<Channel> channels;                  // read by the conditions
+    VectorXd target;                                // [m, rad]
+    Leg solver = Leg::equilibrium;                  // by which the trim equations are solved
+    std::shared_ptr<recursive::Analysis> analysis;  // of the series, with its last settled state
 };
 
 struct TrimAttempt {
@@ -134,7 +136,12 @@ BranchSide held_at(const Problem& problem, const VectorXd& p) {
 }
 
 TrimAttempt settle(const Problem& problem, const VectorXd& p, Leg leg) {
-    const EquilibriumPath path = rest(held_at(problem, p), leg);
+    BranchSide held = held_at(problem, p);
+    if (problem.analysis && leg == Leg::series) {
+        recursive::series::keep_start(held.model, held.branch, {}, *problem.analysis);
+        held.analysis = problem.analysis;
+    }
+    const EquilibriumPath path = rest(held, leg);
     if (path.points.empty()) return {path.outcome, path.detail, {}, {}};
     return {Outcome::converged, "", path.points.front(),
             values(problem, path.points.front()) - problem.target};
@@ -309,8 +316,8 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     Problem problem = pose(scene);
     problem.solver = solver;
     if (solver == Leg::series)
-        problem.side.analysis =
-            std::make_shared<const recursive::Analysis>(recursive::analyse(problem.side.model));
+        problem.analysis =
+            std::make_shared<recursive::Analysis>(recursive::analyse(problem.side.model));
     TrimRecord& record = result.record.emplace();
     const auto give_up = [&](const TrimAttempt& answer, const std::string& where) {
         record.outcome = answer.outcome;

@@ -705,6 +705,36 @@ Outcome settle(Continuation& settling, const Analysis& analysis) {
     return settled(s, walked, 0.0);
 }
 
+void stand_on(SteppingState<double>& s, std::vector<Followed>& curves, const Start& start) {
+    s.q = start.q, s.lambda = start.lambda, s.Phi_d = start.Phi_d;
+    s.system = start.system;
+    for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start.pieces[k];
+}
+
+// Newton's method from the start of another branch, for the equilibrium next to it: within a
+// hundredth of L, on the same pieces of the curves, and met to the tolerance. Idle motions would
+// depend on the way there.
+bool settle_near(SteppingState<double>& s, std::vector<Followed>& curves,
+                 const recursive::Series& options, const Start& other) {
+    constexpr double near = 1e-2;
+    if (s.system.held.idle > 0) return false;
+    stand_on(s, curves, other);
+    Continuation w(s, curves, options, Drive::rate);
+    w.go_to(0);
+    for (const double limit : {near * s.length, options.tolerance}) {
+        double correction = 0;
+        if (correct_at_end(w, nullptr, correction) != Outcome::converged || !(correction <= limit))
+            return false;
+    }
+    begin(w.e, s.q, s.lambda, w.at());
+    evaluate(w.e, {0, Pass::known});
+    return std::ranges::all_of(curves, [&](Followed curve) {
+        const Piece piece = curve.piece;
+        find_piece(w.e, curve);
+        return curve.piece == piece;
+    });
+}
+
 bool is_at_rest(const Branch& branch) {
     return std::ranges::all_of(branch.drivers, [](const Driver& d) { return d.rate == 0; });
 }
@@ -780,9 +810,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
     }
     if (const Start* start = analysis.settled.get();
         start != nullptr && same_values(start->drivers, start_values(branch))) {
-        s.q = start->q, s.lambda = start->lambda, s.Phi_d = start->Phi_d;
-        s.system = start->system;
-        for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start->pieces[k];
+        stand_on(s, curves, *start);
         return finish_from_start(&start->stability);
     }
     // The factors of the analysis belong to the design position. If that is no equilibrium,
@@ -810,18 +838,25 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
 void keep_start(const Model& model, const Branch& branch, const recursive::Series& options,
                 Analysis& analysis) {
     check(model, branch);
-    analysis.settled.reset();
+    const auto last = std::move(analysis.settled);
     const bool as_drawn = analysis.at_rest && starts_as_drawn(branch);
     if (as_drawn || std::isnan(analysis.diagnosis.constraint_error)) return;
+    const auto keep = [&](SteppingState<double>& s, const std::vector<Followed>& curves) {
+        go_to(s, {1, 0});
+        analysis.settled =
+            std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d, s.system,
+                                          pieces_of(curves), start_stability(s));
+    };
+    if (last) {
+        SteppingState<double> s = series_state(model, branch, analysis);
+        std::vector<Followed> curves = curves_of(model);
+        if (settle_near(s, curves, options, *last)) return keep(s, curves);
+    }
     SteppingState<double> s = series_state(model, branch, analysis);
     std::vector<Followed> curves = curves_of(model);
     s.Phi_d = analysis.Phi_d;
     Continuation settling(s, curves, options, Drive::start);
-    if (settle(settling, analysis) != Outcome::converged) return;
-    go_to(s, {1, 0});
-    analysis.settled =
-        std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d, s.system,
-                                      pieces_of(curves), start_stability(s));
+    if (settle(settling, analysis) == Outcome::converged) keep(s, curves);
 }
 
 std::vector<Path> follow_sides(const Model& model, std::span<const Branch> sides,

@@ -71,8 +71,9 @@ struct Start {
     StartStability stability;
 };
 
-// Settles the start of the branch and keeps it in the analysis, for follow(). Keeps nothing where it
-// does not settle, for which follow() has the words.
+// Settles the start of the branch and keeps it in the analysis, for follow(): from the start that is
+// kept there where that is near, else from the design position. Keeps nothing where it does not
+// settle, for which follow() has the words.
 void keep_start(const Model& model, const Branch& branch, const recursive::Series& options,
                 Analysis& analysis);
 

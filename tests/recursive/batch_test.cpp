@@ -187,6 +187,16 @@ TEST(Start, ThatIsKeptServesItsBranchesAlone) {
                 << name << ", branch " << k;
             EXPECT_EQ(from.counts.iterations < own.counts.iterations, k < 2) << name;
         }
+        // Kept for other values, from the start that was kept: the same equilibrium.
+        series::keep_start(model, branches[2], {}, kept);
+        ASSERT_TRUE(kept.settled) << name;
+        EXPECT_LE(difference(series::sample(model, series::follow(model, branches[2], {}, kept),
+                                            branches[2], 20),
+                             series::sample(model, series::follow(model, branches[2], {}, analysis),
+                                            branches[2], 20)),
+                  1e-12)
+            << name;
+        series::keep_start(model, branches[0], {}, kept);
         for (Driver& driver : branches[0].drivers) driver.rate = 0;
         const series::Path still = series::follow(model, branches[0], {}, kept);
         EXPECT_EQ(still.outcome, Outcome::converged);
