@@ -7,7 +7,7 @@ let proving = 0, provePause = 0;
 const resting = () => !busy && !due && !held?.name;
 const prove = async () => {
   const mine = ++proving, run = state.now, more = () => mine === proving && run === state.now && resting();
-  if (!run || !$('trouble').hidden) return;
+  if (!run || JSON.stringify(run.settings) !== JSON.stringify([...state.settings])) return;  // the newest numbers have no answer
   if (proofs.run !== run) Object.assign(proofs, {run, of: new Map()});
   for (const {name, points} of shownBranches()) {
     const proof = proofs.of.get(name) ?? {stations: [], limits: [], done: points === 0};

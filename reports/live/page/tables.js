@@ -9,7 +9,7 @@ const causes = [
 const causeOf = name => causes.find(([, pattern]) => pattern.test(last(name)))[0];
 const tableHead = (...columns) => sketch('thead', {}, sketch('tr', {}, ...columns.map(t => sketch('th', {scope: 'col'}, t))));
 const differs = (was, value) => Number.isFinite(value - was) && Math.abs(value - was) > 1e-9 * Math.max(1, Math.abs(was));
-const tableRow = (name, unit, was, value, more = {}, ...cells) => sketch('tr', more, sketch('td', {title: more.title ?? ''}, name), sketch('td', {}, unit),
+const tableRow = (name, unit, was, value, more = {}, ...cells) => sketch('tr', more, sketch('td', {title: more.title ?? '', 'data-unit': unit}, name), sketch('td', {}, unit),
   sketch('td', {}, shown(was)), sketch('td', {}, shown(value)), sketch('td', {class: differs(was, value) ? 'changed' : ''}, differs(was, value) ? signed(value - was) : ''), ...cells);
 const channelRow = (channel, was, value, ...cells) => tableRow(words(channel.name), channel.unit, was, value, {'data-channel': channel.name, title: channel.definition}, ...cells);
 const group = (title, rows) => rows.length ? [sketch('tr', {class: 'group'}, sketch('th', {colspan: 5, scope: 'rowgroup'}, title)), ...rows] : [];
