@@ -14,9 +14,20 @@
 // from r_0 or of a definition, at most a twentieth of its range. Else a small factor and an offset
 // would make any curve right for a column that hardly moves. If none applies, the column may be
 // right up to a point.
+//
+// What agrees by accident is no explanation. A column says as many numbers as a polynomial needs to
+// describe it as well as the transformation does (at most one per point): a straight line says two,
+// however many points it has. Each number that is not used to fit an offset or a factor agrees by
+// accident with a probability of about 2 left / range. Of m transformations tried, one is right by
+// accident with a probability of about
+//
+//   m (2 left / range)^(numbers - fitted)
+//
+// and is accepted only if this is at most a hundredth.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,6 +53,9 @@ constexpr double at_once = 0.03;
 // a definition takes the place of a simpler explanation where it leaves a hundredth of what that
 // leaves, and that is more than rounding
 constexpr double much_better = 0.01, rounding_of_range = 1e-6;
+
+constexpr double by_accident = 0.01;  // of a transformation that is right, at most
+constexpr int most_numbers = 5;       // of a branch: more say no more
 
 struct Written {
     double factor;
@@ -96,6 +110,46 @@ double dot(const Values& a, const Values& b) {
     return sum;
 }
 
+// Numbers that a column says about its course to within `left`: on each branch the coefficients of
+// the polynomial that describes it as well, or its points if these are fewer.
+int numbers_in(const Beside& b, double left) {
+    int numbers = 0;
+    for (std::size_t first = 0; first < b.branch.size();) {
+        std::size_t last = first;
+        while (last < b.branch.size() && b.branch[last] == b.branch[first]) ++last;
+        const auto n = static_cast<Eigen::Index>(last - first);
+        const auto [low, high] =
+            std::minmax_element(b.at.begin() + static_cast<std::ptrdiff_t>(first),
+                                b.at.begin() + static_cast<std::ptrdiff_t>(last));
+        const double middle = (*low + *high) / 2, half = std::max((*high - *low) / 2, 1e-300);
+        Eigen::VectorXd v(n);
+        for (Eigen::Index k = 0; k < n; ++k)
+            v[k] = b.candidate[first + static_cast<std::size_t>(k)];
+        int count = 1;
+        for (; count < std::min<Eigen::Index>(n, most_numbers); ++count) {
+            Eigen::MatrixXd powers(n, count);
+            for (Eigen::Index k = 0; k < n; ++k)
+                for (Eigen::Index j = 0; j < count; ++j)
+                    powers(k, j) =
+                        std::pow((b.at[first + static_cast<std::size_t>(k)] - middle) / half, j);
+            const Eigen::VectorXd off = v - powers * powers.colPivHouseholderQr().solve(v);
+            if (off.cwiseAbs().maxCoeff() <= left) break;
+        }
+        numbers += count;
+        first = last;
+    }
+    return numbers;
+}
+
+// Whether a transformation that leaves `left`, with `fitted` numbers and one of `tried`, is right by
+// accident too often.
+bool is_accident(const Beside& b, double left, int fitted, int tried) {
+    const double range = span(b.candidate);
+    if (!(range > 0)) return true;
+    const int free = numbers_in(b, left) - fitted;
+    return !(tried * std::pow(std::min(1., 2 * left / range), free) <= by_accident);
+}
+
 const char* unit_word(double factor) {
     for (const auto& unit : units)
         if (std::abs(std::abs(factor) / unit.factor - 1) < 1e-6) return unit.word;
@@ -141,7 +195,7 @@ std::optional<Explanation> wrong_from(const Beside& b) {
 
 // All other definitions of the figure that make the column right, within `allowed`, each by the
 // simplest transformation that does.
-std::optional<Explanation> by_definitions(const Beside& b, double allowed) {
+std::optional<Explanation> by_definitions(const Beside& b, double allowed, int tried) {
     struct Fit {
         std::string name;
         double left = 0;
@@ -155,10 +209,14 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed) {
             !std::ranges::all_of(r, [](double x) { return std::isfinite(x); }))
             continue;
         std::optional<Fit> fit;
-        const auto try_it = [&](const std::string& as, const Values& reading, bool needs_movement) {
+        const auto try_it = [&](const std::string& as, const Values& reading, bool needs_movement,
+                                int fitted) {
+            ++tried;
             const double left = off(v, reading);
             const bool moves = left <= of_column * span(v);
-            if (!fit && left <= allowed && (moves || !needs_movement)) fit = Fit{as, left};
+            if (!fit && left <= allowed && (moves || !needs_movement) &&
+                !is_accident(b, left, fitted, tried))
+                fit = Fit{as, left};
         };
         for (const bool with_offset : {false, true})
             for (const double sign : {1., -1.})
@@ -173,7 +231,7 @@ std::optional<Explanation> by_definitions(const Beside& b, double allowed) {
                                 : sign < 0 ? " with its sign turned"
                                            : "") +
                                (with_offset ? fmt::format(", {:.6g} taken off", offset) : ""),
-                           reading, with_offset || u > 0);
+                           reading, with_offset || u > 0, with_offset ? 1 : 0);
                 }
         if (fit) fits.push_back(*fit);
     }
@@ -200,16 +258,19 @@ std::optional<Explanation> explain(const Beside& b) {
     std::optional<Explanation> found;
     // A factor has to reproduce the level of the column, with an offset or from a start its movement.
     const double level = std::max(off(v, Values(v.size(), 0)), span(v));
-    const auto try_it = [&](Explanation as, const Values& reading, bool is_level = true) {
+    int tried = 0;
+    const auto try_it = [&](Explanation as, const Values& reading, bool is_level = true,
+                            int fitted = 0) {
+        ++tried;
         as.left = off(v, reading);
         as.column = b.column;
         const bool scaled = as.kind == Kind::factor || as.kind == Kind::factor_and_offset;
         if (scaled && !(as.left <= of_column * (is_level ? level : span(v)))) return;
-        if (!found && as.left <= allowed) found = as;
+        if (!found && as.left <= allowed && !is_accident(b, as.left, fitted, tried)) found = as;
     };
     const auto with_offset = [&](Explanation as, const Values& reading) {
         as.offset = mean(less(v, reading));
-        try_it(as, plus(reading, as.offset), false);
+        try_it(as, plus(reading, as.offset), false, 1);
     };
     try_it({.kind = Kind::sign}, times(-1, r));
     with_offset({.kind = Kind::offset}, r);
@@ -220,7 +281,8 @@ std::optional<Explanation> explain(const Beside& b) {
     // Fitted, for the whole column and for its change.
     if (const double rr = dot(r, r); rr > 0) {
         const double f = dot(v, r) / rr;
-        try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, times(f, r));
+        try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, times(f, r), true,
+               1);
     }
     const Values change = less(r, b.begin);
     if (const double cc = dot(change, change); cc > 0) {
@@ -228,7 +290,8 @@ std::optional<Explanation> explain(const Beside& b) {
         Values reading = times(f, change);
         for (std::size_t k = 0; k < reading.size(); ++k) reading[k] += b.begin[k];
         if (f > 0)
-            try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, reading, false);
+            try_it({.kind = Kind::factor, .factor = f, .unit_word = unit_word(f)}, reading, false,
+                   1);
     }
     with_offset({.kind = Kind::sign_and_offset}, times(-1, r));
     for (std::size_t o = 0; o < b.others.size(); ++o)
@@ -245,10 +308,11 @@ std::optional<Explanation> explain(const Beside& b) {
                         times(sign * unit.factor, r));
     if (!found || found->left > rounding_of_range * movement)
         if (const auto other = by_definitions(
-                b, found
-                       ? much_better * found->left
-                       // the figure may not move at all where another definition of it does
-                       : std::max(allowed, std::min(explained * deviation, of_movement * span(v)))))
+                b,
+                found ? much_better * found->left
+                      // the figure may not move at all where another definition of it does
+                      : std::max(allowed, std::min(explained * deviation, of_movement * span(v))),
+                tried))
             found = other;
     if (!found) found = wrong_from(b);
     return found;

@@ -77,6 +77,10 @@ Imported import_text(std::string_view text, const std::string& file, const Optio
                      "only for hardpoints of Adams/Car (.sub) and lists of points; the axes of a "
                      "model are those "
                      "of its file");
+    for (const auto& [given, option] :
+         {std::pair{&options.columns, "--columns"}, {&options.unit, "--unit"}})
+        if (!given->empty() && !list)
+            reader::fail(file, 0, option, "only for lists of points (.csv, .shk)");
     if (!options.axle.empty() && ending != ".json")
         reader::fail(file, 0, "--axle", "only for a vehicle of Chrono::Vehicle (.json)");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)

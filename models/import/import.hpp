@@ -20,6 +20,10 @@ struct Options {
     bool allow_missing = false;  // a part that cannot be represented is a warning, not an error
     // of a table of hardpoints: "x-rearward,y-right"; empty: the default of the format
     std::string axes = {};
+    // of a table of points: "name=Punkt,x=X_mm,y=3,z=D"; empty: by headings that are known
+    std::string columns = {};
+    // of the coordinates of a list of points: "mm", "cm", "m", "in"; empty: as the file says
+    std::string unit = {};
     // of a vehicle of Chrono: "front" (its first), "rear" (its last), "1", "2", ...; empty: the
     // only one
     std::string axle = {};

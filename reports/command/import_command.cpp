@@ -19,12 +19,14 @@
 #include "models/import/export/export_adm.hpp"
 #include "models/import/export/export_chrono.hpp"
 #include "models/import/import.hpp"
+#include "models/kinds.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/load_scene.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/tables/blocks.hpp"
 #include "reports/tables/maps.hpp"
 
 namespace elastocheck::reports {
@@ -35,7 +37,7 @@ constexpr const char* import_schema = "elastocheck/import/1";
 struct ImportRequest {
     std::string file;
     std::string output;  // empty: standard output
-    std::string wheel, axes, axle;
+    std::string wheel, axes, columns, unit, axle;
     std::vector<std::string> drop;
     bool allow_missing = false;
     bool as_json = false;
@@ -51,12 +53,14 @@ struct ExportRequest {
     std::string rows;                   // "joints.rack=-50:50:11"; empty: one variable
     std::vector<std::string> channels;  // none: the main positions and angles
     std::string within = "0.01mm,0.001deg,1%";
+    std::string axes;  // of blocks: "iso", "sae"; empty: iso
 };
 
 constexpr FileKind scene_file{"scene made by import", "# Imported from "};
 constexpr FileKind dataset_file{"dataset made by export", "Exported model name:"};
 constexpr FileKind lookup_file{"lookup table made by export", lookup_head};
 constexpr FileKind polynomial_file{"polynomials made by export", polynomial_head};
+constexpr FileKind blocks_file{"K&C blocks made by export", blocks_head};
 constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
@@ -67,6 +71,8 @@ importer::Options options(const ImportRequest& request) {
             .drop_dynamics = !request.drop.empty(),
             .allow_missing = request.allow_missing,
             .axes = request.axes,
+            .columns = request.columns,
+            .unit = request.unit,
             .axle = request.axle};
 }
 
@@ -192,20 +198,26 @@ int import(const ImportRequest& request) {
 
 // The values of --rows, in the unit of the scene, and what they are values of.
 struct Rows {
-    std::string held;  // "joints.rack"
+    std::vector<std::string> held;  // "joints.rack"; several have the same value
     std::vector<double> values;
 };
 Rows rows_of(const std::string& text) {
     const auto wrong = [&] {
         throw std::invalid_argument(fmt::format(
-            "--rows {}: expected HELD=FROM:TO:COUNT, what the branch holds, FROM below TO, an odd "
-            "count from 3 to 1001",
+            "--rows {}: expected HELD=FROM:TO:COUNT, what the branch holds (names with commas are "
+            "held alike), FROM below TO, an odd count from 3 to 1001",
             text));
     };
     Rows rows;
     const auto equals = text.find('=');
     if (equals == text.npos || equals == 0) wrong();
-    rows.held = text.substr(0, equals);
+    for (std::string_view names = std::string_view(text).substr(0, equals);;) {
+        const auto comma = std::min(names.find(','), names.size());
+        if (comma == 0) wrong();
+        rows.held.emplace_back(names.substr(0, comma));
+        if (comma == names.size()) break;
+        names.remove_prefix(comma + 1);
+    }
     std::vector<double> numbers;
     for (std::string_view rest = std::string_view(text).substr(equals + 1);;) {
         const auto end = std::min(rest.find(':'), rest.size());
@@ -226,11 +238,97 @@ Rows rows_of(const std::string& text) {
     return rows;
 }
 
+// Unit in SI of what a driver moves.
+const char* si_of(const Scene& scene, const Driver& driver) {
+    return std::visit(
+        [&]<class D>(const D& driven) -> const char* {
+            if constexpr (std::is_same_v<D, Motion>)
+                return is_angle(scene.joints[static_cast<std::size_t>(driven.joint)].kind) ? "rad"
+                                                                                           : "m";
+            else if constexpr (std::is_same_v<D, FreeLength>)
+                return "m";
+            else
+                return "1";
+        },
+        driver.what);
+}
+
+// Values of what the rows hold, of the scenes with the first value and with the last one.
+Breakpoints held_breakpoints(const Rows& rows, const Scene& scene, const Branch& first,
+                             const Branch& last) {
+    Breakpoints points{fmt::format("{}", fmt::join(rows.held, " ")), "", rows.values};
+    points.is_travel = std::ranges::all_of(rows.held, [](const std::string& name) {
+        return name == "travel" || name.ends_with(".travel");
+    });
+    for (std::size_t k = 0; k < first.drivers.size(); ++k) {
+        const double change = last.drivers[k].start - first.drivers[k].start;
+        if (change == 0) continue;
+        points.unit = si_of(scene, first.drivers[k]);
+        // from the scene's unit
+        const double factor = std::abs(change) / (rows.values.back() - rows.values.front());
+        for (double& value : points.values) value *= factor;
+        return points;
+    }
+    throw std::invalid_argument("--rows: nothing that the branch holds changes");
+}
+
+// The parameter of the branch, `values` in its display unit. It is a travel where it moves jacks of
+// wheel centres alone, all alike.
+Breakpoints branch_breakpoints(const Scene& scene, const Branch& branch,
+                               std::vector<double> values) {
+    const double unit = compare::in_unit(compare::unit_of(branch.unit));
+    for (double& value : values) value /= unit;
+    Breakpoints points{branch.name, "1", std::move(values), true};
+    for (const Driver& driver : branch.drivers) {
+        if (driver.rate == 0) continue;
+        const std::string joint = std::visit(
+            [&]<class D>(const D& driven) -> std::string {
+                if constexpr (std::is_same_v<D, Motion>)
+                    return scene.joints[static_cast<std::size_t>(driven.joint)].name;
+                else
+                    return "";
+            },
+            driver.what);
+        points.is_travel &= driver.rate == 1 && (joint == "jack" || joint.ends_with(".jack"));
+    }
+    points.unit = branch.unit == ParameterUnit::metre          ? "m"
+                  : branch.unit == ParameterUnit::radian       ? "rad"
+                  : branch.unit == ParameterUnit::newton       ? "N"
+                  : branch.unit == ParameterUnit::newton_metre ? "N·m"
+                                                               : "1";
+    return points;
+}
+
+// Coefficients of compliance at the design position, at the start of the branch as it stands in the
+// scene.
+int add_compliance(const ExportRequest& request, KCBlocks& blocks) {
+    const LoadedScene loaded = load_scene(request.scene, request.settings);
+    const Branch& branch = branch_named(loaded.model, request.over, "--over");
+    const auto sides = compare::sides_of(loaded.model, branch, 1);
+    const auto path = compare::rest(sides.front(), compare::Leg::equilibrium);
+    if (path.points.empty()) {
+        print_error("no coefficients: {}: {}: {}\n", request.over, name(path.outcome), path.detail);
+        return could_not_judge;
+    }
+    blocks.compliance = compliance_outputs(loaded.model);
+    std::vector<compare::Channel> channels;
+    for (const auto& output : blocks.compliance) channels.push_back(output.channel);
+    blocks.coefficients = compare::row_of(loaded.model, channels, sides.front(),
+                                          {.leg = compare::Leg::equilibrium}, path.points.front())
+                              .values;
+    return fine;
+}
+
+const FileKind& kind_of(const std::string& format) {
+    return format == "polynomial" ? polynomial_file
+           : format == "blocks"   ? blocks_file
+                                  : lookup_file;
+}
+
 // Solves the branch once for each row. NaN beyond the end of a branch.
 int export_map(const ExportRequest& request) {
-    const bool polynomial = request.format == "polynomial";
-    if (!request.output.empty())
-        check_may_write(request.output, polynomial ? polynomial_file : lookup_file);
+    const bool polynomial = request.format == "polynomial", blocks = request.format == "blocks";
+    if (!request.output.empty()) check_may_write(request.output, kind_of(request.format));
     const auto tolerance =
         compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces);
     if (request.over.empty())
@@ -238,36 +336,56 @@ int export_map(const ExportRequest& request) {
             fmt::format("--format {} needs --over BRANCH, the branch whose parameter is the first "
                         "variable",
                         request.format));
-    Rows rows{"", {0}};
+    if (blocks && !request.channels.empty())
+        throw std::invalid_argument("--channels: blocks have their own outputs");
+    Rows rows{{}, {0}};
     if (!request.rows.empty()) rows = rows_of(request.rows);
     compare::MapTable table;
     table.y = rows.values;
     MapAxes axes;
+    KCBlocks made;
+    std::optional<Scene> first;
+    const auto written = [&](const Scene& scene) -> const Branch& {
+        return *std::ranges::find(scene.branches, request.over, &Branch::name);
+    };
     int missing = 0;
     for (const double held : rows.values) {
         auto settings = request.settings;
-        if (!rows.held.empty())
+        for (const auto& name : rows.held)
             settings.push_back(
-                setting(fmt::format("branches.{}.hold.{}", request.over, rows.held), held));
+                setting(fmt::format("branches.{}.hold.{}", request.over, name), held));
         const LoadedScene loaded = load_scene(request.scene, settings);
         const Branch& branch = branch_named(loaded.model, request.over, "--over");
+        if (blocks && !first)
+            first = loaded.scene;
+        else if (blocks)
+            made.y = held_breakpoints(rows, *first, written(*first), written(loaded.scene));
         if (table.channels.empty()) {
             table.channels = requested_channels(loaded, request.channels);
-            if (request.channels.empty())
+            if (blocks) {
+                table.channels.clear();
+                made.outputs = block_outputs(loaded.model);
+                for (const auto& output : made.outputs) table.channels.push_back(output.channel);
+                if (table.channels.empty())
+                    throw std::invalid_argument("--format blocks: the scene has no wheel");
+            } else if (request.channels.empty())
                 std::erase_if(table.channels,
                               [](const compare::Channel& c) { return !c.main || !c.kinematic(); });
             const compare::Unit unit = compare::unit_of(branch.unit);
             axes = {loaded.model.name, fmt::format("{} [{}]", request.over, symbol(unit)),
-                    rows.held.empty() ? "" : rows.held + " [as in the scene]"};
+                    rows.held.empty()
+                        ? ""
+                        : fmt::format("{} [as in the scene]", fmt::join(rows.held, " "))};
         }
         const auto path = compare::walk(loaded.model, table.channels, branch,
                                         compare::sides_of(loaded.model, branch),
                                         {.leg = compare::Leg::equilibrium});
         if (path.outcome != Outcome::converged) {
-            print_error(
-                "{}: {}: {}\n",
-                rows.held.empty() ? request.over : fmt::format("{} = {:g}", rows.held, held),
-                name(path.outcome), path.detail);
+            print_error("{}: {}: {}\n",
+                        rows.held.empty()
+                            ? request.over
+                            : fmt::format("{} = {:g}", fmt::join(rows.held, ", "), held),
+                        name(path.outcome), path.detail);
             ++missing;
         }
         auto a = path.curve.a;
@@ -287,7 +405,13 @@ int export_map(const ExportRequest& request) {
     }
     std::string text;
     int code = fine;
-    if (polynomial) {
+    if (blocks) {
+        if (const int failed = add_compliance(request, made); failed != fine) return failed;
+        made.values = table.values;
+        made.scene = axes.scene;
+        made.x = branch_breakpoints(*first, written(*first), table.x);
+        text = blocks_csv(made, request.axes == "sae" ? BlockAxes::sae : BlockAxes::iso);
+    } else if (polynomial) {
         const auto maps = compare::polynomial_maps(table, tolerance);
         for (const auto& map : maps)
             if (!map.within) {
@@ -305,18 +429,21 @@ int export_map(const ExportRequest& request) {
     if (request.output.empty())
         print("{}", text);
     else
-        write_whole(request.output, text, polynomial ? polynomial_file : lookup_file);
+        write_whole(request.output, text, kind_of(request.format));
     return code;
 }
 
 int export_scene(const ExportRequest& request) {
-    const bool map = request.format == "lookup" || request.format == "polynomial";
+    const bool map =
+        request.format == "lookup" || request.format == "polynomial" || request.format == "blocks";
     for (const auto& [given, option] : {std::pair{!request.over.empty(), "--over"},
                                         {!request.rows.empty(), "--rows"},
                                         {!request.channels.empty(), "--channels"}})
         if (given && !map)
             throw std::invalid_argument(
-                fmt::format("{}: only with --format lookup or polynomial", option));
+                fmt::format("{}: only with --format lookup, polynomial or blocks", option));
+    if (!request.axes.empty() && request.format != "blocks")
+        throw std::invalid_argument("--axes: only with --format blocks");
     if (map && (request.allow_missing || !request.formulation.empty()))
         throw std::invalid_argument("--allow-missing and --formulation: not of a map");
     if (map) return export_map(request);
@@ -363,6 +490,11 @@ Command import_command() {
                                        importer::axes_of_tables[2], importer::axes_of_tables[3]})},
           "axes of a table of hardpoints, turned to ISO 8855: x-rearward,y-right (default of "
           ".sub)"},
+         {"--columns", Text{&request->columns},
+          "columns of a table of points by heading, number or letters: "
+          "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... right.z (.csv)"},
+         {"--unit", Text{&request->unit, one_of({"mm", "cm", "m", "in"})},
+          "unit of a list of points whose headings do not say it (.csv, .shk)"},
          {"--axle", Text{&request->axle},
           "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ..."},
          {"--allow-missing", Flag{&request->allow_missing},
@@ -377,15 +509,19 @@ Command export_command() {
         "export",
         "Export the trimmed scene as a model of ADAMS or Chrono, or its outputs as a map",
         {scene_option(request->scene),
-         {"--format", Text{&request->format, one_of({"adm", "chrono", "lookup", "polynomial"})},
+         {"--format",
+          Text{&request->format, one_of({"adm", "chrono", "lookup", "polynomial", "blocks"})},
           "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON); "
-          "lookup: a table of outputs over a branch (CSV); polynomial: the same as polynomials"},
+          "lookup: a table of outputs over a branch (CSV); polynomial: the same as polynomials; "
+          "blocks: K&C blocks in SI units (CSV)"},
          {"-o,--output", Text{&request->output, a_file("*.adm *.json *.csv")},
           "write the model to this file"},
-         {"--over", Text{&request->over}, "lookup, polynomial: the branch"},
+         {"--over", Text{&request->over}, "lookup, polynomial, blocks: the branch"},
          {"--rows", Text{&request->rows},
-          "lookup, polynomial: a second variable, which the branch holds: "
-          "joints.rack=-50:50:11"},
+          "lookup, polynomial, blocks: a second variable, which the branch holds: "
+          "travel=-0.08:0.08:9"},
+         {"--axes", Text{&request->axes, one_of({"iso", "sae"})},
+          "blocks: x forward, y left, z up (iso, default), or x forward, y right, z down (sae)"},
          {"--channels", TextList{&request->channels, TextList::Form::commas},
           "lookup, polynomial: outputs, as for solve (default: the main positions and angles)"},
          {"--within", Text{&request->within},

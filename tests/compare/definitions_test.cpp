@@ -601,5 +601,120 @@ TEST(Definitions, DoNotExplainWrongColumns) {
     EXPECT_LE(explained, 10) << "of " << tried;
 }
 
+// `count` points of output `c` of a branch, evenly spaced, with the figure by other definitions.
+Beside few_points(const Judged& at, std::size_t c, std::size_t count) {
+    Beside b;
+    const auto taken = [&](const std::vector<double>& values) {
+        std::vector<double> few;
+        for (std::size_t k = 0; k < count; ++k)
+            few.push_back(values[k * (values.size() - 1) / (count - 1)]);
+        return few;
+    };
+    b.reference = taken(at.values[c]);
+    b.at = taken(at.a);
+    b.begin.assign(count, at.values[c][at.a.size() / 2]);
+    b.branch.assign(count, at.branch);
+    for (const Channel& other : definitions_of(at.defined, at.comparison.channels[c].name)) {
+        const auto d = static_cast<std::size_t>(find_channel(at.defined, other.name));
+        b.definitions.push_back(taken(at.values[at.comparison.channels.size() + d]));
+        b.definition_names.push_back(other.name);
+    }
+    for (std::size_t o = 0; o < at.comparison.channels.size(); ++o)
+        if (o != c && at.comparison.channels[o].unit == at.comparison.channels[c].unit) {
+            b.others.push_back(taken(at.values[o]));
+            b.other_channels.push_back(o);
+        }
+    return b;
+}
+
+// Of 1000 wrong columns of 3, 4 and 5 points each, straight, smooth or without order, judged to a
+// hundredth of the range of the reference, at most 1 % are explained by anything.
+TEST(Definitions, AndTransformationsDoNotExplainShortWrongColumns) {
+    const Judged at(compile(trim(support::scene("double_wishbone_rigid")).scene), "steering");
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> in(-1, 1);
+    for (const std::size_t count : {3, 4, 5})
+        for (const int shape : {1, 2, 3}) {  // straight, curved, without order
+            int explained = 0, tried = 0;
+            std::string last;
+            while (tried < 1000)
+                for (std::size_t c = 0; c < at.comparison.channels.size() && tried < 1000; ++c) {
+                    Beside b = few_points(at, c, count);
+                    const auto [low, high] = std::ranges::minmax(b.reference);
+                    if (b.definitions.empty() || !(high - low > 1e-9)) continue;
+                    b.tolerance = 0.01 * (high - low);
+                    const double from = in(random), slope = in(random), bend = in(random);
+                    for (std::size_t k = 0; k < count; ++k) {
+                        const double x = b.at[k] / std::abs(b.at.back());
+                        const double v = shape == 1   ? from + slope * x
+                                         : shape == 2 ? from + slope * x + bend * x * x
+                                                      : in(random);
+                        b.candidate.push_back(low + (high - low) * (0.5 + v));
+                    }
+                    const auto found = explain(b);
+                    if (found && found->kind != Explanation::Kind::from_there_on) {
+                        ++explained;
+                        last = fmt::format("{} as kind {} · {} + {}, {}",
+                                           at.comparison.channels[c].name,
+                                           static_cast<int>(found->kind), found->factor,
+                                           found->offset, fmt::join(found->definitions, " "));
+                    }
+                    ++tried;
+                }
+            RecordProperty(fmt::format("explained_{}_{}", count, shape), explained);
+            EXPECT_LE(explained, 10) << count << " points, shape " << shape << ": " << last;
+        }
+}
+
+// The straight rest of a trail, 5.3 times as steep as the reference, is a slope that could be anything;
+// what is planted is found with three points too.
+TEST(Definitions, AndTransformationsThatArePlantedAreFoundInShortColumns) {
+    const Judged at(compile(trim(support::scene("double_wishbone_rigid")).scene), "steering");
+    int definitions_found = 0;
+    for (const std::size_t count : {3, 4, 5})
+        for (std::size_t c = 0; c < at.comparison.channels.size(); ++c) {
+            Beside b = few_points(at, c, count);
+            const auto [low, high] = std::ranges::minmax(b.reference);
+            const double range = high - low;
+            if (b.definitions.empty() || !(range > 1e-6)) continue;
+            const std::string& name = at.comparison.channels[c].name;
+            b.tolerance = 1e-4 * range;
+            const auto kind_of = [&](double factor, double offset, const std::vector<double>& of) {
+                b.candidate = of;
+                for (double& v : b.candidate) v = factor * v + offset;
+                const auto found = explain(b);
+                return found ? std::optional(found->kind) : std::nullopt;
+            };
+            using Kind = Explanation::Kind;
+            EXPECT_EQ(kind_of(1, 0.5 * range, b.reference), Kind::offset) << name << " " << count;
+            const auto turned = kind_of(-1, 0, b.reference), unit = kind_of(60, 0, b.reference);
+            EXPECT_TRUE(turned == Kind::sign || turned == Kind::offset ||
+                        turned == Kind::definition)
+                << name << " " << count;
+            EXPECT_TRUE(unit == Kind::factor) << name << " " << count;
+            for (const auto& definition : b.definitions) {
+                const double off = [&] {
+                    double worst = 0;
+                    for (std::size_t k = 0; k < count; ++k)
+                        worst = std::max(worst, std::abs(definition[k] - b.reference[k]));
+                    return worst;
+                }();
+                if (std::isfinite(off) && off > 0.05 * range)
+                    definitions_found += kind_of(1, 0, definition) == Kind::definition;
+            }
+        }
+    EXPECT_GE(definitions_found, 20);
+
+    // numbers of a manufacturer's table against the reference, tests/outside
+    Beside b;
+    b.candidate = {145.42, 144.80, 144.19};
+    b.reference = {143.92, 143.80, 143.68};
+    b.begin = {143.57, 143.57, 143.57};
+    b.at = {-30, -20, -10};
+    b.branch.assign(3, "bump");
+    b.tolerance = 0.01;
+    EXPECT_FALSE(explain(b));
+}
+
 }  // namespace
 }  // namespace elastocheck::compare

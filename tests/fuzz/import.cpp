@@ -8,18 +8,22 @@
 namespace elastocheck::fuzz {
 namespace {
 
+void expect_place(std::string_view input, const std::string& file,
+                  const importer::Options& options) {
+    try {
+        const importer::Imported result = importer::import_text(input, file, options);
+        if (result.yaml.empty()) throw Fault("nothing was written");
+    } catch (const SceneError& error) {
+        if (!std::string_view(error.what()).starts_with(file + ":"))
+            throw Fault("a refusal without a place: " + std::string(error.what()));
+    }
+}
+
 // With what a scene cannot represent, and without; with a wheel that is hardly ever there.
 void import(std::string_view input, const std::string& file) {
     for (const auto& options : {importer::Options{}, importer::Options{"", true, true},
-                                importer::Options{"wheel", false, true}}) {
-        try {
-            const importer::Imported result = importer::import_text(input, file, options);
-            if (result.yaml.empty()) throw Fault("nothing was written");
-        } catch (const SceneError& error) {
-            if (!std::string_view(error.what()).starts_with(file + ":"))
-                throw Fault("a refusal without a place: " + std::string(error.what()));
-        }
-    }
+                                importer::Options{"wheel", false, true}})
+        expect_place(input, file, options);
 }
 
 }  // namespace
@@ -27,6 +31,19 @@ void import(std::string_view input, const std::string& file) {
 void adm(std::string_view input) { import(input, "model.adm"); }
 void chrono(std::string_view input) { import(input, "model.json"); }
 void subsystem(std::string_view input) { import(input, "model.sub"); }
+
+// As a table by its own headings and by a map, and as a listing.
+void points(std::string_view input) {
+    for (const char* columns : {"", "name=name,x=B,y=C,z=4", "name=A,side=B,x=C,y=D,z=E",
+                                "name=1,left.x=2,left.y=3,left.z=4,right.x=5,right.y=6,right.z=7"})
+        for (const char* unit : {"", "m"}) {
+            importer::Options options{
+                .axes = "x-rearward,y-right", .columns = columns, .unit = unit};
+            expect_place(input, "points.csv", options);
+            options.columns.clear();
+            expect_place(input, "points.shk", options);
+        }
+}
 
 void property(std::string_view input) {
     try {

@@ -293,6 +293,7 @@ TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
              {"elastocheck solve x.yaml --me", {"--method"}},
              {"elastocheck solve --method p", {"published"}},
              {"elastocheck solve --method=en", {"energy"}},
+             {"elastocheck import a.csv --unit ", {"mm", "cm", "m", "in"}},
              {"elastocheck gate --class=", {"same-build", "cross-build", "physical"}},
              {"elastocheck new mcpherson_", {"mcpherson_rigid", "mcpherson_strut"}},
              {"elastocheck solve --steps ", {}},

@@ -172,6 +172,177 @@ TEST(ExportCommand, WritesATableOverABranchAndWhatItHoldsAndItsPolynomials) {
     }
 }
 
+// The blocks of a file by name, "left.toe": rows, columns and values; coefficients by "name wheel".
+struct BlocksFile {
+    struct Block {
+        std::vector<double> rows, columns;  // none: one column without a breakpoint
+        std::vector<std::vector<double>> values;
+        std::map<std::string, std::string> lines;  // "unit" -> "rad"
+    };
+    std::map<std::string, Block> blocks;
+    std::map<std::string, std::vector<std::string>> coefficients;
+};
+BlocksFile blocks_of(const std::string& csv) {
+    BlocksFile file;
+    BlocksFile::Block* block = nullptr;
+    bool in_data = false, in_coefficients = false;
+    for (const auto& line : parts_of(csv, '\n')) {
+        const auto cells = parts_of(line, ',');
+        if (line.empty() || line.starts_with("#")) {
+            in_data = false;
+        } else if (cells[0] == "coefficient") {
+            in_coefficients = true;
+        } else if (in_coefficients) {
+            file.coefficients[cells[0] + " " + cells[1]] = cells;
+        } else if (cells[0] == "block") {
+            block = &file.blocks[cells[1]];
+        } else if (cells[0] == "data") {
+            in_data = true;
+            for (std::size_t k = 1; k < cells.size(); ++k)
+                if (cells[k] != "value") block->columns.push_back(std::stod(cells[k]));
+        } else if (in_data) {
+            block->rows.push_back(std::stod(cells[0]));
+            auto& row = block->values.emplace_back();
+            for (std::size_t k = 1; k < cells.size(); ++k) row.push_back(std::stod(cells[k]));
+        } else {
+            block->lines[cells[0]] = line.substr(cells[0].size() + 1);
+        }
+    }
+    return file;
+}
+
+// Every node of every block, in both axes, is what `solve` finds there, turned by hand: x is the same
+// in both, y and z and angles about z change their sign; the parameter in m, angles in rad.
+TEST(ExportCommand, WritesBlocksOverTravelAndRackThatAreWhatSolveFinds) {
+    const std::string scene = scenes + "/front_axle.yaml ",
+                      few = "--set branches.steering.steps=4 ",
+                      command = "export " + scene + few +
+                                "--format blocks --over steering --rows "
+                                "left.travel,right.travel=-0.04:0.04:3 ";
+    constexpr double degree = 3.14159265358979323846 / 180;
+    const BlocksFile iso = blocks_of(expect_says(command, 0).out),
+                     sae = blocks_of(expect_says(command + "--axes sae", 0).out);
+    ASSERT_EQ(iso.blocks.size(), 18u);
+    ASSERT_EQ(sae.blocks.size(), 18u);
+    // column of solve, factor to ISO, sign in SAE against ISO
+    struct Case {
+        const char *block, *output;
+        double factor, sae;
+    };
+    const Case cases[] = {{"left.toe", "left.toe", degree, 1},
+                          {"right.toe", "right.toe", degree, 1},
+                          {"left.steer", "left.toe", -degree, -1},
+                          {"right.steer", "right.toe", degree, -1},
+                          {"left.camber", "left.camber", degree, 1},
+                          {"right.camber", "right.camber", degree, 1},
+                          {"left.inclination", "left.camber", -degree, 1},
+                          {"right.inclination", "right.camber", degree, 1},
+                          {"right.caster", "right.caster", degree, 1},
+                          {"right.kingpin_inclination", "right.kingpin_inclination", degree, 1},
+                          {"left.lateral", "left.wheel_centre_y", 1e-3, -1},
+                          {"right.lateral", "right.wheel_centre_y", 1e-3, -1},
+                          {"right.longitudinal", "right.wheel_centre_x", 1e-3, 1},
+                          {"left.wheel_rate", "left.wheel_rate", 1e3, 1}};
+    std::string channels;
+    for (const auto& one : cases)
+        channels += (channels.empty() ? "" : ",") + std::string(one.output);
+    const std::map<std::string, double> drawn{{"left.wheel_centre_y", 1.1},
+                                              {"right.wheel_centre_y", -1.1},
+                                              {"right.wheel_centre_x", -0.04}};
+    int compared = 0;
+    for (const double travel : {-0.04, 0.0, 0.04}) {
+        const std::string held = fmt::format("{:g}", travel);
+        const auto solved =
+            cells_of(elastocheck_says("solve " + scene + few + "--channels " + channels +
+                                      " --set branches.steering.hold.left.travel=" + held +
+                                      " --set branches.steering.hold.right.travel=" + held)
+                         .out);
+        for (const auto& row : solved) {
+            if (row[0] != "steering") continue;
+            const double rack = std::stod(row[2]) / 1e3;
+            for (const Case& one : cases) {
+                const auto column = std::ranges::find_if(
+                                        solved[0],
+                                        [&](const std::string& head) {
+                                            return head.starts_with(std::string(one.output) + " [");
+                                        }) -
+                                    solved[0].begin();
+                ASSERT_LT(column, std::ssize(solved[0])) << one.output;
+                const auto at = drawn.find(one.output);
+                const double expected =
+                    one.factor * std::stod(row[static_cast<std::size_t>(column)]) -
+                    (at == drawn.end() ? 0 : at->second);
+                for (const bool is_sae : {false, true}) {
+                    const auto& block = (is_sae ? sae : iso).blocks.at(one.block);
+                    const double down = is_sae ? -1 : 1, sign = is_sae ? one.sae : 1;
+                    ASSERT_TRUE(std::ranges::is_sorted(block.rows));
+                    ASSERT_TRUE(std::ranges::is_sorted(block.columns));
+                    for (std::size_t r = 0; r < block.rows.size(); ++r)
+                        for (std::size_t c = 0; c < block.columns.size(); ++c)
+                            if (std::abs(block.rows[r] - down * travel) < 1e-12 &&
+                                std::abs(block.columns[c] - rack) < 1e-12) {
+                                EXPECT_NEAR(block.values[r][c], sign * expected,
+                                            1e-9 * std::max(1., std::abs(expected)))
+                                    << one.block << (is_sae ? " sae " : " iso ") << travel << " "
+                                    << rack;
+                                ++compared;
+                            }
+                }
+            }
+        }
+    }
+    EXPECT_EQ(compared, 3 * 5 * 14 * 2);
+    EXPECT_EQ(iso.blocks.at("left.toe").lines.at("unit"), "rad");
+    EXPECT_EQ(iso.blocks.at("left.wheel_rate").lines.at("unit"), "N/m");
+    EXPECT_EQ(iso.blocks.at("left.toe").lines.at("columns"),
+              "\"steering\",m,\"as the scene counts it\"");
+    expect_parts(iso.blocks.at("left.toe").lines.at("rows"), {"upwards: jounce is positive"});
+    expect_parts(sae.blocks.at("left.toe").lines.at("rows"), {"downwards: jounce is negative"});
+
+    // coefficients: solve's, in deg/kN and deg/(100 N·m)
+    const auto solved = cells_of(
+        elastocheck_says("solve " + scene + few +
+                         "--channels left.lateral_force_steer,left.aligning_torque_steer@opposed")
+            .out);
+    for (const auto& row : solved)
+        if (row[0] == "steering" && std::stod(row[2]) == 0) {
+            const double lateral = std::stod(row[4]), aligning = std::stod(row[5]);
+            const auto& steer = iso.coefficients.at("lateral_force_steer left");
+            EXPECT_NEAR(std::stod(steer[2]), lateral * degree / 1e3,
+                        1e-6 * std::abs(lateral) / 1e3);
+            EXPECT_EQ(steer[3], "rad/N");
+            EXPECT_NEAR(std::stod(steer[4]), lateral / 1e3, 1e-6 * std::abs(lateral) / 1e3);
+            EXPECT_EQ(steer[5], "deg/N");
+            const auto& torque = iso.coefficients.at("aligning_torque_steer@opposed left");
+            EXPECT_NEAR(std::stod(torque[4]), aligning / 100, 1e-6 * std::abs(aligning) / 100);
+            EXPECT_EQ(torque[5], "deg/(N·m)");
+            EXPECT_EQ(sae.coefficients.at("lateral_force_steer left"), steer);
+            ++compared;
+        }
+    EXPECT_EQ(compared, 3 * 5 * 14 * 2 + 1);
+}
+
+// Without a second variable the rows are the branch; its parameter is a travel only if it lifts wheel
+// centres alike.
+TEST(ExportCommand, WritesBlocksOverOneVariable) {
+    const std::string command = "export " + scenes + "/front_axle.yaml --format blocks --axes sae ";
+    const BlocksFile parallel =
+        blocks_of(expect_says(command + "--over parallel --set branches.parallel.steps=4", 0).out);
+    const auto& toe = parallel.blocks.at("right.toe");
+    EXPECT_EQ(toe.rows, (std::vector<double>{-0.08, -0.04, 0, 0.04, 0.08}));
+    EXPECT_TRUE(toe.columns.empty());
+    EXPECT_GT(std::abs(toe.values.front()[0]), 1e-3);
+    expect_parts(toe.lines.at("rows"), {"downwards"});
+    const BlocksFile opposite =
+        blocks_of(expect_says(command + "--over opposite --set branches.opposite.steps=2", 0).out);
+    expect_parts(opposite.blocks.at("right.toe").lines.at("rows"), {"as the scene counts it"});
+    expect_says(command + "--over parallel --channels toe", 2, {.err = {"have their own outputs"}});
+    expect_says("export " + scenes + "/pendulum.yaml --format blocks --over up", 2,
+                {.err = {"the scene has no wheel"}});
+    expect_says("export " + scenes + "/front_axle.yaml --format lookup --over parallel --axes sae",
+                2, {.err = {"--axes: only with --format blocks"}});
+}
+
 TEST(ExportCommand, RefusesAMapThatItCannotMake) {
     const std::string scene = "export " + scenes + "/double_wishbone_rigid.yaml ";
     expect_says(scene + "--format lookup", 2, {.err = {"--over BRANCH"}});

@@ -391,56 +391,6 @@ TEST(PropertyFile, LinesMayEndInCarriageReturnsAlone) {
     EXPECT_EQ(importer::import_text(sub, "front.sub", {}).yaml, expected);
 }
 
-importer::Options with_axes(const std::string& axes) {
-    importer::Options options;
-    options.axes = axes;
-    return options;
-}
-
-// A table and a listing of the same points, as kinematics programs export them, give the same scene.
-TEST(Points, OfATableAndOfAListingAreTurnedToTheAxesOfAScene) {
-    const std::string table =
-        "Point Name,X [m],Y [m],Z [m],remark\nlower ball,-0.0125,0.5625,-0.0625,a\n"
-        "tie rod inner,+0.075,0.25,0.125,b\n";
-    const std::string listing =
-        "Double wishbone\n  1  lower ball      -12.5  562.50  -62.50\n"
-        "  2  tie rod inner    75.00  250.00  125.0\n  end of file\n";
-    // x turned, y kept: z turned too
-    for (const auto& [text, file] : {std::pair{table, "p.csv"}, {listing, "p.shk"}}) {
-        const std::string yaml =
-            importer::import_text(text, file, with_axes("x-rearward,y-left")).yaml;
-        for (const char* part : {"lower_ball: [12.5, 562.5, 62.5]",
-                                 "tie_rod_inner: [-75, 250, -125]", "x-rearward,y-left"})
-            EXPECT_TRUE(says(yaml, part));
-    }
-    EXPECT_TRUE(says(importer::import_text(listing, "p.shk", with_axes("x-forward,y-left")).yaml,
-                     "end of file"))
-        << "what is left out is listed";
-}
-
-TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
-    const auto refused = [](const std::string& text, const std::string& file,
-                            const std::string& axes = "x-forward,y-left") -> std::string {
-        try {
-            (void)importer::import_text(text, file, with_axes(axes));
-        } catch (const SceneError& error) {
-            return error.what();
-        }
-        return "read";
-    };
-    EXPECT_TRUE(says(refused("name,x,y,z\na,1,2,3\n", "p.csv", ""), "--axes: a list of points"));
-    EXPECT_TRUE(says(refused("name,x,y,z\na,1,2,3\n", "p.csv", "x-up"), "is not a set of axes"));
-    EXPECT_TRUE(says(refused("name,x,y\na,1,2\n", "p.csv"), "p.csv:1: no column z"));
-    EXPECT_TRUE(says(refused("name,x,y,z\na,1,two,3\n", "p.csv"), "p.csv:2: a: y is no number"));
-    EXPECT_TRUE(says(refused("name,x,y,z\na,1,nan,3\n", "p.csv"), "p.csv:2: a: y is no number"));
-    EXPECT_TRUE(says(refused("name,x,y,z\na,1,2\n", "p.csv"), "p.csv:2: 3 cells"));
-    EXPECT_TRUE(
-        says(refused("name,x [km],y,z\na,1,2,3\n", "p.csv"), "p.csv:1: x: 'km' is no unit"));
-    EXPECT_TRUE(says(refused("name,x [mm],y [m],z\na,1,2,3\n", "p.csv"), "different units"));
-    EXPECT_TRUE(says(refused("", "p.csv"), "no point in this file"));
-    EXPECT_TRUE(says(refused("nothing here\n1 2 3\n", "p.shk"), "no point in this file"));
-}
-
 TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     const Scene scene = beside_fixtures(
         "springs: {coil: {bodies: [block, ground], from: o, to: top, curve: {file: coil.spr}, "

@@ -1,0 +1,407 @@
+#include "models/import/property/columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "models/reader/document/characters.hpp"
+#include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/yaml.hpp"
+
+namespace elastocheck::importer {
+namespace {
+
+constexpr const char* axis_names[] = {"x", "y", "z"};
+const std::vector<std::string> keys = {"name",   "x",      "y",       "z",       "side",   "left.x",
+                                       "left.y", "left.z", "right.x", "right.y", "right.z"};
+
+bool is_number(std::string_view cell) { return coordinate(cell, true) || coordinate(cell, false); }
+
+// ---- The map of the user.
+
+struct Chosen {
+    std::string key, column;
+};
+using Map = std::vector<Chosen>;
+
+constexpr const char* form_of_map =
+    "expected name=COLUMN,x=COLUMN,y=COLUMN,z=COLUMN, each a heading, a number from 1 or letters; "
+    "a heading with a comma by its number";
+
+Map map_of(const std::string& text, const std::string& file) {
+    Map map;
+    for (std::string_view rest = text;;) {
+        const auto comma = std::min(rest.find(','), rest.size());
+        const std::string_view piece = rest.substr(0, comma);
+        const auto equals = piece.find('=');
+        if (equals == piece.npos)
+            reader::fail(file, 0, "--columns",
+                         fmt::format("{} has no '='; {}", reader::quote(piece), form_of_map));
+        Chosen chosen{reader::small_letters(reader::trimmed(piece.substr(0, equals))),
+                      std::string(reader::trimmed(piece.substr(equals + 1)))};
+        if (std::ranges::find(keys, chosen.key) == keys.end())
+            reader::fail(file, 0, "--columns",
+                         fmt::format("{} is nothing that a point has{}", reader::quote(chosen.key),
+                                     reader::did_you_mean(chosen.key, keys, "allowed")));
+        if (std::ranges::find(map, chosen.key, &Chosen::key) != map.end())
+            reader::fail(file, 0, "--columns", fmt::format("{} is given twice", chosen.key));
+        if (chosen.column.empty())
+            reader::fail(file, 0, "--columns", fmt::format("no column for {}", chosen.key));
+        map.push_back(std::move(chosen));
+        if (comma == rest.size()) break;
+        rest.remove_prefix(comma + 1);
+    }
+    const auto has = [&](const std::string& key) {
+        return std::ranges::find(map, key, &Chosen::key) != map.end();
+    };
+    const bool sides = std::ranges::any_of(map, [](const Chosen& chosen) {
+        return chosen.key.starts_with("left.") || chosen.key.starts_with("right.");
+    });
+    std::vector<std::string> needed{"name"};
+    for (const char* prefix : {"left.", "right."})
+        for (const char* axis : axis_names) {
+            if (sides) needed.push_back(std::string(prefix) + axis);
+            if (sides && (has(axis) || has("side")))
+                reader::fail(file, 0, "--columns",
+                             "left.x ... right.z are instead of x, y, z and side");
+        }
+    if (!sides) needed.insert(needed.end(), std::begin(axis_names), std::end(axis_names));
+    for (const auto& key : needed)
+        if (!has(key))
+            reader::fail(file, 0, "--columns",
+                         fmt::format("no {} in {}; {}", key, reader::quote(text), form_of_map));
+    return map;
+}
+
+// Position of a column that is given by its number from 1 or by its letters.
+std::optional<std::size_t> position(const std::string& column, std::size_t width) {
+    std::size_t at = 0;
+    if (std::ranges::all_of(column, reader::is_digit)) {
+        const auto [end, error] = std::from_chars(column.data(), column.data() + column.size(), at);
+        if (error != std::errc{}) return std::nullopt;
+    } else if (column.size() <= 3 && std::ranges::all_of(column, reader::is_letter)) {
+        for (const char letter : reader::capitals(column)) at = 26 * at + (letter - 'A' + 1);
+    }
+    if (at < 1 || at > width) return std::nullopt;
+    return at - 1;
+}
+
+std::vector<std::size_t> headed(const SheetRow& row, const std::string& heading) {
+    std::vector<std::size_t> at;
+    for (std::size_t c = 0; c < row.cells.size(); ++c)
+        if (reader::small_letters(row.cells[c]) == reader::small_letters(heading)) at.push_back(c);
+    return at;
+}
+
+// ---- Headings.
+
+// The first row with three numbers; the number of rows if there is none.
+std::size_t first_numbers(const Sheet& sheet) {
+    const auto first = std::ranges::find_if(sheet.rows, [](const SheetRow& row) {
+        return std::ranges::count_if(row.cells, is_number) >= 3;
+    });
+    return static_cast<std::size_t>(first - sheet.rows.begin());
+}
+
+// The row above the numbers with most words: that of the headings, for a message.
+const SheetRow* likely_head(const Sheet& sheet) {
+    const SheetRow* head = nullptr;
+    std::ptrdiff_t most = 0;
+    for (std::size_t r = 0, end = first_numbers(sheet); r < end; ++r) {
+        const auto words = std::ranges::count_if(sheet.rows[r].cells, [](const std::string& cell) {
+            return !cell.empty() && !is_number(cell);
+        });
+        if (words > most) most = words, head = &sheet.rows[r];
+    }
+    return head;
+}
+
+std::string with_letters(const SheetRow& head) {
+    std::vector<std::string> words;
+    for (std::size_t c = 0; c < head.cells.size(); ++c)
+        if (!head.cells[c].empty())
+            words.push_back(fmt::format("{} ({})", reader::quote(head.cells[c]), letters_of(c)));
+    return reader::listed(words);
+}
+
+// Whether a heading has the word: "Koord. X", "X-Wert", "x_mm".
+bool has_word(const std::string& heading, std::string_view word) {
+    const std::string text = reader::small_letters(heading);
+    for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+        const std::size_t end = at + word.size();
+        if ((at == 0 || !reader::is_letter(text[at - 1])) &&
+            (end == text.size() || !reader::is_letter(text[end])))
+            return true;
+    }
+    return false;
+}
+
+// "--columns name=Punkt,x=X-Wert,y=Y-Wert,z=HEADING": what can be seen from the headings.
+std::string proposal(const Sheet& sheet, const SheetRow& head) {
+    std::string map;
+    const std::size_t data = first_numbers(sheet);
+    for (const char* key : {"name", "x", "y", "z"}) {
+        const bool name = key == std::string_view("name");
+        std::size_t c = 0;
+        for (; c < head.cells.size(); ++c)
+            if (!head.cells[c].empty() &&
+                (name ? data < sheet.rows.size() && !sheet.rows[data].at(c).empty() &&
+                            !is_number(sheet.rows[data].at(c))
+                      : has_word(head.cells[c], key)))
+                break;
+        std::string column = "HEADING";
+        if (c < head.cells.size()) {
+            const std::string& word = head.cells[c];
+            const bool plain = std::ranges::all_of(
+                word, [](char ch) { return reader::is_word(ch) || ch == '-' || ch == '.'; });
+            column = plain && headed(head, word).size() == 1 ? word : letters_of(c);
+        }
+        map += fmt::format("{}{}={}", map.empty() ? "" : ",", key, column);
+    }
+    return "--columns " + map;
+}
+
+[[noreturn]] void refuse(const Sheet& sheet, const std::string& file, const std::string& what) {
+    const SheetRow* head = likely_head(sheet);
+    if (head == nullptr) {
+        if (sheet.rows.empty()) reader::fail(file, 0, "", "no point in this file");
+        reader::fail(file, sheet.rows.front().line, "",
+                     what +
+                         "; no headings above the numbers; choose columns by their numbers or "
+                         "letters: --columns name=A,x=B,y=C,z=D");
+    }
+    reader::fail(file, head->line, "",
+                 fmt::format("{}; headings: {}; choose with {} (by heading, number or letters)",
+                             what, with_letters(*head), proposal(sheet, *head)));
+}
+
+// name, x, y, z of a row by the first words of its headings: "Point Name", "X [mm]", "y_m".
+std::array<std::vector<std::size_t>, 4> recognised(const SheetRow& row) {
+    std::array<std::vector<std::size_t>, 4> found;
+    for (std::size_t c = 0; c < row.cells.size(); ++c) {
+        const std::string title = reader::small_letters(row.cells[c]);
+        const std::string word = title.substr(0, title.find_first_of(" [(_/"));
+        if (word == "name" || word == "point" || word == "hardpoint") found[0].push_back(c);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (word == axis_names[k]) found[1 + k].push_back(c);
+    }
+    return found;
+}
+
+constexpr std::size_t no_row = static_cast<std::size_t>(-1);
+
+struct Found {
+    PointColumns columns;
+    std::size_t head = no_row;  // row of the headings; no_row: chosen by position alone
+};
+
+Found by_headings(const Sheet& sheet, const std::string& file) {
+    std::vector<std::string> missing{"name", "x", "y", "z"};
+    for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+        const auto found = recognised(sheet.rows[r]);
+        std::vector<std::string> lacks;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (found[k].empty()) lacks.emplace_back(k == 0 ? "name" : axis_names[k - 1]);
+        if (!lacks.empty()) {
+            if (lacks.size() < missing.size()) missing = lacks;
+            continue;
+        }
+        for (std::size_t k = 0; k < 4; ++k)
+            if (found[k].size() > 1)
+                refuse(sheet, file,
+                       fmt::format("two columns of {}", std::array{"names", "x", "y", "z"}[k]));
+        Found result;
+        result.columns.name = found[0][0];
+        result.columns.triples = {{"", {found[1][0], found[2][0], found[3][0]}}};
+        result.head = r;
+        return result;
+    }
+    refuse(sheet, file, fmt::format("no column {}", fmt::join(missing, ", ")));
+}
+
+Found by_map(const Sheet& sheet, const std::string& file, const Map& map) {
+    std::size_t width = 0, head = no_row, most = 0;
+    for (const auto& row : sheet.rows) width = std::max(width, row.cells.size());
+    const std::size_t above = first_numbers(sheet);
+    for (std::size_t r = 0; r < above; ++r) {
+        const auto of_map = static_cast<std::size_t>(std::ranges::count_if(
+            map, [&](const Chosen& c) { return !headed(sheet.rows[r], c.column).empty(); }));
+        if (of_map > most) most = of_map, head = r;
+    }
+    // headings may stand in several lines: those of most headings first, then the others above
+    std::vector<std::size_t> lines;
+    if (head != no_row) lines.push_back(head);
+    for (std::size_t r = 0; r < above; ++r) lines.push_back(r);
+    const auto resolved = [&](const Chosen& chosen) {
+        for (const std::size_t r : lines) {
+            const auto at = headed(sheet.rows[r], chosen.column);
+            if (at.size() > 1)
+                reader::fail(
+                    file, sheet.rows[r].line, "--columns",
+                    fmt::format("{}: columns {} and {} have the heading {}; choose one by its "
+                                "letter",
+                                chosen.key, letters_of(at[0]), letters_of(at[1]),
+                                reader::quote(chosen.column)));
+            if (!at.empty()) return at[0];
+        }
+        if (const auto at = position(chosen.column, width)) return *at;
+        const SheetRow* row = head != no_row ? &sheet.rows[head] : likely_head(sheet);
+        std::vector<std::string> words;
+        if (row != nullptr)
+            for (const auto& cell : row->cells)
+                if (!cell.empty()) words.push_back(cell);
+        reader::fail(file, row != nullptr ? row->line : 0, "--columns",
+                     fmt::format("{}: {} is no heading and no number or letter of the {} columns{}",
+                                 chosen.key, reader::quote(chosen.column), width,
+                                 reader::did_you_mean(chosen.column, words, "headings")));
+    };
+    Found found;
+    found.head = head;
+    std::vector<std::pair<std::size_t, std::string>> used;
+    Triple left{"left_", {}}, right{"right_", {}}, single;
+    for (const auto& chosen : map) {
+        const std::size_t at = resolved(chosen);
+        for (const auto& [other, key] : used)
+            if (other == at)
+                reader::fail(file, 0, "--columns",
+                             fmt::format("{} and {} are the same column {}", key, chosen.key,
+                                         letters_of(at)));
+        used.emplace_back(at, chosen.key);
+        const char axis = chosen.key.back();
+        if (chosen.key == "name")
+            found.columns.name = at;
+        else if (chosen.key == "side")
+            found.columns.side = at;
+        else if (chosen.key.starts_with("left."))
+            left.at[axis - 'x'] = at, found.columns.triples = {left};
+        else if (chosen.key.starts_with("right."))
+            right.at[axis - 'x'] = at;
+        else
+            single.at[axis - 'x'] = at;
+    }
+    if (found.columns.triples.empty())
+        found.columns.triples = {single};
+    else
+        found.columns.triples = {left, right};
+    return found;
+}
+
+// ---- Units.
+
+std::string without_brackets(std::string_view text) {
+    std::string word = reader::small_letters(reader::trimmed(text));
+    std::erase_if(word,
+                  [](char c) { return std::string_view(" []()").find(c) != std::string::npos; });
+    return word == "inch" || word == "inches" ? "in" : word;
+}
+bool is_unit(const std::string& word) {
+    return std::ranges::find(length_units, word) != std::end(length_units);
+}
+
+// The unit in a heading: "X [mm]", "X_mm", "X/mm", "X in mm"; what stands in brackets and is no unit
+// is returned too.
+std::string unit_in_heading(std::string_view heading) {
+    const auto open = heading.find_last_of("[("), end = heading.find_last_of(" _/");
+    if (open != heading.npos) return without_brackets(heading.substr(open));
+    if (end == heading.npos) return "";
+    std::string word = without_brackets(heading.substr(end + 1));
+    return is_unit(word) ? word : "";
+}
+
+// The lines above the first point say the unit of each column of coordinates, or none does and the
+// option says it.
+void find_unit(const Sheet& sheet, const std::string& file, std::size_t head,
+               const std::string& option, PointColumns& columns) {
+    std::string first_without;  // a column for which no line says a unit
+    for (const Triple& triple : columns.triples)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t c = triple.at[k];
+            std::string unit, from;
+            int line = 0;
+            for (std::size_t r = head == no_row ? 0 : head; r < columns.first; ++r) {
+                const std::string_view cell = sheet.rows[r].at(c);
+                std::string word = without_brackets(cell);
+                if (!is_unit(word)) word = unit_in_heading(cell);
+                if (word.empty()) continue;
+                line = sheet.rows[r].line;
+                if (!is_unit(word)) {
+                    if (!option.empty()) continue;
+                    reader::fail(file, line, axis_names[k],
+                                 fmt::format("{} is no unit of a coordinate; allowed: {}; or say "
+                                             "it with --unit",
+                                             reader::quote(word), fmt::join(length_units, ", ")));
+                }
+                unit = word;
+                from = fmt::format("by the heading {} in line {}", reader::quote(cell), line);
+            }
+            if (unit.empty()) {
+                if (first_without.empty()) first_without = triple.prefix + axis_names[k];
+                continue;
+            }
+            if (!columns.unit.empty() && columns.unit != unit)
+                reader::fail(file, line, axis_names[k],
+                             fmt::format("the coordinates have different units, {} and {}",
+                                         columns.unit, unit));
+            if (!option.empty() && option != unit)
+                reader::fail(file, line, axis_names[k],
+                             fmt::format("in {} {}; --unit says {}", unit, from, option));
+            columns.unit = unit, columns.unit_from = from;
+        }
+    if (!option.empty()) {
+        columns.unit = option, columns.unit_from = "by --unit";
+    } else if (!first_without.empty()) {
+        const int line = sheet.rows[head == no_row ? columns.first : head].line;
+        reader::fail(file, line, first_without,
+                     fmt::format("no unit in its heading or below it; say it with --unit: {}",
+                                 fmt::join(length_units, ", ")));
+    }
+}
+
+}  // namespace
+
+double millimetres(const std::string& unit) {
+    return unit == "mm" ? 1 : unit == "cm" ? 10 : unit == "m" ? 1000 : 25.4;
+}
+
+std::optional<double> coordinate(std::string_view cell, bool decimal_comma) {
+    std::string text(cell);
+    if (const auto minus = text.find("\xE2\x88\x92"); minus == 0) text.replace(0, 3, "-");
+    if (decimal_comma)
+        for (char& c : text) {
+            if (c == '.') return std::nullopt;  // would separate thousands
+            if (c == ',') c = '.';
+        }
+    std::string_view rest = text;
+    if (rest.starts_with('+')) rest.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+    if (error != std::errc{} || end != rest.data() + rest.size() || !std::isfinite(value) ||
+        std::abs(value) > 1e30)
+        return std::nullopt;
+    return value;
+}
+
+PointColumns point_columns(const Sheet& sheet, const std::string& file, const std::string& map,
+                           const std::string& unit) {
+    Found found = map.empty() ? by_headings(sheet, file) : by_map(sheet, file, map_of(map, file));
+    PointColumns& columns = found.columns;
+    // without a line of headings, lines above the points may have numbers too
+    const auto has_numbers = [&](const SheetRow& row) {
+        return std::ranges::any_of(columns.triples, [&](const Triple& triple) {
+            const auto count = std::ranges::count_if(
+                triple.at, [&](std::size_t c) { return is_number(row.at(c)); });
+            return count >= (found.head == no_row ? 3 : 1);
+        });
+    };
+    columns.first = found.head == no_row ? 0 : found.head + 1;
+    while (columns.first < sheet.rows.size() && !has_numbers(sheet.rows[columns.first]))
+        ++columns.first;
+    if (columns.first == sheet.rows.size()) reader::fail(file, 0, "", "no point in this file");
+    find_unit(sheet, file, found.head, unit, columns);
+    return std::move(found.columns);
+}
+
+}  // namespace elastocheck::importer

@@ -1,0 +1,260 @@
+// Lists of named points, as kinematics programs and spreadsheets export them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "elastocheck/scene.hpp"
+#include "models/import/import.hpp"
+#include "models/import/property/spreadsheet.hpp"
+#include "tests/models/import/imports.hpp"
+
+namespace elastocheck {
+namespace {
+
+using namespace tests;
+
+importer::Options with_axes(const std::string& axes) {
+    importer::Options options;
+    options.axes = axes;
+    return options;
+}
+
+// A table and a listing of the same points, as kinematics programs export them, give the same scene.
+TEST(Points, OfATableAndOfAListingAreTurnedToTheAxesOfAScene) {
+    const std::string table =
+        "Point Name,X [m],Y [m],Z [m],remark\nlower ball,-0.0125,0.5625,-0.0625,a\n"
+        "tie rod inner,+0.075,0.25,0.125,b\n";
+    const std::string listing =
+        "Double wishbone\n  1  lower ball      -12.5  562.50  -62.50\n"
+        "  2  tie rod inner    75.00  250.00  125.0\n  end of file\n";
+    // x turned, y kept: z turned too
+    for (const auto& [text, file] : {std::pair{table, "p.csv"}, {listing, "p.shk"}}) {
+        const std::string yaml =
+            importer::import_text(text, file, with_axes("x-rearward,y-left")).yaml;
+        for (const char* part : {"lower_ball: [12.5, 562.5, 62.5]",
+                                 "tie_rod_inner: [-75, 250, -125]", "x-rearward,y-left"})
+            EXPECT_TRUE(says(yaml, part));
+    }
+    EXPECT_TRUE(says(importer::import_text(listing, "p.shk", with_axes("x-forward,y-left")).yaml,
+                     "end of file"))
+        << "what is left out is listed";
+}
+
+TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
+    const auto refused = [](const std::string& text, const std::string& file,
+                            const std::string& axes = "x-forward,y-left") -> std::string {
+        try {
+            (void)importer::import_text(text, file, with_axes(axes));
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "read";
+    };
+    EXPECT_TRUE(
+        says(refused("name,x_mm,y_mm,z_mm\na,1,2,3\n", "p.csv", ""), "--axes: a list of points"));
+    EXPECT_TRUE(says(refused("name,x,y,z\na,1,2,3\n", "p.csv", "x-up"), "is not a set of axes"));
+    EXPECT_TRUE(says(refused("name,x,y\na,1,2\n", "p.csv"), "p.csv:1: no column z; headings"));
+    EXPECT_TRUE(
+        says(refused("name,x_mm,y_mm,z_mm\na,1,two,3\n", "p.csv"), "p.csv:2: a: y is no number"));
+    EXPECT_TRUE(
+        says(refused("name,x_mm,y_mm,z_mm\na,1,nan,3\n", "p.csv"), "p.csv:2: a: y is no number"));
+    EXPECT_TRUE(says(refused("name,x_mm,y_mm,z_mm\na,1,2\n", "p.csv"),
+                     "p.csv:2: a: 3 cells, but z is in column D"));
+    EXPECT_TRUE(
+        says(refused("name,x [km],y,z\na,1,2,3\n", "p.csv"), "p.csv:1: x: 'km' is no unit"));
+    EXPECT_TRUE(says(refused("name,x [mm],y [m],z\na,1,2,3\n", "p.csv"), "different units"));
+    EXPECT_TRUE(says(refused("", "p.csv"), "no point in this file"));
+    EXPECT_TRUE(says(refused("nothing here\n1 2 3\n", "p.shk"), "no point in this file"));
+}
+
+std::string file_of_points(const std::string& name) {
+    return support::text_of(import_folder / "points" / name);
+}
+
+importer::Options with_columns(const std::string& columns, const std::string& unit = "") {
+    return {.axes = "x-forward,y-left", .columns = columns, .unit = unit};
+}
+
+std::string refused_table(const std::string& text, const std::string& columns,
+                          const std::string& unit = "") {
+    try {
+        (void)importer::import_text(text, "p.csv", with_columns(columns, unit));
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "read";
+}
+
+// A byte-order mark, semicolons, decimal commas, quotes with line ends and semicolons in them, titles
+// above and between, a line of units, further columns.
+TEST(PointsTable, OfASpreadsheetIsReadWithAMapOfItsColumns) {
+    const std::string text = file_of_points("spreadsheet.csv");
+    std::string first;
+    // by headings in any case, numbers, letters
+    for (const char* columns :
+         {"name=Punkt,x=X-Wert fahrzeugfest,y=y-wert,z=Z-Wert", "name=2,x=3,y=4,z=5",
+          "name=B,x=c,y=D,z=E", "z=Z-Wert,y=4,x=C,name=Punkt"}) {
+        const std::string yaml =
+            importer::import_text(text, "points.csv", with_columns(columns)).yaml;
+        for (const char* part : {"Lenker_unten__vorn: [-12.5, 562.5, -62.5]",
+                                 "Spurstange_innen: [75, 250, -125.25]", "_oben: [40, 480, 310]",
+                                 "in mm, by the heading '[mm]' in line 5, with decimal commas",
+                                 "line without coordinates: line 8"})
+            EXPECT_TRUE(says(yaml, part)) << columns;
+        if (first.empty()) first = yaml;
+        EXPECT_EQ(yaml, first) << columns;
+    }
+}
+
+// The refusal of unknown headings lists them, and the option that it shows reads the file.
+TEST(PointsTable, WithUnknownHeadingsIsRefusedWithTheOptionToType) {
+    const std::string text = file_of_points("spreadsheet.csv"), said = refused_table(text, "");
+    EXPECT_TRUE(says(said,
+                     "p.csv:3: no column name, x, y, z; headings: 'Nr' (A), 'Punkt' (B), "
+                     "'X-Wert fahrzeugfest' (C), "));
+    const std::string option = "--columns ";
+    const auto at = said.find(option);
+    ASSERT_NE(at, said.npos);
+    std::string columns = said.substr(at + option.size());
+    columns.resize(columns.find(' '));
+    EXPECT_EQ(columns, "name=Punkt,x=C,y=Y-Wert,z=Z-Wert");
+    EXPECT_EQ(refused_table(text, columns), "read");
+}
+
+TEST(PointsTable, SaysWhatIsWrongInAMap) {
+    const std::string text = file_of_points("spreadsheet.csv");
+    for (const auto& [columns, said] : std::vector<std::pair<const char*, const char*>>{
+             {"name=Pnkt,x=C,y=D,z=E",
+              "p.csv:3: --columns: name: 'Pnkt' is no heading and no "
+              "number or letter of the 7 columns, did you mean 'Punkt'?"},
+             {"name=Punkt,x=C,y=D,z=Z", "z: 'Z' is no heading"},
+             {"name=Punkt,x=C,y=D,z=0", "z: '0' is no heading"},
+             {"name=Punkt,x=C,y=D,z=8", "z: '8' is no heading"},
+             {"name=Punkt,x=C,y=D", "--columns: no z in "},
+             {"name=Punkt,x=C,y=D,z=E,nmae=A",
+              "'nmae' is nothing that a point has, did you mean "
+              "'name'?"},
+             {"name=Punkt,x=C,y=C,z=E", "x and y are the same column C"},
+             {"name=Punkt,x=C,y=D,z=E,x=F", "x is given twice"},
+             {"name=Punkt,x=C,y=D,z=", "no column for z"},
+             {"Punkt,x=C,y=D,z=E", "'Punkt' has no '='"},
+             {"name=Punkt,left.x=C,left.y=D,left.z=E", "no right.x in "},
+             {"name=B,left.x=C,x=D", "instead of x, y, z and side"}})
+        EXPECT_TRUE(says(refused_table(text, columns), said)) << columns;
+    // the cells of points are no headings, even where they are like a letter
+    EXPECT_TRUE(says(importer::import_text("A,1,2,3\nb,4,5,6\n", "p.csv",
+                                           with_columns("name=A,x=B,y=C,z=D", "mm"))
+                         .yaml,
+                     "A: [1, 2, 3]"));
+    EXPECT_TRUE(says(refused_table("n,x,x,y,z\na,1,2,3,4\n", "name=n,x=x,y=y,z=z", "m"),
+                     "x: columns B and C have the heading 'x'"));
+}
+
+// The unit comes from all headings, from the lines below them, or from the option, never from nothing.
+TEST(PointsTable, HasTheUnitThatIsSaid) {
+    const auto x_of = [](const std::string& head, const std::string& unit) -> std::string {
+        const std::string text = head + "\na,2,4,8\n";
+        const std::string said = refused_table(text, "", unit);
+        if (said != "read") return said;
+        const std::string yaml = importer::import_text(text, "p.csv", with_columns("", unit)).yaml;
+        const auto at = yaml.find("a: [");
+        return yaml.substr(at + 4, yaml.find(']') - at - 4);
+    };
+    const char *mm = "2, 4, 8", *cm = "20, 40, 80", *m = "2000, 4000, 8000",
+               *in = "50.8, 101.6, 203.2";
+    for (const auto& [head, unit, expected] :
+         std::vector<std::tuple<const char*, const char*, const char*>>{
+             {"name,x [mm],y [mm],z [mm]", "", mm},
+             {"name,x_cm,y_cm,z_cm", "", cm},
+             {"name,X/m,Y/m,Z/m", "", m},
+             {"name,x (inch),y (inch),z (inch)", "", in},
+             {"name,x,y,z\n,in,in,in", "", in},
+             {"name,x,y,z\n,[m],[m],[m]", "m", m},
+             {"name,x,y,z", "cm", cm},
+             {"name,x [mm],y [mm],z [mm]", "mm", mm},
+             {"name,x,y,z", "",
+              "p.csv:1: x: no unit in its heading or below it; say it with "
+              "--unit: mm, cm, m, in"},
+             {"name,x [mm],y [mm],z", "", "p.csv:1: z: no unit"},
+             {"name,x [mm],y [mm],z [m]", "", "different units, mm and m"},
+             {"name,x [mm],y [mm],z [mm]", "m",
+              "in mm by the heading 'x [mm]' in line 1; --unit "
+              "says m"},
+             {"name,x,y,z", "ft", "'ft' is no unit of a coordinate"}})
+        EXPECT_TRUE(says(x_of(head, unit), expected)) << head << " " << unit;
+    // a listing is in mm, as its head says, or in what the option says
+    importer::Options options = with_axes("x-forward,y-left");
+    EXPECT_TRUE(says(importer::import_text("a 1 2 3\n", "p.shk", options).yaml,
+                     "Coordinates of the file in mm, as such listings have them"));
+    options.unit = "in";
+    EXPECT_TRUE(
+        says(importer::import_text("a 1 2 3\n", "p.shk", options).yaml, "a: [25.4, 50.8, 76.2]"));
+}
+
+// Both sides in one table: two triples of columns, or a column that says the side.
+TEST(PointsTable, HasBothSidesByColumnsOrByAColumn) {
+    const std::string pair =
+        importer::import_text(file_of_points("sides.csv"), "p.csv",
+                              with_columns("name=hardpoint,left.x=xl [m],left.y=yl [m],left.z=zl "
+                                           "[m],right.x=E,right.y=F,right.z=G"))
+            .yaml;
+    for (const char* part :
+         {"left_lower_ball: [500, 750, 250]", "right_lower_ball: [500, -750, 250]",
+          "left_tie_rod_outer: [375, 500, 250]", "right_tie_rod_outer: [375, -437.5, 250]"})
+        EXPECT_TRUE(says(pair, part));
+    const std::string columns = "name=point,side=Seite,x=X,y=Y,z=Z";
+    const std::string rows = file_of_points("side_column.csv");  // with tabs
+    const std::string yaml = importer::import_text(rows, "p.csv", with_columns(columns, "m")).yaml;
+    for (const char* part : {" left_lower_ball: [500, 750, 250]",
+                             " right_lower_ball: [500, -750, 250]", " rack: [250, 0, 125]"})
+        EXPECT_TRUE(says(yaml, part));
+    EXPECT_TRUE(says(refused_table("point,Seite,X,Y,Z\na,oben,1,2,3\n", columns, "m"),
+                     "p.csv:2: side: 'oben' is no side"));
+    // without the column the second point of a name gets a number, with a warning
+    const auto twice = importer::import_text(rows, "p.csv", with_columns("", "m"));
+    ASSERT_EQ(twice.notes.warnings.size(), 1u);
+    EXPECT_TRUE(says(twice.notes.warnings[0].second, "in line 2 too"));
+    // y as distance from the middle
+    const auto alike = importer::import_text("point,Seite,X,Y,Z\na,l,1,2,3\na,r,1,2,3\n", "p.csv",
+                                             with_columns(columns, "m"));
+    ASSERT_EQ(alike.notes.warnings.size(), 1u);
+    EXPECT_TRUE(says(alike.notes.warnings[0].second,
+                     "1 of 1 pairs of points left and right are on the same side"));
+}
+
+TEST(PointsTable, WithAmbiguousNumbersIsRefused) {
+    const std::string head = "name;x_mm;y_mm;z_mm\n";
+    EXPECT_TRUE(says(refused_table(head + "a;1,5;2;3\nb;1.5;2;3\n", ""),
+                     "p.csv:3: decimal commas (line 2) and decimal points (line 3)"));
+    EXPECT_TRUE(says(refused_table(head + "a;1.234,5;2;3\n", ""),
+                     "p.csv:2: a: x is no number: '1.234,5' in column B"));
+    EXPECT_TRUE(says(refused_table("name,x_mm,y_mm,z_mm\na,\"1,5\",2,3\n", ""),
+                     "a: x is no number: '1,5' in column B"));
+    EXPECT_TRUE(says(refused_table(head + ";1;2;3\n", ""), "p.csv:2: name: an empty cell"));
+    EXPECT_TRUE(says(refused_table(head + "a;1;2;\n", ""), "p.csv:2: a: z is no number: ''"));
+    EXPECT_TRUE(says(refused_table(head + "\"a;1;2;3\n", ""),
+                     "p.csv:2: the quote in this line does not end"));
+    EXPECT_TRUE(says(refused_table("\xFF\xFEn", ""), "p.csv:1: UTF-16"));
+    EXPECT_TRUE(says(refused_table("a,1,2,3\n", ""), "name=A,x=B,y=C,z=D"));
+    importer::Options listing = with_axes("x-forward,y-left");
+    listing.columns = "name=A,x=B,y=C,z=D";
+    EXPECT_THROW((void)importer::import_text("a 1 2 3\n", "p.shk", listing), SceneError);
+    EXPECT_THROW((void)importer::import_text("x", "p.sub", listing), SceneError);
+}
+
+TEST(PointsTable, SplitsAsItsSeparatorSays) {
+    const auto rows = [](const char* text) { return importer::read_sheet(text, "p.csv", 4); };
+    const auto sheet = rows("sep=|\r\n\r\n a |\"b\"\"|c\"|d|1,5;2\r\n");
+    ASSERT_EQ(sheet.rows.size(), 1u);
+    EXPECT_EQ(sheet.rows[0].line, 3);
+    EXPECT_EQ(sheet.rows[0].cells, (std::vector<std::string>{"a", "b\"|c", "d", "1,5;2"}));
+    EXPECT_EQ(rows("a;1,5;2,5;3,5\n").separator, ';');
+    EXPECT_EQ(rows("a,1.5,2.5,\"3;5;;\"\n").separator, ',');
+    EXPECT_EQ(rows("a\t1,5\t2,5\t3,5\n").separator, '\t');
+    EXPECT_EQ(importer::letters_of(0) + importer::letters_of(25) + importer::letters_of(26) +
+                  importer::letters_of(701) + importer::letters_of(702),
+              "AZAAZZAAA");
+}
+
+}  // namespace
+}  // namespace elastocheck
