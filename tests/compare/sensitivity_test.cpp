@@ -318,8 +318,9 @@ std::vector<Responding> responding_legs() {
          }},
         {"recursion", [](const OneWay& way, const Equilibrium& state,
                          std::span<const Disturbance> by, const Model& rate) {
+             recursive::ResponseAnalysis analysis{recursive::analyse(way.model)};
              return recursive::response_rates(way.model, way.branch, state, by, {&rate, 1},
-                                              recursive::analyse(way.model));
+                                              analysis);
          }}};
 }
 
