@@ -321,9 +321,9 @@ const tests = {
   },
   async aFileIsDroppedOnThePage() {
     const drop = async (text, name) => {
-      await run(`{ const data = new DataTransfer(); data.items.add(new File([${JSON.stringify(text)}], ${JSON.stringify(name)}));
+      await run(`{ trouble(''); const data = new DataTransfer(); data.items.add(new File([${JSON.stringify(text)}], ${JSON.stringify(name)}));
         for (const type of ['dragover', 'drop']) document.dispatchEvent(new DragEvent(type, {dataTransfer: data, bubbles: true, cancelable: true})); }`);
-      await wait(.2);
+      await browser.until(`!document.getElementById('trouble').hidden || (state.file === ${JSON.stringify(name)} && state.base)`, 'an answer to the file');
       await idle();
       return run(`document.getElementById('trouble').textContent`);
     };
@@ -356,8 +356,8 @@ const tests = {
     rows.forEach((row, k) => [0, 1].forEach(c => near(own[c][k][1], row[c + 1], 1e-7 * Math.max(1, Math.abs(row[c + 1])), `point ${k}`)));
     // After an error, which ends the solver's instance, the tables are there again.
     const paste = async source => {
-      await run(`document.getElementById('paste').click(); document.querySelector('#dialog textarea').value = ${JSON.stringify(source)}; document.getElementById('dialog-ok').click()`);
-      await wait(.2);
+      await run(`trouble(''); document.getElementById('paste').click(); document.querySelector('#dialog textarea').value = ${JSON.stringify(source)}; document.getElementById('dialog-ok').click()`);
+      await browser.until(`!document.getElementById('trouble').hidden`, 'an answer to the text');
       await idle();
       return run(`document.getElementById('trouble').textContent`);
     };
