@@ -33,16 +33,16 @@ Eigen::RowVectorXd powers(double u, double v, int p, int q) {
     return row;
 }
 
-PolynomialMap fitted(const MapTable& table, std::size_t channel, int p, int q) {
+PolynomialMap fitted(const MapTable& table, std::size_t channel, int p, int q, std::size_t every) {
     const Scale x = scale_of(table.x), y = scale_of(table.y);
     PolynomialMap map{channel, p, q, {}, x.middle, x.half, y.middle, y.half, 0, false};
     const auto used_y = static_cast<Index>((table.y.size() + 1) / 2),
-               used_x = static_cast<Index>((table.x.size() + 1) / 2);
+               used_x = static_cast<Index>((table.x.size() - 1) / every + 1);
     Eigen::MatrixXd A(used_y * used_x, (p + 1) * (q + 1));
     Eigen::VectorXd b(A.rows());
     Index row = 0;
     for (std::size_t j = 0; j < table.y.size(); j += 2)
-        for (std::size_t i = 0; i < table.x.size(); i += 2, ++row) {
+        for (std::size_t i = 0; i < table.x.size(); i += every, ++row) {
             A.row(row) =
                 powers((table.x[i] - x.middle) / x.half, (table.y[j] - y.middle) / y.half, p, q);
             b[row] = table.values[j][i][channel];
@@ -63,8 +63,9 @@ double PolynomialMap::at(double x, double y) const {
         .dot(Eigen::Map<const Eigen::RowVectorXd>(c.data(), static_cast<Index>(c.size())));
 }
 
-std::vector<PolynomialMap> polynomial_maps(const MapTable& table, const Tolerance& tolerance) {
-    if (table.x.size() < 3 || table.x.size() % 2 == 0 || table.y.size() % 2 == 0)
+std::vector<PolynomialMap> polynomial_maps(const MapTable& table, const Tolerance& tolerance,
+                                           std::size_t every) {
+    if (table.x.size() < 3 || table.x.size() % every != 1 || table.y.size() % 2 == 0)
         throw std::invalid_argument(
             "a polynomial needs three or more values of the parameter, and an odd number of values "
             "of each variable");
@@ -80,14 +81,14 @@ std::vector<PolynomialMap> polynomial_maps(const MapTable& table, const Toleranc
             }
         const double limit = limit_of(table.channels[c], high - low, tolerance);
         // of n fitted points at most a degree of n - 1; below that the others judge it
-        const int most_x = std::min(most_map_degree, static_cast<int>(table.x.size() / 2) - 1),
+        const int most_x = std::min(most_map_degree, static_cast<int>(table.x.size() / every) - 1),
                   most_y = table.y.size() == 1
                                ? 0
                                : std::min(most_map_degree, static_cast<int>(table.y.size() / 2));
         std::optional<PolynomialMap> best;
         for (int degree = 0; degree <= std::max(most_x, most_y); ++degree) {
             PolynomialMap map =
-                fitted(table, c, std::min(degree, most_x), std::min(degree, most_y));
+                fitted(table, c, std::min(degree, most_x), std::min(degree, most_y), every);
             map.within = map.error <= limit;
             if (!best || map.error < best->error || map.within) best = std::move(map);
             if (best->within) break;

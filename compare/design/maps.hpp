@@ -37,8 +37,10 @@ inline constexpr int most_map_degree = 9;
 
 // For each output the polynomial of the least degree whose error is within its limit (limit_of() its
 // range in the table), else that of the least error.
-// Throws std::invalid_argument for a table with fewer than three values of x, with an even number of
-// values, or with values missing.
-std::vector<PolynomialMap> polynomial_maps(const MapTable& table, const Tolerance& tolerance);
+// Of x every `every`-th value is fitted, of y every second one; the first and the last one are.
+// Throws std::invalid_argument for a table with fewer than three values of x, where the last value is
+// not fitted, or with values missing.
+std::vector<PolynomialMap> polynomial_maps(const MapTable& table, const Tolerance& tolerance,
+                                           std::size_t every = 2);
 
 }  // namespace elastocheck::compare

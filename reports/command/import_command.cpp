@@ -63,6 +63,7 @@ constexpr FileKind polynomial_file{"polynomials made by export", polynomial_head
 constexpr FileKind blocks_file{"K&C blocks made by export", blocks_head};
 constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
+constexpr int finer = 4;  // polynomials are judged at so many points for each step of the branch
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
 constexpr double least_told = 1e-9;      // [mm], [deg]: smaller differences are rounding
 
@@ -377,9 +378,10 @@ int export_map(const ExportRequest& request) {
                         ? ""
                         : fmt::format("{} [as in the scene]", fmt::join(rows.held, " "))};
         }
-        const auto path = compare::walk(loaded.model, table.channels, branch,
-                                        compare::sides_of(loaded.model, branch),
-                                        {.leg = compare::Leg::equilibrium});
+        const auto path = compare::walk(
+            loaded.model, table.channels, branch,
+            compare::sides_of(loaded.model, branch, polynomial ? finer * branch.steps : 0),
+            {.leg = compare::Leg::equilibrium});
         if (path.outcome != Outcome::converged) {
             print_error("{}: {}: {}\n",
                         rows.held.empty()
@@ -412,7 +414,7 @@ int export_map(const ExportRequest& request) {
         made.x = branch_breakpoints(*first, written(*first), table.x);
         text = blocks_csv(made, request.axes == "sae" ? BlockAxes::sae : BlockAxes::iso);
     } else if (polynomial) {
-        const auto maps = compare::polynomial_maps(table, tolerance);
+        const auto maps = compare::polynomial_maps(table, tolerance, 2 * finer);
         for (const auto& map : maps)
             if (!map.within) {
                 code = limit_broken;
@@ -422,7 +424,7 @@ int export_map(const ExportRequest& request) {
                     table.channels[map.channel].name, compare::most_map_degree, map.error,
                     symbol(table.channels[map.channel].unit));
             }
-        text = polynomial_csv(table, maps, axes);
+        text = polynomial_csv(table, maps, axes, 2 * finer);
     } else {
         text = lookup_csv(table, axes);
     }

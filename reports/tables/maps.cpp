@@ -42,7 +42,8 @@ std::string lookup_csv(const compare::MapTable& table, const MapAxes& axes) {
 }
 
 std::string polynomial_csv(const compare::MapTable& table,
-                           const std::vector<compare::PolynomialMap>& maps, const MapAxes& axes) {
+                           const std::vector<compare::PolynomialMap>& maps, const MapAxes& axes,
+                           int every) {
     const std::string formula =
         axes.y.empty()
             ? fmt::format("sum of c_i0 u^i, u = (x - x_0) / x_1 of x = {}", axes.x)
@@ -52,9 +53,9 @@ std::string polynomial_csv(const compare::MapTable& table,
                   axes.x, axes.y);
     std::string text = headed(
         polynomial_head, table, axes,
-        fmt::format("# output = {}\n# error: largest difference at {} points, of which every "
-                    "second one of each variable was fitted\n",
-                    formula, table.x.size() * table.y.size()));
+        fmt::format("# output = {}\n# error: largest difference found at {} points, of which every "
+                    "{}th over x and every second one over y was fitted; no proved bound\n",
+                    formula, table.x.size() * table.y.size(), every));
     text += "output,unit,i,j,c_ij,x_0,x_1,y_0,y_1,error\n";
     for (const auto& map : maps) {
         const auto& channel = table.channels[map.channel];

@@ -22,8 +22,9 @@ inline constexpr const char* polynomial_head = "# Polynomials of elastocheck";
 std::string lookup_csv(const compare::MapTable& table, const MapAxes& axes);
 
 // A remark for each output, then a line for each coefficient: output, unit, i, j, c_ij, and the
-// scales and the error of its polynomial.
+// scales and the error of its polynomial. `every` as in polynomial_maps().
 std::string polynomial_csv(const compare::MapTable& table,
-                           const std::vector<compare::PolynomialMap>& maps, const MapAxes& axes);
+                           const std::vector<compare::PolynomialMap>& maps, const MapAxes& axes,
+                           int every);
 
 }  // namespace elastocheck::reports

@@ -48,6 +48,25 @@ TEST(Maps, AreJudgedAtPointsThatWereNotFitted) {
     EXPECT_GE(maps[0].error, 0.09);
 }
 
+// Judged at eight points for each fitted interval, the error is that of the whole curve: a sampling
+// eight times as fine finds no more than 5 % above it.
+TEST(Maps, HaveAnErrorThatFinerSamplingDoesNotRaise) {
+    for (double (*const f)(double, double) :
+         {+[](double x, double) { return std::exp(0.03 * x); },
+          +[](double x, double) { return std::sin(0.05 * x + 0.3); },
+          +[](double x, double) { return 1 / (1 + 1e-3 * x * x); }}) {
+        const MapTable table = table_of(161, 1, f), fine = table_of(1281, 1, f);
+        const PolynomialMap map = polynomial_maps(table, tolerance, 8)[0];
+        double worst = 0;
+        for (const double x : fine.x) worst = std::max(worst, std::abs(map.at(x, 0) - f(x, 0)));
+        EXPECT_LE(worst, 1.05 * map.error) << map.degree_x;
+        EXPECT_GT(worst, 0);
+    }
+    EXPECT_THROW(
+        (void)polynomial_maps(table_of(163, 1, [](double x, double) { return x; }), tolerance, 8),
+        std::invalid_argument);
+}
+
 TEST(Maps, OfACurveWithACornerAreNotWithin) {
     const auto maps = polynomial_maps(
         table_of(41, 1, [](double x, double) { return std::abs(x - 13); }), tolerance);
