@@ -357,6 +357,18 @@ bool none_has_moved(const CandidateJudgement& judgement, const Comparison& compa
     return moving_reference;
 }
 
+// The outputs that no branch compares, "its 'ackermann'"; empty where one is compared.
+std::string nowhere_compared(const CandidateJudgement& judgement, const Comparison& comparison) {
+    std::string names;
+    for (const auto& column : judgement.columns) {
+        for (const auto& branch : judgement.branches)
+            if (comparison.branch(branch.branch).determined[column.channel]) return {};
+        names += fmt::format("{}'{}'", names.empty() ? "its " : ", ",
+                             comparison.channels[column.channel].name);
+    }
+    return names;
+}
+
 // Whether the candidate is constant on every branch and in every column where the reference moves.
 bool nothing_moves(const CandidateJudgement& judgement) {
     bool moving_reference = false;
@@ -576,9 +588,14 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
         }
 
     if (nothing_moves(result)) result.reasons.emplace_back("nothing moves in it");
-    if (within && none_has_moved(result, comparison))
-        result.reasons.emplace_back(
-            "its points are all where the branches begin: nothing has moved there");
+    if (within && none_has_moved(result, comparison)) {
+        const std::string names = nowhere_compared(result, comparison);
+        result.reasons.push_back(
+            names.empty() ? "its points are all where the branches begin: nothing has moved there"
+                          : fmt::format("{} is not compared: an output that is not determined or has "
+                                        "no value somewhere on a branch is not compared on it",
+                                        names));
+    }
     if (judged == 0)
         result.reasons.emplace_back(result.compared == 0
                                         ? "nothing was compared"

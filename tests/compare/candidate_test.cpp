@@ -343,6 +343,20 @@ TEST(Candidate, InWhichNothingMovesIsNotJudged) {
     EXPECT_NE(explained(still, "toe", Kind::still), nullptr) << texts(still);
 }
 
+// As Ackermann straight ahead: the reason names the output, not its points.
+TEST(Candidate, WhoseOnlyOutputHasNoValueSomewhereIsNotJudged) {
+    Comparison comparison = solved().comparison;
+    const std::size_t toe = solved().channel("toe");
+    for (auto& branch : comparison.branches) branch.determined[toe] = false;
+    Candidate candidate = table_of(Leg::equilibrium);
+    std::erase_if(candidate.points.columns, [&](const auto& c) { return c.channel != toe; });
+    const auto judgement = judge_candidate(solved().model, comparison, candidate);
+    EXPECT_EQ(judgement.verdict, Grade::not_judged);
+    EXPECT_NE(texts(judgement).find("its 'toe' is not compared"), std::string::npos)
+        << texts(judgement);
+    EXPECT_EQ(texts(judgement).find("all where the branches begin"), std::string::npos);
+}
+
 // Points at a = 0 alone agree with the reference, but are no evidence.
 TEST(Candidate, WhosePointsAllLieAtTheBeginningIsNotJudged) {
     const Candidate all = table_of(Leg::equilibrium);
