@@ -591,10 +591,11 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
     if (within && none_has_moved(result, comparison)) {
         const std::string names = nowhere_compared(result, comparison);
         result.reasons.push_back(
-            names.empty() ? "its points are all where the branches begin: nothing has moved there"
-                          : fmt::format("{} is not compared: an output that is not determined or has "
-                                        "no value somewhere on a branch is not compared on it",
-                                        names));
+            names.empty()
+                ? "its points are all where the branches begin: nothing has moved there"
+                : fmt::format("{} is not compared: an output that is not determined or has "
+                              "no value somewhere on a branch is not compared on it",
+                              names));
     }
     if (judged == 0)
         result.reasons.emplace_back(result.compared == 0
