@@ -1,5 +1,6 @@
 // Equations of the certificate: exact stored numbers, redundant joints, knots, formulations,
 // followers.
+#include "reference/certificate/interval/laws.hpp"
 #include "reference/certificate/stability.hpp"
 #include "reference/certificate/state.hpp"
 #include "tests/reference/certificate/sides.hpp"
@@ -109,6 +110,22 @@ TEST(CertificateEquations, AlongAnIdleMotionIsRoundItsAxisAndStraightOnIsExclude
                 std::string::npos)
                 << angle << origin_too << off.detail;
         }
+}
+
+// Over a knot: the values and the slopes of every piece, whichever side comes last.
+TEST(CertificateEquations, ACurveOverAKnotHasTheSlopesOfBothSides) {
+    for (const auto& [soft, stiff] : {std::pair{1.0, 5.0}, {5.0, 1.0}}) {
+        const elastocheck::Curve curve{{0, 1},
+                                       {{0, soft, 0, 0}, {0, stiff, 0, 0}, {stiff, 3, 0, 0}}};
+        for (const double end : {0.5, 2.0}) {
+            std::array<Interval, 4> f;
+            expand(curve, Interval{-0.5, end}, 4, f.data());
+            EXPECT_TRUE(contains(f[0], -0.5 * soft) && contains(f[0], 0.5 * stiff)) << soft;
+            EXPECT_TRUE(contains(f[1], soft) && contains(f[1], stiff)) << soft << ", to " << end;
+            EXPECT_EQ(contains(f[1], 3) || end < 1, true) << soft;
+            EXPECT_FALSE(bounded(f[2]) || bounded(f[3])) << "no second derivative at a knot";
+        }
+    }
 }
 
 // A stop that the load just closes: at its knot, where the slopes jump, and on both sides.
