@@ -8,7 +8,7 @@ namespace elastocheck::recursive {
 
 // Elimination orders of both matrices at one state; empty for those of the analysis. Neighbouring
 // states have similar matrices: with the orders of one the other needs no search for its own, which
-// costs ten factorisations.
+// costs more than the factorisation.
 struct ResponseOrders {
     Elimination with_K, with_tangent;
 };

@@ -33,8 +33,8 @@ using Motions = std::vector<Increment>;
 // patch.
 inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 
-// Cached analyses of the recursion for the response models of a branch side; they do not depend on
-// the state.
+// Cached analyses of the recursion for the response models of a branch side. They do not depend on
+// the state, but for the elimination orders, which are those of the last one: they change rounding.
 struct Analyses {
     std::optional<recursive::ResponseAnalysis> free, jacked, tied;  // computed on first use
 };

@@ -32,7 +32,8 @@ struct StartStability {
 };
 
 // Constant after analyse(): branches and threads may share one. It depends on the constraints,
-// elastic elements and bodies of its model; loads and drivers belong to the branches.
+// elastic elements and bodies of its model; loads and drivers belong to the branches. `settled` is of
+// the drivers that series::keep_start() was given, which is called before the analysis is shared.
 struct Analysis {
     Diagnosis diagnosis;
     // (24) with ∂G/∂q for K at the design position at the design position, λ = 0: factorised
