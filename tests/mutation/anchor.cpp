@@ -120,9 +120,8 @@ std::size_t variable_end(std::string_view plain, std::size_t i) {
     return std::min(i + 1, plain.size());
 }
 
-}  // namespace
-
-std::string squeezed(std::string_view text, std::vector<std::size_t>* at) {
+// `text` without comments and white space; `at` receives the position of each character left.
+std::string squeezed(std::string_view text, std::vector<std::size_t>& at) {
     std::string result;
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t end = std::max(literal_end(text, i), i + 1);
@@ -130,12 +129,14 @@ std::string squeezed(std::string_view text, std::vector<std::size_t>* at) {
             for (std::size_t k = i; k < end; ++k) {
                 if (is_space(text[k])) continue;
                 result += text[k];
-                if (at) at->push_back(k);
+                at.push_back(k);
             }
         i = end;
     }
     return result;
 }
+
+}  // namespace
 
 std::vector<Range> definitions(std::string_view text, std::string_view name) {
     const std::string plain = structure(text);
@@ -170,9 +171,9 @@ std::vector<Range> definitions(std::string_view text, std::string_view name) {
 }
 
 std::vector<Range> occurrences(std::string_view text, Range range, std::string_view expression) {
-    std::vector<std::size_t> at;
-    const std::string inside = squeezed(text.substr(range.begin, range.end - range.begin), &at);
-    const std::string wanted = squeezed(expression);
+    std::vector<std::size_t> at, ignored;
+    const std::string inside = squeezed(text.substr(range.begin, range.end - range.begin), at);
+    const std::string wanted = squeezed(expression, ignored);
     std::vector<Range> result;
     if (wanted.empty()) return result;
     for (std::size_t i = inside.find(wanted); i != inside.npos; i = inside.find(wanted, i + 1)) {

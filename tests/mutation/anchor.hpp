@@ -12,10 +12,6 @@ struct Range {
     std::size_t begin = 0, end = 0;  // characters of the text
 };
 
-// `text` without comments and white space. `at`, if given, receives the position of each character
-// that is left.
-std::string squeezed(std::string_view text, std::vector<std::size_t>* at = nullptr);
-
 // The definitions of `name` in `text`: functions (every overload), structs, named lambdas and
 // initialised variables, from the name to the end of the body. Calls and declarations are none.
 std::vector<Range> definitions(std::string_view text, std::string_view name);

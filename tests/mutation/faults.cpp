@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <stdexcept>
 
 namespace elastocheck::mutation {
@@ -25,12 +23,6 @@ std::vector<fs::path> files_of(const fs::path& folder) {
             files.push_back(entry.path());
     std::ranges::sort(files);
     return files;
-}
-
-std::uint64_t fnv1a(std::string_view text) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    return hash;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -99,7 +91,7 @@ Place locate(const std::string& root, const Edit& edit) {
             for (const Range& found : occurrences(text, range, edit.find)) {
                 const bool is_known = !places.empty() && places.back().file == file &&
                                       places.back().expression.begin == found.begin;
-                if (!is_known) places.push_back({file.string(), found, range});
+                if (!is_known) places.push_back({file.string(), found});
             }
     }
     const std::string name = edit.definition.empty() ? "the file" : edit.definition;
@@ -109,54 +101,6 @@ Place locate(const std::string& root, const Edit& edit) {
         throw std::runtime_error(fmt::format("{}: '{}' occurs {} times in {}, not once",
                                              edit.folder, edit.find, places.size(), name));
     return places.front();
-}
-
-std::string stamp(const std::string& root, const Fault& fault) {
-    std::string all;
-    for (const Edit& edit : fault.edits) {
-        const Place place = locate(root, edit);
-        const Range& d = place.definition;
-        all += squeezed(read_file(place.file).substr(d.begin, d.end - d.begin));
-        all += '\n' + squeezed(edit.find) + '\n' + squeezed(edit.make) + '\n';
-    }
-    return fmt::format("{:016x}", fnv1a(all));
-}
-
-std::size_t never_run(const std::vector<Fault>& faults, const nlohmann::ordered_json& results) {
-    return static_cast<std::size_t>(std::ranges::count_if(faults, [&](const Fault& fault) {
-        return std::ranges::none_of(
-            results, [&](const auto& result) { return result.at("fault") == fault.name; });
-    }));
-}
-
-std::vector<std::string> problems(const std::string& root, const std::vector<Fault>& faults,
-                                  const nlohmann::ordered_json& results,
-                                  const std::vector<std::string>& suites) {
-    std::vector<std::string> found;
-    std::map<std::string, nlohmann::ordered_json> recorded;
-    for (const auto& result : results) recorded[result.at("fault")] = result;
-    for (const Fault& fault : faults) {
-        const auto add = [&](std::string_view what) {
-            found.push_back(fmt::format("{}: {}", fault.name, what));
-        };
-        const auto result = recorded.find(fault.name);
-        try {
-            const std::string now = stamp(root, fault);
-            if (!std::ranges::count(suites, fault.suite))
-                add(fmt::format("no suite '{}' is built", fault.suite));
-            if (result == recorded.end()) continue;  // counted by never_run
-            if (result->second.at("stamp") != now || result->second.at("suite") != fault.suite)
-                add("its code, its change or its suite is another since it was run");
-            else if (result->second.at("first") == "")
-                add(fmt::format("survived {}", fault.suite));
-        } catch (const std::runtime_error& e) {
-            add(e.what());
-        }
-        if (result != recorded.end()) recorded.erase(result);
-    }
-    for (const auto& [name, result] : recorded)
-        found.push_back(fmt::format("{}: has a result and is no fault", name));
-    return found;
 }
 
 std::string read_file(const std::string& file) {

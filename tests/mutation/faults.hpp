@@ -1,7 +1,6 @@
-// Seeded faults: where each stands in the sources, and whether a test that fails on it is on record.
+// Seeded faults, and where each stands in the sources.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,8 +26,8 @@ struct Fault {
 
 // Where an edit applies.
 struct Place {
-    std::string file;  // below the root
-    Range expression, definition;
+    std::string file;
+    Range expression;
 };
 
 // From the text of faults.txt. Throws std::runtime_error that names the line.
@@ -37,20 +36,6 @@ std::vector<Fault> parse_faults(std::string_view text);
 // The one place of the edit below `root`. Throws std::runtime_error that names the folder and the
 // definition where there is none or more than one.
 Place locate(const std::string& root, const Edit& edit);
-
-// A hash of what a result depends on: the definitions that the fault changes, without comments and
-// white space, and the changes.
-std::string stamp(const std::string& root, const Fault& fault);
-
-// Number of faults without a result: ./dev mutate runs them.
-std::size_t never_run(const std::vector<Fault>& faults, const nlohmann::ordered_json& results);
-
-// What `results`, an array of {fault, suite, first, stamp, ...}, leaves open: a fault without a
-// result, one of another stamp or suite, one that survived, a result of no fault. And a fault
-// without its place, or of a suite that is not among `suites`.
-std::vector<std::string> problems(const std::string& root, const std::vector<Fault>& faults,
-                                  const nlohmann::ordered_json& results,
-                                  const std::vector<std::string>& suites);
 
 std::string read_file(const std::string& file);
 void write_file(const std::string& file, std::string_view text);
