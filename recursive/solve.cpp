@@ -96,14 +96,7 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
                       const Analysis& analysis, const Visit& visit, Stop& stop) {
     if (!has_steps(options.method))
         return sweep_adaptive(model, branch, options, analysis, visit, stop);
-    switch (options.precision) {
-        case Precision::single: return sweep<float>(model, branch, options, analysis, visit, stop);
-        case Precision::double_precision:
-            return sweep<double>(model, branch, options, analysis, visit, stop);
-        case Precision::extended:
-            return sweep<long double>(model, branch, options, analysis, visit, stop);
-    }
-    return {};
+    return sweep<double>(model, branch, options, analysis, visit, stop);
 }
 
 // solve() without error bounds.
@@ -111,9 +104,6 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
                       const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
-    if (options.precision != Precision::double_precision && !has_steps(options.method))
-        throw std::invalid_argument(
-            fmt::format("the method '{}' computes in double precision only", options.method.name));
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps

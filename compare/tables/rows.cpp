@@ -12,7 +12,6 @@
 #include "compare/sensitivity/sensitivity.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compare.hpp"
@@ -278,33 +277,6 @@ std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders) {
                             l.nearest.angle,
                             l.nearest.misfit,
                             branch.failure});
-    return rows;
-}
-
-std::vector<PrecisionRow> precision_rows(const PrecisionStudy& study) {
-    std::vector<PrecisionRow> rows;
-    for (const auto& series : study.series)
-        for (const auto& l : series.levels)
-            rows.push_back({series.method, name(series.precision), count(l.steps),
-                            elastocheck::name(l.outcome), l.constraint, l.error.mm,
-                            study.angles ? l.error.deg : nan});
-    return rows;
-}
-
-std::vector<FloorRow> floor_rows(const PrecisionStudy& study) {
-    const auto steps = [](const Floor& floor) {
-        return floor.useful_steps > 0 ? floor.useful_steps : nan;
-    };
-    const auto remark = [](const Floor& floor, bool by_reference) {
-        return floor.useful_steps == 0           ? "no number"
-               : !floor.reached                  ? "more steps still help"
-               : by_reference && floor.reference ? "at the reference uncertainty"
-                                                 : "";
-    };
-    std::vector<FloorRow> rows;
-    for (const auto& s : study.series)
-        rows.push_back({s.method, name(s.precision), s.constraint.least, steps(s.constraint),
-                        remark(s.constraint, false), s.mm.least, steps(s.mm), remark(s.mm, true)});
     return rows;
 }
 

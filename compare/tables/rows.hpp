@@ -302,45 +302,6 @@ void describe(auto& field, Described<OrderRow> auto& r) {
     field("not compared", r.not_compared, {"", "why"});
 }
 
-// Of a method in one arithmetic, at one step count.
-struct PrecisionRow {
-    std::string method{}, arithmetic{};
-    double steps = nan;
-    std::string outcome{};
-    double constraint_error = nan, error = nan, angle_error = nan;
-};
-void describe(auto& field, Described<PrecisionRow> auto& r) {
-    field("method", r.method);
-    field("arithmetic", r.arithmetic);
-    field("steps", r.steps);
-    field("outcome", r.outcome);
-    field("constraint error", r.constraint_error, {"m", "or rad: |Φ| at the end, eq. (31)"});
-    field("error", r.error, {"mm"});
-    field("angle error", r.angle_error, {"deg"});
-}
-
-// ... and the step count beyond which refinement gains nothing.
-struct FloorRow {
-    std::string method{}, arithmetic{};
-    double least_constraint_error = nan, constraint_steps = nan;
-    std::string constraint_remark{};
-    double least_error = nan, error_steps = nan;
-    std::string error_remark{};
-};
-void describe(auto& field, Described<FloorRow> auto& r) {
-    using enum Digits;
-    field("method", r.method, {"", "", words});
-    field("arithmetic", r.arithmetic, {"", "", words});
-    field("least constraint error", r.least_constraint_error,
-          {"m", "or rad: |Φ| over the steps", size, "least |Φ|"});
-    field("steps that lower it", r.constraint_steps,
-          {"", "no larger number of steps reduces it below a third", whole, "useful steps"});
-    field("constraint remark", r.constraint_remark, {"", "", words, "remark"});
-    field("least error", r.least_error, {"mm", "", size});
-    field("steps that lower the error", r.error_steps, {"", "likewise", whole, "useful steps"});
-    field("error remark", r.error_remark, {"", "", words, "remark"});
-}
-
 // A configuration of a method, or a leg.
 struct TradeRow {
     std::string leg{}, method{};
@@ -427,8 +388,6 @@ std::vector<StepRow> step_rows(const Study& study);
 std::vector<GapRow> gap_rows(const std::vector<Channel>& main,
                              const std::vector<BranchAttribution>& attribution);
 std::vector<OrderRow> order_rows(const std::vector<BranchOrders>& orders);
-std::vector<PrecisionRow> precision_rows(const PrecisionStudy& study);
-std::vector<FloorRow> floor_rows(const PrecisionStudy& study);
 std::vector<TradeRow> trade_rows(const Trade& trade);
 // Per side of a branch, station, output and number; the design position only of the first side.
 std::vector<EffectRow> effect_rows(const Gradients& all);

@@ -14,15 +14,11 @@ namespace elastocheck::recursive {
 
 struct Analysis;  // of a model, shared by its branches: recursive/diagnosis/analysis.hpp
 
-// The arithmetic of a method with equal steps: float, double, long double.
-enum class Precision { single, double_precision, extended };
-
 struct Options {
     Method method = {};  // published; its kind holds the method's own settings
     // equal increments of the parameter over the branch; 0: the branch's own number
     int steps = 0;
     int record = 0;  // equal increments between recorded points, a divisor of steps; 0: every step
-    Precision precision = Precision::double_precision;
     // compute the error bound and remaining stiffness (error_bound.hpp) at recorded points
     bool error_bound = false;
     int error_bound_every = 1;  // ... at every so many of them, and at the last
@@ -35,7 +31,7 @@ struct Options {
 //
 // The published method takes one factorisation per step, and one more where static loads or
 // preloads require λ⁻¹. `adaptive` and `series` choose their own steps and evaluate the recorded
-// points between them, in double precision only: std::invalid_argument for another precision.
+// points between them.
 //
 // The analysis of the model may be passed in and shared between branches and
 // threads; std::invalid_argument where it is of another model.

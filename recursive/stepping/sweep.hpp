@@ -1,5 +1,5 @@
 // Sweep along a branch by the methods with equal steps: settle at a = 0, then N increments, eqs.
-// (25)-(29). Instantiated once per arithmetic (sweep_*.cpp).
+// (25)-(29).
 #pragma once
 
 #include "elastocheck/recursive.hpp"
@@ -55,11 +55,6 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
     return path;
 }
 
-extern template EquilibriumPath sweep<float>(const Model&, const Branch&, const Options&,
-                                             const Analysis&, const Visit&, Stop&);
 extern template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&,
                                               const Analysis&, const Visit&, Stop&);
-extern template EquilibriumPath sweep<long double>(const Model&, const Branch&, const Options&,
-                                                   const Analysis&, const Visit&, Stop&);
-
 }  // namespace elastocheck::recursive

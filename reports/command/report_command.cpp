@@ -12,8 +12,6 @@
 #include "compare/design/figures.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
-#include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/solves.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
@@ -156,20 +154,10 @@ void add_studies(json& document, const Model& model, const compare::Comparison& 
                                                .points = base,
                                                .rounds = 0,
                                                .threads = threads,
-                                               .progress = part(0.6, 0.8)});
+                                               .progress = part(0.6, 1)});
     document["trade"] = trade_json(trade);
     if (const json profile = recommended(solves, trade); !profile.is_null())
         document["recommended"] = profile;
-    document["orders"] = table_json(order_rows(compare::order_study(
-        solves,
-        {.orders = {4, 8, 12, 16, 20, 24}, .threads = threads, .progress = part(0.8, 0.95)})));
-    // `elastocheck trade` uses a million steps, which shows more round-off but
-    // takes half a minute.
-    document["precision"] =
-        precision_json(compare::precision_study(solves, {.most_steps = 50'000,
-                                                         .work_budget = 1.5e8,
-                                                         .threads = threads,
-                                                         .progress = part(0.95, 1)}));
 }
 
 // Figures of which the effects are shown: rates of the first wheel at the

@@ -13,7 +13,6 @@
 #include "compare/jobs/jobs.hpp"
 #include "compare/studies/formulations.hpp"
 #include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "compare/tables/rows.hpp"
@@ -259,21 +258,16 @@ int trade(const TradeRequest& request, const Delivery& delivery) {
     options.tolerance =
         compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     options.threads = threads;
-    options.progress = compare::part(progress, 0, 0.7);
+    options.progress = progress;
     const compare::Trade trade = compare::trade(model, options);
-    const compare::PrecisionStudy precision = compare::precision_study(
-        model, {.threads = threads, .progress = compare::part(progress, 0.7, 1)});
     progress("");
-    delivery.print_text(fmt::format("{}\n{}", trade_text(model, trade), precision_text(precision)));
+    delivery.print_text(trade_text(model, trade));
     if (delivery.wants_document()) {
         json part = document_of(loaded, request.scene);
         part["trade"] = trade_json(trade);
-        part["precision"] = precision_json(precision);
         add_verdict(part, trade.recommendation ? trade.recommendation->confirmed_numbers : 0,
                     trade.inconclusive);
-        deliver(delivery, std::move(part),
-                {{"trade.csv", csv(trade_rows(trade))},
-                 {"precision.csv", csv(precision_rows(precision))}});
+        deliver(delivery, std::move(part), {{"trade.csv", csv(trade_rows(trade))}});
     }
     return trade.recommendation && trade.inconclusive.empty() ? fine : could_not_judge;
 }

@@ -29,8 +29,6 @@ std::optional<Section> deviation_section(const JsonCursor& scene);
 std::optional<Section> price_section(const JsonCursor& scene);
 std::optional<Section> convergence_section(const JsonCursor& scene);
 std::optional<Section> attribution_section(const JsonCursor& scene);
-std::optional<Section> orders_section(const JsonCursor& scene);
-std::optional<Section> arithmetic_section(const JsonCursor& scene);
 std::optional<Section> references_section(const JsonCursor& scene);
 std::optional<Section> formulations_section(const JsonCursor& scene);
 std::optional<Section> matrices_section(const JsonCursor& scene);

@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
@@ -84,7 +83,6 @@ void run_studies(Solves& solves, int threads) {
     (void)attribute_gap(solves, {40, 80, 160, 320}, threads, {});
     (void)trade(solves, {.methods = {"published", "tangent"}, .rounds = 0, .threads = threads});
     (void)order_study(solves, {.orders = {4, 8}, .tolerances = {1e-6}, .threads = threads});
-    (void)precision_study(solves, {.methods = {"tangent"}, .most_steps = 40, .threads = threads});
 }
 
 TEST(Solves, TheStudiesOfAReportSolveEachRunOnce) {

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "elastocheck/compile.hpp"
@@ -43,11 +42,6 @@ TEST(Table, EveryStudyIsOneTableWithAsManyCellsAsColumns) {
     orders.orders = {4, 8};
     orders.tolerances = {1e-6};
     expect_whole(order_rows(order_study(model, orders)), 2 * 2);
-    PrecisionOptions precision;
-    precision.most_steps = 40;
-    const auto arithmetic = precision_study(model, precision);
-    expect_whole(precision_rows(arithmetic), 3 * 3 * 2);
-    expect_whole(floor_rows(arithmetic), 3 * 3);
     TradeOptions trade_options;
     trade_options.most_steps = 20;
     trade_options.rounds = 0;

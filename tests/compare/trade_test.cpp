@@ -8,7 +8,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "compare/studies/precision.hpp"
 #include "compare/studies/solves.hpp"
 #include "compare/studies/timing.hpp"
 #include "elastocheck/compile.hpp"
@@ -618,69 +617,6 @@ TEST(Profile, EndsAtTheErrorOfItsConfigurationAndIsZeroForTheReferenceItself) {
         EXPECT_EQ(found.a.size(), 41u) << method;
         for (const auto& error : found.apart) EXPECT_LE(error.mm, 1e-3) << method;
     }
-}
-
-TEST(Precision, FloorOfFloatIsAboveThatOfDoubleIsAboveThatOfLongDouble) {
-    PrecisionOptions options;
-    options.most_steps = 10240;
-    const PrecisionStudy study = precision_study(shipped("pinned_bar"), options);
-    ASSERT_EQ(study.series.size(), 9u);
-    for (std::size_t s = 0; s < 9; s += 3) {
-        const auto &f = study.series[s], &d = study.series[s + 1], &l = study.series[s + 2];
-        // The pin is the body's origin, where the factorisation preserves exact zeros.
-        for (const auto* series : {&f, &d, &l}) EXPECT_EQ(series->constraint.least, 0) << f.method;
-        // its error is its formulation gap in any arithmetic
-        if (f.method == "published") continue;
-        EXPECT_GT(f.mm.least, 1e3 * d.mm.least) << f.method;
-        // Outputs are doubles: errors below one unit of these, for lengths below a metre, are
-        // invisible.
-        constexpr double unit = 1e3 * std::numeric_limits<double>::epsilon();
-        EXPECT_GE(std::max(d.mm.least, unit), l.mm.least) << f.method;
-        EXPECT_TRUE(f.mm.reached) << f.method;
-        EXPECT_FALSE(f.mm.reference) << f.method;
-        EXPECT_LE(f.mm.useful_steps, d.mm.useful_steps) << f.method;
-    }
-}
-
-TEST(Precision, SumsInFloatGetWorseAgainAndSumsInDoubleDoNotYet) {
-    PrecisionOptions options;
-    options.methods = {"published"};
-    options.most_steps = 40960;
-    const PrecisionStudy study = precision_study(shipped("pendulum"), options);
-    const auto &f = study.series[0], &d = study.series[1];
-    EXPECT_TRUE(f.constraint.reached);
-    EXPECT_GT(f.levels.back().constraint, 3 * f.constraint.least);
-    EXPECT_FALSE(d.constraint.reached);
-    EXPECT_EQ(d.constraint.useful_steps, 40960);
-    EXPECT_EQ(d.levels.back().constraint, d.constraint.least);
-}
-
-TEST(Precision, FloorIsWhereMoreStepsStopHelping) {
-    const std::vector<int> steps{10, 40, 160, 640, 2560};
-    const auto check = [&](std::vector<double> values, int useful, bool reached,
-                           bool reference = false) {
-        const Floor floor = floor_of(steps, values, 1e-9);
-        EXPECT_EQ(floor.useful_steps, useful) << values[0];
-        EXPECT_EQ(floor.reached, reached) << values[0];
-        EXPECT_EQ(floor.reference, reference) << values[0];
-    };
-    check({1, 1. / 4, 1. / 16, 1. / 64, 1. / 256}, 2560, false);
-    check({1, 1e-2, 1e-4, 2e-4, 8e-4}, 160, true);          // down and up again
-    check({1, 1e-2, 1e-2, 1e-4, 1e-2}, 40, true);           // a favourable rounding is no progress
-    check({1, 1e-4, 1e-8, 1e-10, 1e-14}, 640, true, true);  // limited by the reference
-    check({1, 1e-4, 1e-4, 2e-4, 1e-7}, 40, true);           // likewise at the last level
-    check({1, 1, 1, 1, 1}, 10, true);
-    check({nan, 1e-1, nan, 1e-3, nan}, 640, false);
-    EXPECT_EQ(floor_of(steps, {nan, nan, nan, nan, nan}).useful_steps, 0);
-    EXPECT_TRUE(std::isnan(floor_of(steps, {nan, nan, nan, nan, nan}).least));
-}
-
-TEST(Precision, AMethodWithStepsOfItsOwnIsRefused) {
-    PrecisionOptions options;
-    options.methods = {"adaptive"};
-    EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
-    options.methods = {"publshed"};
-    EXPECT_THROW((void)precision_study(shipped("pinned_bar"), options), std::invalid_argument);
 }
 
 }  // namespace

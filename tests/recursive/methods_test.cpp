@@ -179,38 +179,6 @@ TEST(Methods, TooFewStepsAreNamedAsSuch) {
     }
 }
 
-TEST(Methods, SingleIsCoarserThanDoubleIsCoarserThanExtended) {
-    // So many steps of a third-order method over so short a branch that |Φ| is only rounding.
-    const Model model = compile(support::scene("chrono_mcpherson"));
-    Branch branch = model.branches[0];
-    branch.to = 1000;
-    const auto Phi = [&](Precision precision) {
-        return solve(model, branch,
-                     {.method = rung("chord"), .steps = 40960, .record = 1, .precision = precision})
-            .points.back()
-            .constraint_error;
-    };
-    const double single = Phi(Precision::single),
-                 double_precision = Phi(Precision::double_precision),
-                 extended = Phi(Precision::extended);
-    EXPECT_GT(single, 1e3 * double_precision);
-    EXPECT_GT(double_precision, 3 * extended);
-}
-
-TEST(Methods, SinglePrecisionClosesJointsAsFarAsItCan) {
-    // Open as drawn by less than single precision resolves: the joints are not inconsistent.
-    Model model = compile(support::scene("chrono_mcpherson"));
-    for (auto& constraint : model.constraints)
-        if (auto* rod = std::get_if<DistanceBetween>(&constraint.kind)) rod->length += 3e-8;
-    Branch branch = model.branches[0];
-    branch.to = 1000;
-    for (const char* name : {"balanced", "tangent", "chord", "midpoint"}) {
-        const auto path = solve(
-            model, branch, {.method = rung(name), .steps = 40, .precision = Precision::single});
-        EXPECT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
-    }
-}
-
 TEST(Methods, AreFoundByName) {
     for (const auto& method : methods) EXPECT_EQ(find_method(method.name)->name, method.name);
     EXPECT_FALSE(find_method("tangnt"));

@@ -370,15 +370,5 @@ TEST(Series, LogarithmFunctionsAreRegularAtZeroAndRightElsewhere) {
     }
 }
 
-TEST(Series, OtherPrecisionsAreRefusedAsByTheAdaptiveMethod) {
-    const Model model = compile(support::scene("pinned_bar"));
-    for (const char* name : {"series", "adaptive"})
-        for (const auto precision : {Precision::single, Precision::extended})
-            EXPECT_THROW(recursive::solve(model, model.branches[0],
-                                          {.method = *find_method(name), .precision = precision}),
-                         std::invalid_argument)
-                << name;
-}
-
 }  // namespace
 }  // namespace elastocheck::recursive::series

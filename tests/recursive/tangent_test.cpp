@@ -11,23 +11,6 @@
 
 namespace elastocheck::recursive {
 
-// Instantiated in stepping/sweep_long_double.cpp.
-extern template void set_inputs<long double>(const Model&, const Branch&,
-                                             const Inputs<long double>&, long double, long double,
-                                             Inputs<long double>&);
-extern template void elastic_force<long double>(const Model&, const Inputs<long double>&,
-                                                const State<long double>&, Vector<long double>&);
-extern template void external_force<long double>(const Model&, const Branch&,
-                                                 const Inputs<long double>&,
-                                                 const State<long double>&, Vector<long double>&);
-extern template void constraint_force<long double>(const Model&, const Inputs<long double>&,
-                                                   const State<long double>&,
-                                                   const Vector<long double>&, Vector<long double>&,
-                                                   Vector<long double>&);
-extern template void assemble_consistent<long double>(
-    const Model&, const Branch&, const Inputs<long double>&, const State<long double>&,
-    const Vector<long double>&, SaddleMatrix<long double>&, Vector<long double>&);
-
 namespace {
 
 using Eigen::Vector3d;

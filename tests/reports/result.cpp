@@ -2,8 +2,6 @@
 
 #include <map>
 
-#include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "compare/tables/rows.hpp"
@@ -63,9 +61,6 @@ const json& sample_result(const std::string& name) {
     const auto study = compare::study(model, study_options);
     part["convergence"] = study_json(study, compare::attribute_gap(model));
     part["trade"] = trade_json(compare::trade(model, {.most_steps = 80, .rounds = 1}));
-    part["precision"] = precision_json(compare::precision_study(model, {.most_steps = 40}));
-    part["orders"] = table_json(order_rows(compare::order_study(
-        model, {.orders = {4, 8, 16}, .tolerances = {1e-6, 1e-9}, .points = 5})));
     add_gap(part, comparison, study);
     add_verdict(part, comparison.compared, reasons_of(comparison));
     part["judgement"] =
@@ -77,7 +72,7 @@ json small_result(const std::string& name) {
     json result = sample_result("pinned_bar");
     auto& scene = result["scenes"][0];
     scene["name"] = name;
-    for (const char* part : {"convergence", "trade", "precision", "drawing"}) scene.erase(part);
+    for (const char* part : {"convergence", "trade", "drawing"}) scene.erase(part);
     return result;
 }
 

@@ -52,7 +52,7 @@ TEST(Running, KinematicsAndComplianceNeedNoStudy) {
     const Folder folder;
     for (const char* arguments : {"--only kc", "--quick"}) {
         const json scene = scene_of(folder, arguments);
-        for (const char* study : {"convergence", "trade", "orders", "precision", "formulations"})
+        for (const char* study : {"convergence", "trade", "formulations"})
             EXPECT_FALSE(scene.contains(study)) << arguments << ": " << study;
         for (const char* part : {"branches", "characteristics", "drawing", "forces", "verdict"})
             EXPECT_TRUE(scene.contains(part)) << arguments << ": " << part;

@@ -151,7 +151,7 @@ TEST(Sections, EffectsOfNumbersAreBarsArrowsAndAMap) {
 TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
     json result = sample_result();
     for (const char* part :
-         {"convergence", "trade", "precision", "drawing", "orders", "judgement", "findings",
+         {"convergence", "trade", "drawing", "judgement", "findings",
           "forces", "largest_forces", "characteristics", "rate_errors"})
         result["scenes"][0].erase(part);
     for (auto& branch : result["scenes"][0]["branches"])

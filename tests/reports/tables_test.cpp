@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "compare/studies/order_study.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "compare/tables/rows.hpp"
@@ -152,18 +151,6 @@ TEST(Tables, OrdersAreSaidAlikeInEveryFormat) {
     expect_parts(order_text(compare::order_rows(failed)),
                  {"which is none: the energy leg diverged"});
     EXPECT_EQ(order_text({}), "");
-}
-
-TEST(Tables, TheArithmeticStandsSideBySide) {
-    const Model model = compile(support::scene("pinned_bar"));
-    auto study = compare::precision_study(model, {.most_steps = 160});
-    EXPECT_EQ(std::ranges::count(csv(compare::precision_rows(study)), '\n'), 1 + 3 * 3 * 3);
-    EXPECT_EQ(precision_json(study)["floors"]["rows"].size(), 9u);
-    const std::string said = precision_text(study);
-    expect_parts(said, {"float: |Φ| [mm]", "long double: |Φ| [mm]", "least |Φ| [mm]"},
-                 {"converged"});
-    study.series[0].levels[1].outcome = Outcome::diverged;
-    expect_parts(precision_text(study), {"diverged"});
 }
 
 TEST(Tables, AConvergenceStudyIsSaidAlikeInEveryFormat) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "compare/studies/formulations.hpp"
-#include "compare/studies/precision.hpp"
 #include "compare/studies/study.hpp"
 #include "compare/studies/work_precision.hpp"
 #include "compare/tables/rows.hpp"
@@ -28,11 +27,6 @@ std::string order_text(const std::vector<compare::OrderRow>& orders);
 // `position` in the recommendation is a row of it.
 std::string trade_text(const Model& model, const compare::Trade& trade);
 nlohmann::ordered_json trade_json(const compare::Trade& trade);
-
-// Floating-point precision. JSON: {branch, inconclusive, levels, floors}: tables of
-// compare::PrecisionRow and compare::FloorRow.
-std::string precision_text(const compare::PrecisionStudy& study);
-nlohmann::ordered_json precision_json(const compare::PrecisionStudy& study);
 
 // Differences of the figures by other definitions.
 std::string definition_text(const std::vector<compare::DefinitionRow>& rows);
