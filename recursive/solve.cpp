@@ -11,7 +11,6 @@
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/singularity/branch_events.hpp"
-#include "recursive/singularity/error_bound.hpp"
 #include "recursive/singularity/stability_limit.hpp"
 #include "recursive/stepping/adaptive.hpp"
 #include "recursive/stepping/sweep.hpp"
@@ -99,7 +98,6 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
     return sweep<double>(model, branch, options, analysis, visit, stop);
 }
 
-// solve() without error bounds.
 EquilibriumPath found(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
@@ -146,38 +144,9 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
     return path;
 }
 
-// Moves a point of the centred model back by c. The error bound grows by the rounding of the moved
-// positions to double.
+// Moves a point of the centred model back by c.
 void move_back(Equilibrium& point, const Eigen::Vector3d& c) {
-    double reach = 0;
-    for (Pose& pose : point.poses) {
-        pose.r += c;
-        reach = std::max(reach, pose.r.norm());
-    }
-    point.bound.length += std::numeric_limits<double>::epsilon() * reach;
-}
-
-EquilibriumPath with_error_bounds(const Model& model, const Branch& branch, const Options& options,
-                                  const Analysis& analysis, const Visit& visit) {
-    if (!options.error_bound) return found(model, branch, options, analysis, visit);
-    const auto* series = std::get_if<Series>(&options.method.kind);
-    const auto add_error_bound =
-        error_estimator(model, branch, analysis, series != nullptr && series->arc_length);
-    EquilibriumPath path;
-    std::vector<Equilibrium> points;
-    const int steps = options.steps > 0 ? options.steps : branch.steps,
-              last = options.record > 0 ? options.record : steps;
-    path = found(model, branch, options, analysis, [&, k = 0](const Equilibrium& found) mutable {
-        Equilibrium point = found;
-        if (k % options.error_bound_every == 0 || k == last) add_error_bound(point);
-        ++k;
-        if (visit)
-            visit(point);
-        else
-            points.push_back(std::move(point));
-    });
-    path.points = std::move(points);
-    return path;
+    for (Pose& pose : point.poses) pose.r += c;
 }
 
 // Whether settling, which ended so, may reach an equilibrium by another homotopy. The linear
@@ -216,19 +185,16 @@ EquilibriumPath solve(const Model& model, const Branch& branch, const Options& o
                 fmt::format("branch '{}': {}", branch.name, not_finite(model)),
                 {},
                 {}};
-    if (options.error_bound_every < 1)
-        throw std::invalid_argument("the error bound is computed at every n-th point, n >= 1");
     bool begun = false;
     const Visit counted = [&](const Equilibrium& point) {
         begun = true;
         visit(point);
     };
-    EquilibriumPath path =
-        with_error_bounds(model, branch, options, analysis, visit ? counted : Visit{});
+    EquilibriumPath path = found(model, branch, options, analysis, visit ? counted : Visit{});
     if (begun || !path.points.empty() || !settles_otherwise(options.method, path.outcome))
         return path;
     // Where a drawing far from rest has several equilibria, homotopies may settle at different
-    // ones: no error bound is claimed.
+    // ones.
     if (const auto other = grown(model, branch)) {
         EquilibriumPath again = found(other->model, other->branch, options, analyse(other->model),
                                       visit ? counted : Visit{});

@@ -10,7 +10,6 @@
 #include "compare/comparison/compare_with.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/comparison/extrapolation.hpp"
 #include "compare/deviation/proof.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
@@ -27,8 +26,7 @@ Residuals worse(const Residuals& a, const Residuals& b) {
 
 // Time of a run that ignores its points. Steps as short as the recursion's take half as long again
 // when other work evicts their data from the caches.
-double seconds_alone(const std::vector<BranchSide>& sides, SolverSettings solver) {
-    solver.error_bound = false;
+double seconds_alone(const std::vector<BranchSide>& sides, const SolverSettings& solver) {
     const double start = processor_time();
     for (const auto& side : sides) walk(side, solver, [](const Equilibrium&) {});
     return processor_time() - start;
@@ -97,20 +95,6 @@ std::vector<double> stations_of(const std::vector<double>& requested) {
     return stations;
 }
 
-// Tolerance of the judged method at every point. The series in place of the energy leg is a
-// reference and has none here.
-std::optional<ErrorBound> promise_of(const Model& standing, const SolverSettings& solver) {
-    if (solver.leg != Leg::recursive) return std::nullopt;
-    return tolerance_of_method(solver.recursion.method, recursive::diagnose(standing).length);
-}
-
-// Requests error bounds from methods with a tolerance, and from the equilibrium leg for its
-// remaining stiffness, which costs the leg a thirtieth of its time.
-SolverSettings with_account(const Model& standing, SolverSettings solver) {
-    solver.error_bound = solver.leg == Leg::equilibrium || promise_of(standing, solver);
-    return solver;
-}
-
 LegRun run(const Model& model, const std::vector<Channel>& channels, const Branch& branch,
            const std::vector<BranchSide>& sides, const SolverSettings& solver, bool times) {
     LegRun run;
@@ -123,7 +107,6 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const bool both_sides = sides.size() > 1;
     auto& marks = run.landmarks;
     Responses responses;
-    BranchErrorBounds error_bound{promise_of(side.model, solver)};
     const bool kept = solver.leg == Leg::equilibrium;
     const auto stations = kept ? stations_of(requested) : std::vector<double>{};
     std::optional<LargestForces> largest;
@@ -150,14 +133,12 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
                  else
                      mark(marks.back, responses.back);
                  if (state.load == middle) marks.middle = state;
-                 if (solver.error_bound) add(error_bound, state);
                  if (largest) largest->add(state);
                  if (std::ranges::find(stations, state.load) != stations.end())
                      run.stations.push_back(state);
              });
     std::ranges::stable_sort(run.stations, {}, &Equilibrium::load);
     if (largest) run.largest = largest->list();
-    run.messages = messages(error_bound, branch.unit);
     if (!marks.front) marks.front = marks.start, responses.front = responses.start;
     if (!marks.back) marks.back = marks.start, responses.back = responses.start;
     if (!model.wheels.empty() && has_characteristics(channels))
@@ -475,7 +456,7 @@ Comparison compare(const Model& model, const Options& options, const std::vector
                      const SolverSettings solver{
                          .leg = leg, .recursion = options.recursion, .every = options.every};
                      LegRun& found = runs[k][static_cast<std::size_t>(leg)];
-                     found = solve(k, with_account(sides[k].front().model, solver));
+                     found = solve(k, solver);
                      if (leg == Leg::energy && is_not_applicable(found.outcome))
                          series[k] = solve(k, {.leg = Leg::series, .every = options.every});
                  }});

@@ -42,7 +42,6 @@ EquilibriumPath recursion(const BranchSide& side, recursive::Options options, in
                           const Visit& visit) {
     options.record = side.branch.steps;
     options.steps = side.branch.steps * refine;
-    options.error_bound_every = every;
     const Visit requested = [&, k = 0](const Equilibrium& state) mutable {
         if (is_requested(side.branch, k++, every)) visit(state);
     };
@@ -56,22 +55,16 @@ EquilibriumPath walk_anywhere(const BranchSide& side, const SolverSettings& solv
                               const Visit& visit) {
     const auto& [model, branch] = std::tie(side.model, side.branch);
     switch (solver.leg) {
-        case Leg::recursive: {
-            recursive::Options options = solver.recursion;
-            options.error_bound = solver.error_bound;
-            return recursion(side, options, solver.refine, solver.every, visit);
-        }
+        case Leg::recursive:
+            return recursion(side, solver.recursion, solver.refine, solver.every, visit);
         case Leg::equilibrium:
-            return reference::equilibrium::solve(model, branch, grid(branch, solver.every),
-                                                 {.error_bound = solver.error_bound}, visit);
+            return reference::equilibrium::solve(model, branch, grid(branch, solver.every), {},
+                                                 visit);
         case Leg::energy:
-            return reference::energy::solve(model, branch, grid(branch, solver.every),
-                                            {.error_bound = solver.error_bound}, visit);
+            return reference::energy::solve(model, branch, grid(branch, solver.every), {}, visit);
         case Leg::series:
-            return recursion(side,
-                             {.method = recursive::find_method("series").value(),
-                              .error_bound = solver.error_bound},
-                             1, solver.every, visit);
+            return recursion(side, {.method = recursive::find_method("series").value()}, 1,
+                             solver.every, visit);
     }
     return {};
 }

@@ -24,6 +24,7 @@ using Eigen::Vector3d;
 
 using Construction = Variant::Construction;
 
+constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // ---- Observed places of a state.
@@ -98,22 +99,27 @@ bool is_finite(const Placement& where) {
            std::ranges::all_of(where.turns, [](const auto& q) { return q.coeffs().allFinite(); });
 }
 
-// Error bound of a place from the bounds of its body's origin and orientation.
-double of_place(const ErrorBound& body, const ComparedPoint& place) {
+// Of origins and of orientations.
+struct Distance {
+    double length = inf, angle = inf;  // [m], [rad]
+};
+
+// Bound of a place from the bounds of its body's origin and orientation.
+double of_place(const Distance& body, const ComparedPoint& place) {
     const double lever = place.at.s_local.norm();
     return lever > 0 ? body.length + lever * body.angle : body.length;
 }
 
 // Largest distance over all places; NaN if any number is NaN.
-ErrorBound apart(const Placement& a, const Placement& b) {
-    ErrorBound most{0, 0};
+Distance apart(const Placement& a, const Placement& b) {
+    Distance most{0, 0};
     for (std::size_t k = 0; k < a.p.size(); ++k) {
         const double length = (a.p[k] - b.p[k]).norm(),
                      angle = a.turns[k].angularDistance(b.turns[k]);
         if (!(length <= most.length)) most.length = length;
         if (!(angle <= most.angle)) most.angle = angle;
     }
-    return is_finite(a) && is_finite(b) ? most : ErrorBound{nan, nan};
+    return is_finite(a) && is_finite(b) ? most : Distance{nan, nan};
 }
 
 Placement transforms(const Placement& where, const Transform& how) {
@@ -133,21 +139,20 @@ struct Found {
     bool threw = false;  // an exception, which is a bug; its text is in `detail`
     std::vector<Placement> placements;
     std::vector<std::vector<Wrench>> reactions;  // per point, of SideRun::joints
-    std::vector<ErrorBound> error_bounds;        // error bounds as given, per point
     std::vector<bool> elsewhere;                 // per point: off, but proved
 };
 
 // Accuracy of a state: of every body, or of every place.
 struct Claim {
-    ErrorBound bound = {};
+    Distance bound = {};
     bool of_bodies = true;
 
     double length(const ComparedPoint& place) const {
         return of_bodies ? of_place(bound, place) : bound.length;
     }
     // Largest over all places.
-    ErrorBound most(const std::vector<ComparedPoint>& places) const {
-        ErrorBound worst{0, bound.angle};
+    Distance most(const std::vector<ComparedPoint>& places) const {
+        Distance worst{0, bound.angle};
         for (const auto& place : places) worst.length = std::max(worst.length, length(place));
         return worst;
     }
@@ -184,17 +189,15 @@ struct TrialRun {
 };
 
 // Exact except for rounding.
-ErrorBound exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
+Distance exact(double size) { return {1e-9 * size, 1.7453292520e-8}; }
 
 bool is_reference(const Solver& solver) {
     return solver.settings.leg == Leg::equilibrium || solver.settings.leg == Leg::energy;
 }
 
-Claim claim_of(const Solver& solver, const ErrorBound& error_bound, double size) {
-    if (std::isfinite(error_bound.length) && std::isfinite(error_bound.angle)) return {error_bound};
-    const ErrorBound rounding = exact(size);
+Claim claim_of(const Solver& solver, double size) {
+    const Distance rounding = exact(size);
     if (is_reference(solver)) return {rounding, false};
-    if (solver.settings.error_bound) return {};  // a point without an error bound claims nothing
     return std::visit(overloaded{[&](const recursive::Adaptive& method) -> Claim {
                                      return {{std::max(method.length_tolerance, rounding.length),
                                               std::max(method.angle_tolerance, rounding.angle)}};
@@ -224,21 +227,16 @@ Known agreed(const std::vector<Solver>& solvers, const SideRun& run, std::size_t
                    j = witnesses[static_cast<std::size_t>(b)];
         const Found &one = run.found[i], &other = run.found[j];
         if (point >= one.placements.size() || point >= other.placements.size()) continue;
-        const ErrorBound distance = apart(one.placements[point], other.placements[point]);
-        const ErrorBound
-            c_i = claim_of(solvers[i], one.error_bounds[point], run.size).most(run.places),
-            c_j = claim_of(solvers[j], other.error_bounds[point], run.size).most(run.places);
+        const Distance distance = apart(one.placements[point], other.placements[point]);
+        const Distance c_i = claim_of(solvers[i], run.size).most(run.places),
+                       c_j = claim_of(solvers[j], run.size).most(run.places);
         if (!(distance.length <= c_i.length + c_j.length &&
               distance.angle <= c_i.angle + c_j.angle))
             continue;
-        // Uses the tighter error bound; without bounds, the distance of the two states.
-        const bool first = c_i.length <= c_j.length;
-        const Found& tighter = first ? one : other;
-        const bool by_account = std::isfinite(tighter.error_bounds[point].length);
-        const ErrorBound within = by_account ? (first ? c_i : c_j) : distance;
+        const Found& tighter = c_i.length <= c_j.length ? one : other;
         Known known{Knowledge::references,
                     tighter.placements[point],
-                    {{within.length + eps * run.reach, within.angle + eps}, false}};
+                    {{distance.length + eps * run.reach, distance.angle + eps}, false}};
         known.reactions = tighter.reactions[point];
         return known;
     }
@@ -283,7 +281,7 @@ Known proved(const BranchSide& side, const SideRun& run,
 
 // Lower bound of the exceedance of a claim, and the claim; 0 and 0 if it holds.
 struct Breach {
-    ErrorBound least{0, 0}, claimed{0, 0};
+    Distance least{0, 0}, claimed{0, 0};
     std::string where;
     bool any() const { return !(least.length <= 0 && least.angle <= 0); }
 };
@@ -306,19 +304,9 @@ Breach breach(const SideRun& run, const Claim& claim, const Placement& where, co
     return worst;
 }
 
-// Position tolerance from which the bound of the reactions follows (bound_of_reactions); NaN where
-// the solver claims none: the linear recursion with a fixed number of steps, and any claim of 1e-4
-// of the size or more. `adaptive` uses at least its tolerance, even where its error bound is
-// smaller.
-double length_promised(const Solver& solver, const SideRun& run, const ErrorBound& claim) {
-    constexpr double coarse = 1e-4;
-    const auto& method = solver.settings.recursion.method;
-    if (!(claim.length < coarse * run.size)) return nan;
-    if (solver.settings.leg != Leg::recursive) return claim.length;
-    if (recursive::has_steps(method)) return nan;
-    const auto* adaptive = std::get_if<recursive::Adaptive>(&method.kind);
-    return adaptive ? std::max(claim.length, adaptive->length_tolerance) : claim.length;
-}
+// Reactions are judged where the claim is less than this, of the size: their bound follows from it
+// (bound_of_reactions).
+constexpr double coarse = 1e-4;
 
 SideRun walk_all(const Variant& variant, const BranchSide& side,
                  const std::vector<Solver>& solvers) {
@@ -345,7 +333,6 @@ SideRun walk_all(const Variant& variant, const BranchSide& side,
             const WithArithmetic in_force(variant.arithmetic);
             const EquilibriumPath path = walk(side, settings, [&](const Equilibrium& state) {
                 found.placements.push_back(placement(side.model, run.places, state));
-                found.error_bounds.push_back(state.bound);
                 found.reactions.push_back(reactions_of(run.joints, state));
                 states[s].push_back(state);
             });
@@ -385,7 +372,7 @@ SideRun walk_all(const Variant& variant, const BranchSide& side,
         for (std::size_t s = 0; s < solvers.size(); ++s) {
             Found& found = run.found[s];
             if (k >= found.placements.size()) continue;
-            const Claim claim = claim_of(solvers[s], found.error_bounds[k], run.size);
+            const Claim claim = claim_of(solvers[s], run.size);
             found.elsewhere[k] =
                 (breach(run, claim, found.placements[k], known).any() &&
                  reference::certificate::certify(side.model, side.branch, states[s][k], tolerance)
@@ -493,19 +480,16 @@ double range_of(const SideRun& run) {
 
 void judge_points(const Solver& solver, const Found& found, const SideRun& run, StressCell& cell) {
     double worst = 0;
-    bool any_unknown = false, breaks = false, elsewhere = false, no_digit = false, promises = true;
+    bool any_unknown = false, breaks = false, elsewhere = false;
+    const Claim claim_here = claim_of(solver, run.size);
+    const Distance claim = claim_here.most(run.places);
     for (std::size_t k = 0; k < found.placements.size(); ++k) {
         if (!is_finite(found.placements[k])) {
             cell.verdict = Verdict::wrong;
             cell.why = "a state is not finite";
             return;
         }
-        const Claim claim_here = claim_of(solver, found.error_bounds[k], run.size);
-        const ErrorBound claim = claim_here.most(run.places);
-        promises &= std::isfinite(claim.length);
-        no_digit |= std::isfinite(found.error_bounds[k].length) &&
-                    found.error_bounds[k].length >= cell.range;
-        cell.claim = k == 0 ? claim.length : std::max(cell.claim, claim.length);
+        cell.claim = claim.length;
         if (k >= run.known.size() || run.known[k].how == Knowledge::none) {
             any_unknown = true;
             continue;
@@ -513,7 +497,7 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
         const Known& known = run.known[k];
         if (cell.knowledge == Knowledge::none || known.how == Knowledge::transforms)
             cell.knowledge = known.how;
-        const ErrorBound d = apart(found.placements[k], known.where);
+        const Distance d = apart(found.placements[k], known.where);
         worst = std::max(worst, d.length + known.within.most(run.places).length);
         if (const Breach broken = breach(run, claim_here, found.placements[k], known);
             broken.any()) {
@@ -524,9 +508,9 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
                 broken.where, 1e3 * std::max(0.0, broken.least.length),
                 std::max(0.0, broken.least.angle), 1e3 * broken.claimed.length,
                 broken.claimed.angle);
-        } else if (const double length = length_promised(solver, run, claim); !std::isnan(length)) {
+        } else if (claim.length < coarse * run.size) {
             cell.reactions += static_cast<int>(known.reactions.size());
-            const ReactionBound bound = bound_of_reactions(length, run.scale);
+            const ReactionBound bound = bound_of_reactions(claim.length, run.scale);
             if (std::string off = reaction_off(
                     run.joint_names, found.reactions[k], known.reactions,
                     {bound.force + known.force, bound.moment + known.moment}, run.scale);
@@ -547,13 +531,10 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
     else if (elsewhere)
         cell.verdict = Verdict::elsewhere,
         cell.why = "at another equilibrium, which is also proved: " + cell.why;
-    else if (no_digit)
-        cell.verdict = Verdict::reported_failure,
-        cell.why = "its error bound leaves no correct digit";
     else if (any_unknown)
         cell.verdict = Verdict::unjudged, cell.digits = nan;
     else
-        cell.verdict = promises ? Verdict::right : Verdict::no_claim;
+        cell.verdict = std::isfinite(claim.length) ? Verdict::right : Verdict::no_claim;
 }
 
 // Invariance check: a transformed mechanism must give the same answer, within the claim of the
@@ -576,10 +557,9 @@ void judge_invariance(const Solver& solver, const Found& found, const SideRun& r
          ++k) {
         const Placement here = only(found.placements[k], both.here),
                         there = transforms(only(base_found.placements[k], both.there), how);
-        const ErrorBound d = apart(here, there);
-        const ErrorBound c = claim_of(solver, found.error_bounds[k], run.size).most(run.places),
-                         c_base = claim_of(solver, base_found.error_bounds[k], base.size)
-                                      .most(base.places);
+        const Distance d = apart(here, there);
+        const Distance c = claim_of(solver, run.size).most(run.places),
+                       c_base = claim_of(solver, base.size).most(base.places);
         if (!std::isfinite(c.length) && (!same_bodies || other_steps)) continue;
         const double rounding = 1e4 * eps * run.reach,
                      allowed = std::isfinite(c.length) && std::isfinite(c_base.length)
@@ -601,8 +581,8 @@ double apart(const Found& found, const SideRun& run, const Found& base_found, co
     double off = 0;
     for (std::size_t k = 0; k < std::min(found.placements.size(), base_found.placements.size());
          ++k) {
-        const ErrorBound d = apart(only(found.placements[k], both.here),
-                                   transforms(only(base_found.placements[k], both.there), how));
+        const Distance d = apart(only(found.placements[k], both.here),
+                                 transforms(only(base_found.placements[k], both.there), how));
         if (!(d.length <= off)) off = d.length;
     }
     return off / how.length;
@@ -701,10 +681,8 @@ std::vector<Solver> solvers() {
     std::vector<Solver> all;
     for (const auto& method : recursive::methods)
         all.push_back(
-            {std::string(method.name),
-             {.leg = Leg::recursive, .recursion = {.method = method}, .error_bound = true}});
-    for (const Leg leg : {Leg::equilibrium, Leg::energy})
-        all.push_back({name(leg), {.leg = leg, .error_bound = true}});
+            {std::string(method.name), {.leg = Leg::recursive, .recursion = {.method = method}}});
+    for (const Leg leg : {Leg::equilibrium, Leg::energy}) all.push_back({name(leg), {.leg = leg}});
     return all;
 }
 

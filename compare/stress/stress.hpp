@@ -4,10 +4,9 @@
 // A trial is a varied scene; a cell is the result of one leg or method on one side of its branch. A
 // converged result claims an accuracy and is judged by it:
 //
-//   its error bound           Equilibrium::bound, where it is finite
 //   its tolerance             of `adaptive`, of `series`
-//   else, for a reference     exact except for rounding: 1e-9 of the scene's size, 1e-6 deg
-//   else                      no claim: its digits are reported
+//   for a reference           exact except for rounding: 1e-9 of the scene's size, 1e-6 deg
+//   with fixed steps          no claim: its digits are reported
 //
 // The true error of a state lies between |x - x_T| - e and |x - x_T| + e, where x_T is a state
 // known to within e. A claim is broken where the lower end exceeds it. Knowledge lists the sources
@@ -110,7 +109,7 @@ const char* name(Knowledge knowledge);
 enum class Verdict {
     right,             // converged, within its claim
     no_claim,          // converged, without a claim: its digits are reported
-    reported_failure,  // another outcome, or an error bound that states that no digit is correct
+    reported_failure,  // another outcome
     elsewhere,         // converged at another equilibrium of the same load, which is proved too
     unjudged,          // converged, but the truth is unknown
     wrong,

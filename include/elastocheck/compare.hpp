@@ -182,10 +182,6 @@ struct LegRun : PathCurve {
     std::array<Residuals, legs.size()> judged = {};
     Scale scale = {};  // of the acting forces over the points
     Landmarks landmarks = {};
-    // Messages from the error bounds and the remaining stiffness of its points (extrapolation.hpp):
-    // broken tolerance of a method that has one, and for the equilibrium leg the expected next
-    // singular point.
-    std::vector<std::string> messages = {};
     Tally proved = {};  // proofs of the landmarks; empty unless requested
     std::vector<Compliance> compliance =
         {};  // at front, start and back, as far as they differ; for scenes with wheels

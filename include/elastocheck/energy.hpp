@@ -22,8 +22,6 @@ struct Options {
     double tolerance = 1e-12;
     int evaluation_limit = 2000;  // per equilibrium, requested or internal
     int recentre_limit = 20;      // charts, likewise
-    bool error_bound =
-        false;  // every point carries its error bound and remaining stiffness (error_bound.hpp)
 };
 
 // Equilibria at `values` of the branch's parameter, in the order of the visit. They are minima on

@@ -20,8 +20,6 @@ struct Options {
     int iteration_limit = 100;  // per solve
     // smallest step: the whole branch halved this often; then the branch counts as ended
     int halvings = 40;
-    bool error_bound =
-        false;  // every point carries its error bound and remaining stiffness (error_bound.hpp)
 };
 
 // Equilibria of `model` at `points`, values of the parameter a of `branch` in its unit, in the

@@ -15,13 +15,6 @@ struct Wrench {
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // [N·m], ground axes
 };
 
-// A-posteriori error bound: distance of a state from its equilibrium as bounded by the leg itself.
-// It exceeds the true error, and is infinite where the leg has no bound.
-struct ErrorBound {
-    double length = std::numeric_limits<double>::infinity();  // of any body's origin [m]
-    double angle = std::numeric_limits<double>::infinity();   // of any body's orientation [rad]
-};
-
 struct Equilibrium {
     double load = 0;          // load factor a of the branch
     std::vector<Pose> poses;  // one per Model::bodies
@@ -30,12 +23,6 @@ struct Equilibrium {
         reactions;
     double constraint_error =
         0;  // |Φ(q*)| of the leg's own constraint equations, eq. (31) [m, rad]
-    // Set where a leg computes error bounds along its path; else the default.
-    ErrorBound bound = {};
-    // Least stiffness of the motions that the joints allow and something resists, in the leg's own
-    // scaling, over its value at a = 0: 0 at limit and bifurcation points and at loss of stability,
-    // negative past them.
-    double stiffness_left = std::numeric_limits<double>::quiet_NaN();
 };
 
 enum class Outcome {

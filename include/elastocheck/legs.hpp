@@ -40,8 +40,6 @@ struct SolverSettings {
     recursive::Options recursion = {};
     int refine = 1;
     int every = 1;
-    // every point carries its error bound and remaining stiffness, as the leg estimates them
-    bool error_bound = false;
 };
 
 // Runs one branch side by any leg. Ends before the first point at which an element is deformed

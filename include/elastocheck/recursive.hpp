@@ -19,9 +19,6 @@ struct Options {
     // equal increments of the parameter over the branch; 0: the branch's own number
     int steps = 0;
     int record = 0;  // equal increments between recorded points, a divisor of steps; 0: every step
-    // compute the error bound and remaining stiffness (error_bound.hpp) at recorded points
-    bool error_bound = false;
-    int error_bound_every = 1;  // ... at every so many of them, and at the last
 };
 
 // Follows one branch from load factor 0 to branch.to and returns the recorded points, record + 1

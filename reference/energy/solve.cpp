@@ -10,7 +10,6 @@
 #include "models/branch.hpp"
 #include "reference/energy/constraints/reactions.hpp"
 #include "reference/energy/minimise/cost.hpp"
-#include "reference/energy/minimise/error_bound.hpp"
 #include "reference/energy/minimise/settle.hpp"
 #include "reference/energy/potential/conservative.hpp"
 #include "reference/energy/potential/recentre.hpp"
@@ -130,9 +129,7 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
             return fail(reason(path, continuation.state, a, *failure), "at " + in_units(a),
                         reached + in_units(continuation.state.a));
         Equilibrium point = equilibrium(path, continuation.state);
-        if (options.error_bound) add_error_bound(path, continuation.state, point);
         point.poses = moved_by(std::move(point.poses), centre);
-        point.bound.length += std::numeric_limits<double>::epsilon() * centre.norm();
         if (visit)
             visit(point);
         else

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "reference/equilibrium/continuation/error_bound.hpp"
 #include "reference/equilibrium/continuation/settle.hpp"
 
 namespace elastocheck::reference::equilibrium {
@@ -33,7 +32,6 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
         failed = advance(continuation, *a);
         if (failed) break;
         Equilibrium point = state_of(system, loading_at(continuation, *a), continuation.here.x);
-        if (options.error_bound) add_error_bound(continuation, point);
         if (visit)
             visit(point);
         else

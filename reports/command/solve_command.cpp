@@ -7,11 +7,9 @@
 
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
-#include "compare/comparison/extrapolation.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
 #include "elastocheck/channels.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/series/path.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
@@ -77,7 +75,7 @@ void write_rates(const Model& model, const std::vector<Channel>& requested,
 // converge, the rows reach to its last point. The CSV goes to the file of `delivery` or to standard
 // output; the document contains every point, so all are stored for it.
 int solve(const SolveRequest& request, const Delivery& delivery) {
-    compare::SolverSettings solver = checked_solver_of(request);
+    const compare::SolverSettings solver = checked_solver_of(request);
     const auto leg = solver.leg;
     const recursive::Options& how = solver.recursion;
     if (!delivery.folder.empty()) check_may_write(delivery.folder, curves_file);
@@ -108,15 +106,9 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
     int code = fine;
     const std::string who =
         leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
-    const auto promise =
-        leg == compare::Leg::recursive
-            ? compare::tolerance_of_method(how.method, recursive::diagnose(model).length)
-            : std::nullopt;
-    solver.error_bound = request.solver.error_bound || promise;
-    // A method with equal steps has no error bound: its error at the end is reported.
+    // The error at the end of a method with equal steps, which has no tolerance, is reported.
     const bool approximate = leg == compare::Leg::recursive && recursive::has_steps(how.method);
     for (const auto& branch : model.branches) {
-        compare::BranchErrorBounds bounds{promise};
         if (csv) progress(branch.name);
         const auto sides = compare::sides_of(model, branch, how.steps);
         compare::Analyses analyses;
@@ -126,7 +118,6 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         const EquilibriumPath path = compare::walk(
             sides, solver,
             [&](const Equilibrium& state) {
-                if (solver.error_bound) add(bounds, state);
                 if (states) states->add(state_line(model, branch.name, state)), has_states = true;
                 for (std::size_t w = 0; approximate && w < sides.size(); ++w)
                     if (is_end(sides[w].branch, state.load)) ends[w] = state;
@@ -144,8 +135,6 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
-        for (const auto& line : messages(bounds, branch.unit))
-            print_error("{}: {}: {}\n", who, branch.name, line);
         for (std::size_t w = 0; w < sides.size(); ++w)
             if (ends[w])
                 print_error("{}: {}: {}\n", who, branch.name,
@@ -180,9 +169,6 @@ Command solve_command() {
         {{"--method", Text{&given->solver.method, one_of(solvers())},
           "equilibrium (default) or energy; a fast method: published (or recursive), closed, "
           "balanced, tangent, chord, midpoint, adaptive or series"},
-         {"--account", Flag{&given->solver.error_bound},
-          "report the extrapolated singular point and error estimates; adaptive and series always "
-          "do"},
          {"--arc-length", Flag{&given->solver.recursion.arc_length},
           "series: continuation by arc length, through limit points"},
          {"--rates", Text{&given->rates, a_file("*.csv")},

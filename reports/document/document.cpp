@@ -138,7 +138,6 @@ json run_json(const compare::LegRun& run, const std::vector<compare::Channel>& c
             {"seconds", run.seconds},
             {"residuals_by", judged},
             {"proof", run.proved.points > 0 ? proof_json(run.proved) : json(nullptr)},
-            {"told", run.messages},
             {"curve", curve_json(run.curve, run.constraint_error, channels)}};
 }
 

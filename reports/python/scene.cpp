@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "compare/comparison/characteristics.hpp"
-#include "compare/comparison/extrapolation.hpp"
 #include "compare/definitions/definitions.hpp"
 #include "compare/outputs/curve.hpp"
 #include "models/reader/document/suggestions.hpp"
@@ -44,11 +43,6 @@ SharedScene loaded(std::string file, reports::Settings settings,
 
 }  // namespace
 
-double SceneOfFile::length() const {
-    std::call_once(diagnosed_, [&] { length_ = recursive::diagnose(loaded.model).length; });
-    return length_;
-}
-
 SharedScene read(const std::string& file, const reports::Settings& settings) {
     const reader::TextFile text = reader::read_text(file, reader::Pipes::allowed);
     if (!text.trouble.empty()) throw SceneError(fmt::format("{}: {}", file, text.trouble));
@@ -74,7 +68,7 @@ void append(std::vector<double>& poses, const Equilibrium& state) {
 
 std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& request) {
     const Model& model = scene->loaded.model;
-    compare::SolverSettings solver = reports::solver_of(request.solver);
+    const compare::SolverSettings solver = reports::solver_of(request.solver);
     const recursive::Options& how = solver.recursion;
     auto channels = scene->channels;
     if (request.characteristics)
@@ -95,10 +89,6 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
                   .every = request.solver.every,
                   .channels = channels->size() + (request.states ? 7 * model.bodies.size() : 0)});
     const bool is_recursive = solver.leg == compare::Leg::recursive;
-    const auto promise = is_recursive && !recursive::has_steps(how.method)
-                             ? compare::tolerance_of_method(how.method, scene->length())
-                             : std::nullopt;
-    solver.error_bound = request.solver.error_bound || promise;
     const bool approximate = is_recursive && recursive::has_steps(how.method);
     std::vector<BranchCurves> all;
     for (const Branch& branch : branches) {
@@ -110,12 +100,10 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
         of.channels = channels;
         of.scene = scene;
         const auto sides = compare::sides_of(model, branch, how.steps);
-        compare::BranchErrorBounds bounds{promise};
         compare::Analyses analyses;
         const EquilibriumPath path = compare::walk(
             sides, solver,
             [&](const Equilibrium& state) {
-                if (solver.error_bound) add(bounds, state);
                 for (const compare::BranchSide& side : sides)
                     if (approximate && reports::is_end(side.branch, state.load))
                         of.ends.emplace_back(side, state);
@@ -133,7 +121,6 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
             });
         of.outcome = path.outcome;
         of.detail = path.detail;
-        of.messages = messages(bounds, branch.unit);
     }
     return all;
 }
@@ -192,7 +179,7 @@ std::vector<std::string> errors_at_ends(const BranchCurves& curves) {
 }
 
 SolveRequest request_of(std::string method, int steps, int every, std::string tolerance, int order,
-                        int expansions, bool arc_length, bool account) {
+                        int expansions, bool arc_length) {
     const auto known = reports::solvers();
     if (std::ranges::find(known, method) == known.end())
         throw std::invalid_argument(fmt::format("method {}{}", reader::quote(method),
@@ -213,7 +200,6 @@ SolveRequest request_of(std::string method, int steps, int every, std::string to
     request.solver.recursion.expansions = expansions;
     request.solver.recursion.arc_length = arc_length;
     request.solver.every = every;
-    request.solver.error_bound = account;
     return request;
 }
 
@@ -293,7 +279,6 @@ void bind_scene(py::module_& module) {
         .def_property_readonly(
             "converged", [](const BranchCurves& c) { return c.outcome == Outcome::converged; })
         .def_readonly("detail", &BranchCurves::detail)
-        .def_readonly("messages", &BranchCurves::messages)
         .def("errors_at_ends", &errors_at_ends, release())
         .def("csv", &csv_of, py::arg("header") = true)
         .def("__getitem__", &column)
@@ -339,11 +324,11 @@ void bind_scene(py::module_& module) {
             "_solve",
             [](const std::shared_ptr<SceneOfFile>& s, std::string method,
                std::vector<std::string> channels, int steps, int every, std::string tolerance,
-               int order, int expansions, bool arc_length, bool account, bool states,
-               bool characteristics, std::vector<std::string> branches) {
+               int order, int expansions, bool arc_length, bool states, bool characteristics,
+               std::vector<std::string> branches) {
                 SolveRequest request =
                     request_of(std::move(method), steps, every, std::move(tolerance), order,
-                               expansions, arc_length, account);
+                               expansions, arc_length);
                 request.channels = std::move(channels);
                 request.branches = std::move(branches);
                 request.states = states;
@@ -360,7 +345,7 @@ void bind_scene(py::module_& module) {
             },
             py::arg("method"), py::arg("channels"), py::arg("steps"), py::arg("every"),
             py::arg("tolerance"), py::arg("order"), py::arg("expansions"), py::arg("arc_length"),
-            py::arg("account"), py::arg("states"), py::arg("characteristics"), py::arg("branches"));
+            py::arg("states"), py::arg("characteristics"), py::arg("branches"));
     module.def(
         "read",
         [](const std::string& file, const py::dict& settings) {

@@ -4,7 +4,6 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,13 +21,6 @@ struct SceneOfFile {
     std::shared_ptr<const reader::ParsedScene> parsed;
     reports::LoadedScene loaded;
     std::shared_ptr<const std::vector<compare::Channel>> channels;  // those without a request
-
-    // Of the model [m], as diagnosed; once, since a solve takes less.
-    double length() const;
-
-  private:
-    mutable std::once_flag diagnosed_;
-    mutable double length_ = 0;
 };
 using SharedScene = std::shared_ptr<const SceneOfFile>;
 
@@ -48,8 +40,7 @@ struct BranchCurves {
     std::vector<double> poses = {};  // [points × bodies × 7], where they are kept
     Outcome outcome = Outcome::converged;
     std::string detail = {};
-    std::vector<std::string> messages = {};  // of its error bounds
-    // Ends reached by a method with equal steps, which has no error bound.
+    // Ends reached by a method with equal steps, which has no tolerance.
     std::vector<std::pair<compare::BranchSide, Equilibrium>> ends = {};
     SharedScene scene;
 };

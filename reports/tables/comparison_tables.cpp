@@ -128,13 +128,6 @@ void legs_table(const compare::BranchComparison& branch, std::string& text) {
     }
 }
 
-// Messages from the error bounds of the points: predicted singular points, exceeded tolerances.
-void error_bounds(const compare::BranchComparison& branch, std::string& text) {
-    for (const auto& run : branch.runs)
-        for (const auto& line : run.messages)
-            text += fmt::format("  {}: {}\n", solver_of(run), line);
-}
-
 // Interval proofs of the points at the start, the middle and the ends.
 void proofs(const compare::BranchComparison& branch, std::string& text) {
     std::string line;
@@ -271,7 +264,6 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\n");
         legs_table(branch, text);
         proofs(branch, text);
-        error_bounds(branch, text);
         if (!branch.why_not_energy.empty()) text += not_asked(branch);
         fmt::format_to(out, "  the references have to agree: {}\n",
                        compare::describe(branch.bounds));

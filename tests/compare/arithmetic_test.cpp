@@ -164,7 +164,7 @@ TEST(Arithmetic, ANumberThatIsNoneDoesNotMatterOrIsAnHonestOutcome) {
             for (const auto& solver : solvers()) {
                 Answer& answer = all.emplace_back();
                 SolverSettings settings = solver.settings;
-                settings.every = 4, settings.error_bound = false;
+                settings.every = 4;
                 for (const auto& side : sides_of(model, model.branches.front(), 4)) {
                     const auto path = walk(side, settings, [&](const Equilibrium& state) {
                         answer.poses = state.poses;

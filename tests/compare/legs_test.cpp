@@ -227,25 +227,6 @@ TEST(Every, PicksTheFirstTheLastAndEveryNthOfTheSameRows) {
     }
 }
 
-// Error bounds are computed for requested points only; a hundred thousand unrequested points would
-// take minutes.
-TEST(Every, IsWhatAccountIsGivenOf) {
-    const Model model = compile(support::scene("two_spring_arch"));
-    Branch branch = model.branches[0];
-    branch.to = -100;
-    const auto method = recursive::find_method("published").value();
-    int points = 0, with_account = 0;
-    recursive::solve(model, branch,
-                     {.method = method, .steps = 30, .error_bound = true, .error_bound_every = 7},
-                     [&](const Equilibrium& point) {
-                         const bool has = std::isfinite(point.bound.length);
-                         EXPECT_EQ(has, points % 7 == 0 || points == 30) << points;
-                         ++points, with_account += has;
-                     });
-    EXPECT_EQ(points, 31);
-    EXPECT_EQ(with_account, 6);
-}
-
 TEST(Every, IsWhatTheReferencesVisit) {
     for (const auto* scene : {"chrono_mcpherson", "bushing_pair"}) {
         const Model model = compile(support::scene(scene));

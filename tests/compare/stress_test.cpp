@@ -134,27 +134,12 @@ TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
                 << told(cell);
         }
         if (cell.solver == "published") {
-            EXPECT_EQ(cell.verdict, Verdict::right);
+            EXPECT_EQ(cell.verdict, Verdict::no_claim);
             EXPECT_LT(cell.digits, 4);
-            EXPECT_GT(cell.claim, 0.5 * cell.error);
         }
         if (cell.solver == "equilibrium") {
             EXPECT_EQ(cell.verdict, Verdict::right);
             EXPECT_GT(cell.digits, 9);
-        }
-    }
-}
-
-// A bound applies to origins and orientations: a place far from its body's origin may have a larger
-// error than the origin.
-TEST(Stress, WhatIsClaimedOfABodyIsHeldAgainstItsPlacesWithTheirLevers) {
-    const Survival survival = stress(
-        std::vector{Trial{"seed 1", "x", {"as it is", parse_scene(random_scene(1), "seed 1")}}});
-    for (const auto& cell : survival.cells) {
-        EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
-        if (cell.solver == "published") {
-            EXPECT_EQ(cell.verdict, Verdict::right) << told(cell);
-            EXPECT_GT(cell.error, 1e-4);  // [m], of a probe; of the origin it is less
         }
     }
 }

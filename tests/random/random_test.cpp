@@ -133,7 +133,7 @@ TEST(RandomScene, HasEveryJointElementAndDriverSomewhere) {
 }
 
 // No leg or method is wrong: neither off by more than it claims, nor past the end of a branch on
-// which both references end. Those that return an error bound are right often enough. `hunt` tests
+// which both references end. The references and the series are right often enough. `hunt` tests
 // thousands of scenes.
 TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
     int asked = 0, judged = 0;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "elastocheck/compile.hpp"
+#include "elastocheck/energy.hpp"
+#include "elastocheck/equilibrium.hpp"
 #include "elastocheck/recursive.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "recursive/diagnosis/loops.hpp"
@@ -15,8 +17,7 @@ TEST(Extremes, ARankThatCannotBeToldIsSaid) {
     for (const double skew : {0.0, 1e-15, 1e-12, 3e-10, 1e-6}) {
         const Model model = model_of("door", {setting("points.skew.x", skew)});
         for (const Method& method : methods) {
-            const auto path =
-                solve(model, model.branches[0], {.method = method, .error_bound = true});
+            const auto path = solve(model, model.branches[0], {.method = method});
             const bool in_doubt = skew > 1e-13 && skew < 1e-9;
             EXPECT_EQ(path.outcome, in_doubt ? Outcome::singular : Outcome::converged)
                 << method.name << " " << skew << path.detail;
@@ -76,8 +77,7 @@ TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
         const Model pulled = rod(0, 500), pushed = rod(0, -500);
         EXPECT_EQ(solve(pulled, pulled.branches[0], {.method = method}).outcome, Outcome::converged)
             << method.name;
-        const auto falls =
-            solve(pushed, pushed.branches[0], {.method = method, .error_bound = true});
+        const auto falls = solve(pushed, pushed.branches[0], {.method = method});
         EXPECT_EQ(falls.outcome, Outcome::bifurcation_point) << method.name << falls.detail;
         EXPECT_LE(falls.points.size(), 1u) << method.name;  // at most the first point
     }
@@ -86,7 +86,7 @@ TEST(Extremes, ARodThatIsPushedAlongItselfDoesNotStayAndOneThatIsPulledDoes) {
 TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
     for (const Method& method : methods) {
         const Model hangs = rod(50, 100), stands = rod(-50, 10), falls = rod(50, -100);
-        const auto path = solve(hangs, hangs.branches[0], {.method = method, .error_bound = true});
+        const auto path = solve(hangs, hangs.branches[0], {.method = method});
         EXPECT_EQ(path.outcome, Outcome::converged) << method.name << path.detail;
         const auto none = solve(stands, stands.branches[0], {.method = method});
         EXPECT_EQ(none.outcome, Outcome::singular) << method.name;
@@ -99,6 +99,24 @@ TEST(Extremes, WhatStandsOnABallUnderItsWeightBeginsUnstable) {
         EXPECT_NEAR(over.points.back().load, -50, 13) << method.name;
         EXPECT_GE(over.points.back().load, -50 * (1 + 1e-5)) << method.name;
     }
+}
+
+// Two modes that become unstable at once leave the sign of the determinant unchanged: a bar on a
+// ball joint, with the same torsional rate in both directions.
+TEST(Extremes, AColumnThatMayFallAnyWayIsNotFollowedPastItsLoad) {
+    const Model model = model_of("column");
+    const Branch& branch = model.branches[0];
+    for (const Method& method : methods) {
+        const auto path = solve(model, branch, {.method = method});
+        EXPECT_EQ(path.outcome, Outcome::bifurcation_point)
+            << method.name << " " << path.detail;  // at 100 / 0.5
+        ASSERT_FALSE(path.points.empty()) << method.name;
+        EXPECT_NEAR(path.points.back().load, 192.5, 1e-9) << method.name;
+    }
+    const double loads[] = {0, branch.to};
+    EXPECT_EQ(reference::equilibrium::solve(model, branch, loads).outcome,
+              Outcome::bifurcation_point);
+    EXPECT_EQ(reference::energy::solve(model, branch, loads).outcome, Outcome::bifurcation_point);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ const Line lines[] = {
     {"solve", "$E solve $SCENES/mcpherson.yaml --steps 20 --method balanced --states states.jsonl"},
     {"solve",
      "$E solve $SCENES/two_spring_arch.yaml --method series --rates rates.csv -o curves.csv"},
-    {"solve", "$E solve $SCENES/pendulum.yaml --method energy --account --set points.tip.x=0.3125"},
+    {"solve", "$E solve $SCENES/pendulum.yaml --method energy --set points.tip.x=0.3125"},
     {"compare",
      "$E compare $SCENES/pendulum.yaml --quiet --jobs 1 -o compared --formulations --within "
      "0.02mm,0.002deg"},

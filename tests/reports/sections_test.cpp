@@ -72,8 +72,7 @@ TEST(Sections, EveryPartOfADocumentBecomesASection) {
     for (const auto& section : sections(sample_result())) ids.push_back(section.id);
     EXPECT_EQ(ids, (std::vector<std::string>{"first", "drawing", "kinematics", "rates", "forces",
                                              "methods", "references", "deviation", "price",
-                                             "convergence", "attribution", "orders", "arithmetic",
-                                             "matrices", "model"}));
+                                             "convergence", "attribution", "matrices", "model"}));
     for (const auto& section : sections(sample_result()))
         for (const auto& group : section.figures) {
             EXPECT_FALSE(group.caption.empty());
@@ -150,9 +149,8 @@ TEST(Sections, EffectsOfNumbersAreBarsArrowsAndAMap) {
 
 TEST(Sections, PartsThatWereNotComputedAreLeftOut) {
     json result = sample_result();
-    for (const char* part :
-         {"convergence", "trade", "drawing", "judgement", "findings",
-          "forces", "largest_forces", "characteristics", "rate_errors"})
+    for (const char* part : {"convergence", "trade", "drawing", "judgement", "findings", "forces",
+                             "largest_forces", "characteristics", "rate_errors"})
         result["scenes"][0].erase(part);
     for (auto& branch : result["scenes"][0]["branches"])
         for (const char* part : {"deviation", "profiles", "reference_uncertainty", "cross_check"})

@@ -423,17 +423,6 @@ TEST(SolveCommand, ParametersAreExactAtTheEndsOfABranch) {
     EXPECT_GT(ends, 30);
 }
 
-TEST(SolveCommand, SaysWhatThePointsAnnounce) {
-    const std::string arch = "solve " + scenes + "/two_spring_arch.yaml --steps 40";
-    for (const char* asked : {" --method series", " --method adaptive", " --account"}) {
-        const Said said = elastocheck_says(arch + asked);
-        EXPECT_TRUE(contains(said.err, "by extrapolation the stiffness vanishes near -2") &&
-                    contains(said.err, " N, predicted from -"))
-            << asked << said.err;
-    }
-    expect_parts(elastocheck_says(arch).err, {}, {"predicted"});
-}
-
 TEST(SolveCommand, ChannelsAreTheColumnsInTheOrderInWhichTheyAreAskedFor) {
     const std::string command = "solve " + scenes + "/chrono_mcpherson.yaml --steps 3";
     const auto all = cells_of(elastocheck_says(command).out);

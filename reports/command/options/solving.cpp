@@ -57,7 +57,6 @@ compare::SolverSettings solver_of(const SolverRequest& request) {
     solver.recursion = recursion(with_method);
     solver.leg = leg == compare::legs.end() ? compare::Leg::recursive : *leg;
     solver.every = request.every;
-    solver.error_bound = request.error_bound;
     return solver;
 }
 

@@ -14,7 +14,6 @@ namespace elastocheck::reports {
 struct SolverRequest {
     std::string method = compare::name(compare::Leg::equilibrium);
     RecursionRequest recursion;
-    bool error_bound = false;
     int every = 1;
 };
 

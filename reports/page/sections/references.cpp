@@ -109,10 +109,6 @@ std::optional<Section> references_section(const JsonCursor& scene) {
                 if (!theorem_printed && !also.empty()) section.words["says_also"].push_back(also);
                 theorem_printed = theorem_printed || !also.empty();
             }
-            if (const auto messages = leg.find("told"))
-                for (const auto& line : messages->texts())
-                    section.words["told"].push_back(fmt::format("Branch {}, reported by {}: {}",
-                                                                name, leg["leg"].text(), line));
             const std::string detail = leg["detail"].text();
             std::vector<std::string> cells{
                 name, leg["leg"].text(),

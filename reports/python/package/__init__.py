@@ -121,10 +121,9 @@ class Solution(Mapping):
 
     @property
     def messages(self):
-        """What the command prints on standard error: why branches end early, and error bounds."""
+        """What the command prints on standard error: why branches end early."""
         lines = []
         for one in self._curves.values():
-            lines += [f"{one.method}: {one.branch}: {line}" for line in one.messages]
             if not one.converged:
                 lines.append(f"{one.method}: {one.outcome}: {one.detail}")
         return lines
@@ -172,7 +171,7 @@ class Solution(Mapping):
 
 
 def _solve(self, method="equilibrium", channels=(), *, branches=(), steps=0, every=1, tolerance="",
-           order=0, expansions=0, arc_length=False, account=False, states=False):
+           order=0, expansions=0, arc_length=False, states=False):
     """Solves every branch by one leg or method, as `elastocheck solve`; or these `branches`.
 
     `channels`: names or patterns with *; the default leaves out forces of elements and K&C figures.
@@ -180,7 +179,7 @@ def _solve(self, method="equilibrium", channels=(), *, branches=(), steps=0, eve
     defaults. Throws ArgumentError.
     """
     return Solution(self._solve(method, _listed(channels), steps, every, tolerance, order,
-                                expansions, arc_length, account, states, False, _listed(branches)))
+                                expansions, arc_length, states, False, _listed(branches)))
 
 
 def _draw(self, view="axonometric"):
@@ -218,8 +217,8 @@ def kc(scene, method="equilibrium", *, branches=(), steps=0, every=1, tolerance=
     Exact rates by the tangent of the leg: wheel rate, bump steer, roll centre, compliance steer.
     Options as those of Scene.solve().
     """
-    return Solution(scene._solve(method, [], steps, every, tolerance, 0, 0, False, False, False,
-                                 True, _listed(branches)))
+    return Solution(scene._solve(method, [], steps, every, tolerance, 0, 0, False, False, True,
+                                 _listed(branches)))
 
 
 # ---- Analyses.

@@ -73,7 +73,7 @@ compare::Table cell_table(const Survival& survival) {
          {"digits", "", "-log10 of the error over the range"},
          {"apart", "mm", "distance from the result of the untransformed scene"},
          {"error", "mm", "of any place, at most"},
-         {"claim", "mm", "error bound reported by the solver; empty without one"},
+         {"claim", "mm", "accuracy that the solver claims; empty without a tolerance"},
          {"range", "mm",
           "largest displacement of a point; the size of the scene where nothing moves"},
          words("reason"),
