@@ -46,7 +46,7 @@ Analysis analyse(const Model& model) {
         largest(result.R_d.cwiseQuotient(system.weight.head(n))) <= rounding * stiffest(system.M) &&
         largest(Phi) <= rounding;
     if (result.at_rest && curves_of(model).empty() && result.pivot_ratio > 0) {
-        SteppingState<double> s(model, nothing, result);
+        SteppingState s(model, nothing, result);
         s.consistent = true;
         go_to(s, {1, 0});
         result.start = start_stability(s);

@@ -33,7 +33,7 @@ void check(const Model& model, const Equilibrium& state,
 
 // Right-hand side of one disturbance. A wrench enters the upper rows. A motion of a joint enters
 // the lower row as -∂Φ/∂c and the upper rows as the change of its reaction, -∂(Φ_qᵀ λ)/∂c.
-void disturb(SteppingState<double>& s, const Disturbance& disturbance) {
+void disturb(SteppingState& s, const Disturbance& disturbance) {
     s.upper.setZero();
     s.lower.setZero();
     std::visit(overloaded{
@@ -76,7 +76,7 @@ std::string words(Outcome outcome, const Disturbance& disturbance, const Model& 
 }
 
 // The responses [coordinates + rows of Φ × disturbances], with the matrix of `s`.
-Response responses(SteppingState<double>& s, const Branch& branch, const Analysis& analysis,
+Response responses(SteppingState& s, const Branch& branch, const Analysis& analysis,
                    ResponseOrders& orders, bool consistent,
                    std::span<const Disturbance> disturbances, Matrix<double>* X) {
     const Model& model = s.model;
@@ -128,7 +128,7 @@ Inputs<Moving> constant(const Inputs<double>& inputs) {
 }
 
 // Along the responses X [.. × at most at_once] to `disturbances`.
-MovingState moving(const SteppingState<double>& s, const Matrix<double>& X,
+MovingState moving(const SteppingState& s, const Matrix<double>& X,
                    std::span<const Disturbance> disturbances) {
     const auto along = [&](Eigen::Index row) {
         Moving::Derivatives d = Moving::Derivatives::Zero();
@@ -189,7 +189,7 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
         return {Outcome::not_finite,
                 fmt::format("branch '{}': {}", branch.name, not_finite(model)),
                 {}};
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     return responses(s, branch, analysis, of.orders, !std::holds_alternative<Linear>(method.kind),
@@ -214,7 +214,7 @@ ResponseRates response_rates(const Model& model, const Branch& branch, const Equ
         all.at = {Outcome::not_finite, not_finite(model), {}};
         return all;
     }
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     Matrix<double> X;

@@ -24,7 +24,7 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
 
 // A held direction does not respond, so its border must carry no load. μ detects a force on an idle
 // mode, and a mode that is idle in K but not in the tangent.
-Outcome check_border(SteppingState<double>& s, Judged which) {
+Outcome check_border(SteppingState& s, Judged which) {
     const Held<double>& held = s.system.held;
     if (held.size() == 0) return Outcome::converged;
     constraint_force(s.system.M, s.x.tail(s.m()), s.force);
@@ -44,7 +44,7 @@ Outcome check_border(SteppingState<double>& s, Judged which) {
 
 // Removes the idle part of dq (minimum norm): the border held the idle modes as they were before
 // the last factorisation, which has updated them (saddle_point.hpp).
-void leave_out_idle_motion(SteppingState<double>& s) {
+void leave_out_idle_motion(SteppingState& s) {
     const Held<double>& held = s.system.held;
     for (int c = 0; c < held.idle; ++c) {
         const auto z = held.values(c);
@@ -59,7 +59,7 @@ void leave_out_idle_motion(SteppingState<double>& s) {
 }
 
 // Factorises at (s.q, s.lambda), first in `order`.
-Outcome factorise_in(SteppingState<double>& s, Elimination& order) {
+Outcome factorise_in(SteppingState& s, Elimination& order) {
     SparseLU<double>& lu = s.system.lu;
     const bool known = !order.row.empty();
     if (known) take_order(lu, order);
@@ -71,7 +71,7 @@ Outcome factorise_in(SteppingState<double>& s, Elimination& order) {
 
 }  // namespace
 
-Outcome factorise_response(SteppingState<double>& s, bool consistent, ResponseOrders& orders) {
+Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& orders) {
     if (const Outcome outcome = factorise_in(s, orders.with_K); outcome != Outcome::converged)
         return outcome;
     if (!consistent) return Outcome::converged;
@@ -84,7 +84,7 @@ Outcome factorise_response(SteppingState<double>& s, bool consistent, ResponseOr
     return factorise_in(s, orders.with_tangent);
 }
 
-Outcome answer_response(SteppingState<double>& s, Judged judged) {
+Outcome answer_response(SteppingState& s, Judged judged) {
     back_substitute(s);
     if (!s.x.allFinite()) return Outcome::not_finite;
     const Outcome outcome = check_border(s, judged);

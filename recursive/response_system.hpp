@@ -20,7 +20,7 @@ struct ResponseOrders {
 // ⎣ Φ_q   0   ⎦ ⎩ λ  ⎭ = ⎩        0        ⎭      where Δq = 0 if q is an equilibrium      (24)
 //
 // Begins with `orders`, and leaves there those that were used.
-Outcome factorise_response(SteppingState<double>& s, bool consistent, ResponseOrders& orders);
+Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& orders);
 
 // Which held directions of the border must carry no load.
 enum class Judged { idle_motions, all };
@@ -28,6 +28,6 @@ enum class Judged { idle_motions, all };
 // Solves for the right-hand side in s.upper, s.lower: s.x = (dq, dλ), without idle motion (minimum
 // norm). loaded_idle_mode, inconsistent_constraints where a held direction would carry load,
 // not_finite.
-Outcome answer_response(SteppingState<double>& s, Judged judged);
+Outcome answer_response(SteppingState& s, Judged judged);
 
 }  // namespace elastocheck::recursive

@@ -37,7 +37,7 @@ std::vector<StateRate> sensitivity(const Model& model, const Branch& branch,
     check(model, branch);
     if (state.poses.size() != model.bodies.size())
         throw std::invalid_argument("the state belongs to another model");
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     ResponseOrders orders;

@@ -91,13 +91,6 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
     return detail;
 }
 
-EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit, Stop& stop) {
-    if (!has_steps(options.method))
-        return sweep_adaptive(model, branch, options, analysis, visit, stop);
-    return sweep<double>(model, branch, options, analysis, visit, stop);
-}
-
 EquilibriumPath found(const Model& model, const Branch& branch, const Options& options,
                       const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
@@ -119,8 +112,8 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
         if (!is_past(point.load)) visit(point);
     };
     Stop stop;
-    EquilibriumPath path =
-        sweep(model, branch, options, analysis, visit && event ? until : visit, stop);
+    EquilibriumPath path = (has_steps(options.method) ? sweep : sweep_adaptive)(
+        model, branch, options, analysis, visit && event ? until : visit, stop);
     // If a method with the consistent tangent stopped by itself, find_event() determines the cause.
     const bool unsure = path.outcome == Outcome::singular || path.outcome == Outcome::diverged;
     if (has_steps(options.method) && !linear && !event && unsure && !std::isnan(stop.at))

@@ -32,21 +32,21 @@ double value(const Vector<double>& c, double tau) {
     return sum;
 }
 
-void go(SteppingState<double>& s, Drive drive, double to) {
-    go_to(s, drive == Drive::start ? Parameters<double>{to, 0} : Parameters<double>{1, to});
+void go(SteppingState& s, Drive drive, double to) {
+    go_to(s, drive == Drive::start ? Parameters{to, 0} : Parameters{1, to});
     s.a = s.parameters.a;
 }
 
 // Sets the state to the polynomial about `from` at τ.
 void move_to(Slot& slot, Drive drive, double tau) {
-    SteppingState<double>& s = *slot.s;
+    SteppingState& s = *slot.s;
     series::horner(slot.c.x, tau, slot.x);
     series::displace(slot.from, slot.x, s.q);
     s.lambda = slot.x.tail(s.m());
     go(s, drive, value(slot.c.load, tau));
 }
 
-bool loads_idle(SteppingState<double>& s, double missed) {
+bool loads_idle(SteppingState& s, double missed) {
     if (s.system.held.idle == 0) return false;
     external_force<double>(s.model, s.branch, s.inputs, s.q, s.applied);
     s.applied -= (1 - s.parameters.t) * s.R_d;
@@ -63,7 +63,7 @@ void read_deformations(const series::Equations<Lanes>& e, Slot& slot, int at) {
 }
 
 // Whether an idle mode may be unstable under load: the first look of negative_idle_stiffness().
-bool may_push_idle(SteppingState<double>& s) {
+bool may_push_idle(SteppingState& s) {
     constexpr double noticed = 1e-6;
     const double stiffness = least_of_idle(s);
     if (!(stiffness < 0)) return false;
@@ -151,8 +151,8 @@ void Pack::follow(std::span<const Model* const> variants) {
 void Pack::prepare(int at, const Branch& branch) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
     slot.branch = branch;
-    if (!slot.s) slot.s = std::make_unique<SteppingState<double>>(slot.model, slot.branch, design);
-    SteppingState<double>& s = *slot.s;
+    if (!slot.s) slot.s = std::make_unique<SteppingState>(slot.model, slot.branch, design);
+    SteppingState& s = *slot.s;
     s.consistent = true;
     s.counts = {};
     s.q = design_state<double>(slot.model);
@@ -197,7 +197,7 @@ void Pack::follow_group(std::size_t group) {
     if (settles) {
         walk(group, Drive::start, true);
         each(inside(), [&](Slot& slot, int) {
-            SteppingState<double>& s = *slot.s;
+            SteppingState& s = *slot.s;
             if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
             if (settled(s, Outcome::converged, 0.0) != Outcome::converged) slot.inside = false;
         });
@@ -207,14 +207,14 @@ void Pack::follow_group(std::size_t group) {
 
 void Pack::assemble(int at) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
-    SteppingState<double>& s = *slot.s;
+    SteppingState& s = *slot.s;
     assemble_consistent<double>(s.model, s.branch, s.inputs, s.q, s.lambda, s.system.M, s.Phi);
     load_matrix(at);
 }
 // Scales and borders the matrix of a lane.
 void Pack::load_matrix(int at) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
-    SteppingState<double>& s = *slot.s;
+    SteppingState& s = *slot.s;
     for (const int k : outside)
         if (s.system.M.values[static_cast<std::size_t>(k)] != 0) slot.inside = false;
     set_border(s.system);
@@ -243,7 +243,7 @@ void Pack::factorise(const Mask& mask, bool at_design) {
         });
     }
     each(mask, [&](Slot& slot, int at) {
-        SteppingState<double>& s = *slot.s;
+        SteppingState& s = *slot.s;
         ++s.counts.factorisations;
         orthonormalise(s.system);
         const double ratio = lane(lu.least_pivot, at) / lane(lu.largest_pivot, at);
@@ -257,7 +257,7 @@ void Pack::factorise(const Mask& mask, bool at_design) {
 }
 
 void Pack::load_rhs(int at) {
-    const SteppingState<double>& s = *slots[static_cast<std::size_t>(at)].s;
+    const SteppingState& s = *slots[static_cast<std::size_t>(at)].s;
     const int n = s.n(), m = s.m();
     const auto put = [&](int k, double of) {
         set_lane(rhs[static_cast<std::size_t>(k)], at, of * s.system.scale[k]);
@@ -270,7 +270,7 @@ void Pack::load_rhs(int at) {
 void Pack::back_substitute(const Mask& mask) {
     solve(lu, rhs.data(), solution.data());
     each(mask, [&](Slot& slot, int at) {
-        SteppingState<double>& s = *slot.s;
+        SteppingState& s = *slot.s;
         for (int k = 0; k < s.n() + s.m(); ++k)
             s.x[k] = lane(solution[static_cast<std::size_t>(k)], at) * s.system.scale[k];
         ++s.counts.iterations;
@@ -304,7 +304,7 @@ void Pack::start_at_design(series::Equations<Lanes>& e, Drive drive,
         });
     }
     each(inside(), [&](Slot& slot, int at) {
-        SteppingState<double>& s = *slot.s;
+        SteppingState& s = *slot.s;
         for (const auto& end : to) {
             go(s, drive, end[static_cast<std::size_t>(at)]);
             slot.inside =
@@ -328,7 +328,7 @@ void Pack::expand(series::Equations<Lanes>& e, series::Coefficients<Lanes>& c, D
     const SaddlePoint<double>& of = design.system;
     const int n = of.n, m = of.m;
     each(inside(), [&](Slot& slot, int at) {
-        SteppingState<double>& s = *slot.s;
+        SteppingState& s = *slot.s;
         series::begin(e, s.q, s.lambda, series::parameter(s, drive), at);
         drive_at(s, drive, 1.0, s.q, s.lambda);
         load_rhs(at);
@@ -406,7 +406,7 @@ static void stop_at_knots(Slot& slot, const series::Near& near) {
 // Range of validity of a lane's polynomial. The lane leaves near a limit point.
 void Pack::find_range(const series::Coefficients<Lanes>& c, int at, Drive drive, double to) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
-    SteppingState<double>& s = *slot.s;
+    SteppingState& s = *slot.s;
     for (Eigen::Index k = 0; k < c.x.size(); ++k) slot.c.x.data()[k] = lane(c.x.data()[k], at);
     for (Eigen::Index k = 0; k < c.load.size(); ++k) slot.c.load[k] = lane(c.load[k], at);
     slot.from = s.q;
@@ -447,7 +447,7 @@ void Pack::correct_ends(Drive drive, const std::array<double, Lanes::count>& to)
             Slot& slot = slots[at];
             correcting[at] = correcting[at] && slot.inside;
             if (!correcting[at]) continue;
-            SteppingState<double>& s = *slot.s;
+            SteppingState& s = *slot.s;
             const double size = std::sqrt(size_of_solution(s));
             if (!s.x.allFinite() || loads_idle(s, size)) {
                 slot.inside = correcting[at] = false;
@@ -469,7 +469,7 @@ void Pack::correct_ends(Drive drive, const std::array<double, Lanes::count>& to)
         }
     }
     each(going(), [&](Slot& slot, int) {
-        SteppingState<double>& s = *slot.s;
+        SteppingState& s = *slot.s;
         if (!(slot.error <= 10 * options.series.tolerance)) slot.inside = false;
         if (has_redundancy(s)) {
             residual_at(s, s.q, s.lambda);
@@ -519,7 +519,7 @@ std::array<LeastStiffness, Lanes::count> Pack::least_stiffness(const Mask& mask,
     if (begins) {
         U.resize(n, std::min(vectors, free));
         for (Eigen::Index c = 0; c < U.cols(); ++c)
-            for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered<double>(k + c * n) / W[k];
+            for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / W[k];
         orthonormalise_columns();
     }
     const SaddlePoint<double>& of = design.system;
@@ -559,7 +559,7 @@ void Pack::judge_start(Matrix<Lanes>& softest) {
     });
     definite.setZero(n, n);
     each(inside(), [&](Slot& slot, int at) {
-        const SteppingState<double>& s = *slot.s;
+        const SteppingState& s = *slot.s;
         const SaddleMatrix<double>& M = s.system.M;
         const Vector<double>& W = s.system.weight;
         const auto add = [&](Eigen::Index i, Eigen::Index j, double by) {
@@ -628,7 +628,7 @@ void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
 // The points of the branch in the accepted range.
 void Pack::sample(int at, std::size_t branch) {
     Slot& slot = slots[static_cast<std::size_t>(at)];
-    SteppingState<double>& s = *slot.s;
+    SteppingState& s = *slot.s;
     EquilibriumPath& path = slot.paths[branch];
     const auto points = static_cast<std::size_t>(options.points);
     const double to = slot.model.branches[branch].to, end = s.a;
@@ -658,8 +658,8 @@ void Pack::sample(int at, std::size_t branch) {
         to_point.load = load_at(slot.next + k);
         if (options.wrenches) {
             go(s, Drive::rate, to_point.load);
-            record<double>(s.model, s.inputs, point, point, Vector<double>(at_tau.tail(s.m())),
-                           to_point.load, to_point);
+            record(s.model, s.inputs, point, point, Vector<double>(at_tau.tail(s.m())),
+                   to_point.load, to_point);
         } else {
             for (BodyId b = 0; b < point.bodies(); ++b)
                 to_point.poses[static_cast<std::size_t>(b)] = {point[b].r, point[b].p};

@@ -26,7 +26,7 @@ namespace elastocheck::recursive::batch {
 struct Slot {
     Model model;    // a copy: the state refers to it
     Branch branch;  // with the drivers of the present group
-    std::unique_ptr<SteppingState<double>> s;
+    std::unique_ptr<SteppingState> s;
     bool inside = false;   // holds a variant that has not left
     bool at_rest = false;  // as Analysis::at_rest
     std::vector<series::Followed> curves, curves_at_start;

@@ -351,7 +351,7 @@ Vector<Real> elastic_force(const Model& model, const Inputs<Real>& inputs, const
     return f;
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template Spatial<double> deformation<double>(const Bushing&, const State<double>&);
 extern template Matrix3<double> axes<double>(const Bushing&, const State<double>&);
 extern template ElementStiffness<double> element_stiffness<double>(const ElasticKind&,

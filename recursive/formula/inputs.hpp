@@ -153,7 +153,7 @@ Inputs<Real> inputs_at(const Model& model, const Branch& branch, Real a) {
     return inputs;
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template void set_inputs<double>(const Model&, const Branch&, const Inputs<double>&, double,
                                         double, Inputs<double>&);
 

@@ -57,7 +57,7 @@ void external_force(const Model& model, const Branch& branch, const Inputs<Real>
     });
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template void external_force<double>(const Model&, const Branch&, const Inputs<double>&,
                                             const State<double>&, Vector<double>&);
 

@@ -35,7 +35,7 @@ Real joint_wrenches(const Model& model, const Inputs<Real>& inputs, const State<
     return sum;
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template double joint_wrenches<double>(const Model&, const Inputs<double>&,
                                               const State<double>&, const Vector<double>&,
                                               std::vector<Wrench>&);

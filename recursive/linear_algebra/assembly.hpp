@@ -51,7 +51,7 @@ void constraint_force(const Model& model, const Inputs<Real>& inputs, const Stat
     });
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template void add_stiffness<double>(const Model&, const Inputs<double>&,
                                            const State<double>&, SaddleMatrix<double>&);
 extern template void add_elastic_tangent<double>(const Model&, const Inputs<double>&,

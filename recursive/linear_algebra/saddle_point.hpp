@@ -196,7 +196,7 @@ Real factorise(SaddlePoint<Real>& system) {
     return pivot_ratio;
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template double factorise<double>(SaddlePoint<double>&);
 extern template void back_substitute<double>(SaddlePoint<double>&, const Vector<double>&,
                                              const Vector<double>&, Vector<double>&);

@@ -464,7 +464,7 @@ void solve_unit(SparseLU<Real>& lu, int j, const int* wanted, int count, Real* x
     for (const int own : lu.reached) known[own] = unknown[own] = 0;
 }
 
-// Instantiated in stepping/sweep_double.cpp.
+// Instantiated in linear_algebra/in_double.cpp.
 extern template void analyse<double>(SparseLU<double>&, const Pattern&, const double*);
 extern template double factorise<double>(SparseLU<double>&, const double*);
 extern template void solve<double>(SparseLU<double>&, const double*, double*);

@@ -5,11 +5,11 @@
 
 namespace elastocheck::recursive::series {
 
-double parameter(const SteppingState<double>& s, Drive drive) {
+double parameter(const SteppingState& s, Drive drive) {
     return drive == Drive::start ? s.parameters.t : s.parameters.a;
 }
 
-void expand(SteppingState<double>& s, Equations<double>& e, Coefficients<double>& c, double first,
+void expand(SteppingState& s, Equations<double>& e, Coefficients<double>& c, double first,
             bool arc_length, const Vector<double>& ahead) {
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
@@ -56,7 +56,7 @@ void expand(SteppingState<double>& s, Equations<double>& e, Coefficients<double>
         [] {});
 }
 
-double reach(const SteppingState<double>& s, const Coefficients<double>& c, double tolerance,
+double reach(const SteppingState& s, const Coefficients<double>& c, double tolerance,
              double per_load, double radius) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     // Where constraints alone determine the motion, λ has a longer series than the motion. A force
@@ -83,7 +83,7 @@ double reach(const SteppingState<double>& s, const Coefficients<double>& c, doub
     return least;
 }
 
-Singularity nearest_singularity(const SteppingState<double>& s, const Coefficients<double>& c) {
+Singularity nearest_singularity(const SteppingState& s, const Coefficients<double>& c) {
     const int n = s.n(), p = static_cast<int>(c.x.cols()) - 1;
     const int from = std::max(4, p - 5);
     Singularity none{std::numeric_limits<double>::infinity(), 0, 1};

@@ -58,7 +58,7 @@ std::optional<double> first_zero(Function f, double reach) {
 
 // One continuation: t from 0 to 1 while the start settles, or a from 0 to the branch's end.
 struct Continuation {
-    SteppingState<double>& s;
+    SteppingState& s;
     const recursive::Series& options;
     Equations<double> e;
     Coefficients<double> c;
@@ -81,7 +81,7 @@ struct Continuation {
     Vector<double> x;  // value of the polynomial
     Path path;
 
-    Continuation(SteppingState<double>& s_, std::vector<Followed>& curves_,
+    Continuation(SteppingState& s_, std::vector<Followed>& curves_,
                  const recursive::Series& options_, Drive drive)
         : s(s_),
           options(options_),
@@ -104,19 +104,19 @@ struct Continuation {
     bool by_arc() const { return options.arc_length && e.drive == Drive::rate; }
     double at() const { return parameter(s, e.drive); }
     void go_to(double value) {
-        recursive::go_to(s, e.drive == Drive::start ? recursive::Parameters<double>{value, 0}
-                                                    : recursive::Parameters<double>{1, value});
+        recursive::go_to(s, e.drive == Drive::start ? recursive::Parameters{value, 0}
+                                                    : recursive::Parameters{1, value});
         s.a = s.parameters.a;
     }
 };
 
-double largest_force(const SteppingState<double>& s) { return s.upper.cwiseAbs().maxCoeff(); }
-double largest_violation(const SteppingState<double>& s) {
+double largest_force(const SteppingState& s) { return s.upper.cwiseAbs().maxCoeff(); }
+double largest_violation(const SteppingState& s) {
     return s.m() == 0 ? 0 : s.lower.cwiseAbs().maxCoeff();
 }
 
 // Whether redundant joints have become inconsistent by their drivers.
-bool became_inconsistent(SteppingState<double>& s) {
+bool became_inconsistent(SteppingState& s) {
     if (!has_redundancy(s)) return false;
     residual_at(s, s.q, s.lambda);
     return is_inconsistent(s, s.q);
@@ -134,7 +134,7 @@ Outcome check_idle_load_here(Continuation& w, double missed) {
 // correction is the error of the expansion. With arc length the parameter is corrected too, so that
 // nothing moves along the path.
 Outcome correct_at_end(Continuation& w, Certificate* judged, double& error) {
-    SteppingState<double>& s = w.s;
+    SteppingState& s = w.s;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     const double rounding = 10 * std::numeric_limits<double>::epsilon() * s.length;
@@ -547,7 +547,7 @@ Outcome expand_as(Continuation& w, const Begun& begun, Singularity& singularity,
 // of another side of the branch, or to be filled for one.
 Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                       std::optional<Begun>* begun = nullptr) {
-    SteppingState<double>& s = w.s;
+    SteppingState& s = w.s;
     std::size_t gone_over = 0;
     const std::vector<Piece> pieces = pieces_of(w.curves);
     while (w.path.expansions.size() < most_expansions(w, gone_over)) {
@@ -687,9 +687,8 @@ bool same_drivers(const Branch& a, const Branch& b) {
 
 namespace {
 
-SteppingState<double> series_state(const Model& model, const Branch& branch,
-                                   const Analysis& analysis) {
-    SteppingState<double> s(model, branch, analysis);
+SteppingState series_state(const Model& model, const Branch& branch, const Analysis& analysis) {
+    SteppingState s(model, branch, analysis);
     s.consistent = true;
     s.system.lu.largest_multiplier = 1e4;  // Newton corrections at every end restore accuracy
     return s;
@@ -698,14 +697,14 @@ SteppingState<double> series_state(const Model& model, const Branch& branch,
 // From the design position to the start, with the constraint error of the analysis in s.Phi_d: the
 // closing tolerance is no exact equilibrium.
 Outcome settle(Continuation& settling, const Analysis& analysis) {
-    SteppingState<double>& s = settling.s;
+    SteppingState& s = settling.s;
     if (const Outcome o = begin_at_design(settling, analysis); o != Outcome::converged) return o;
     const Outcome walked = follow_to_end(settling);
     if (s.Phi_d.norm() <= guard::closed) s.Phi_d.setZero();
     return settled(s, walked, 0.0);
 }
 
-void stand_on(SteppingState<double>& s, std::vector<Followed>& curves, const Start& start) {
+void stand_on(SteppingState& s, std::vector<Followed>& curves, const Start& start) {
     s.q = start.q, s.lambda = start.lambda, s.Phi_d = start.Phi_d;
     s.system = start.system;
     for (std::size_t k = 0; k < curves.size(); ++k) curves[k].piece = start.pieces[k];
@@ -714,8 +713,8 @@ void stand_on(SteppingState<double>& s, std::vector<Followed>& curves, const Sta
 // Newton's method from the start of another branch, for the equilibrium next to it: within a
 // hundredth of L, on the same pieces of the curves, and met to the tolerance. Idle motions would
 // depend on the way there.
-bool settle_near(SteppingState<double>& s, std::vector<Followed>& curves,
-                 const recursive::Series& options, const Start& other) {
+bool settle_near(SteppingState& s, std::vector<Followed>& curves, const recursive::Series& options,
+                 const Start& other) {
     constexpr double near = 1e-2;
     if (s.system.held.idle > 0) return false;
     stand_on(s, curves, other);
@@ -741,7 +740,7 @@ bool is_at_rest(const Branch& branch) {
 
 // The path of a branch on which nothing moves, from its start.
 Outcome stay(Continuation& w, const StartStability* known) {
-    SteppingState<double>& s = w.s;
+    SteppingState& s = w.s;
     const Outcome outcome =
         check_start_stability(s, known != nullptr ? *known : start_stability(s));
     if (outcome != Outcome::converged) return outcome;
@@ -781,7 +780,7 @@ Path follow(const Model& model, const Branch& branch, const recursive::Series& o
         none.outcome = Outcome::not_finite, none.detail = not_finite(model);
         return none;
     }
-    SteppingState<double> s = series_state(model, branch, analysis);
+    SteppingState s = series_state(model, branch, analysis);
     std::vector<Followed> curves = curves_of(model);
     const auto finish = [&](Continuation& w, Outcome outcome) {
         w.path.outcome = outcome;
@@ -841,18 +840,18 @@ void keep_start(const Model& model, const Branch& branch, const recursive::Serie
     const auto last = std::move(analysis.settled);
     const bool as_drawn = analysis.at_rest && starts_as_drawn(branch);
     if (as_drawn || std::isnan(analysis.diagnosis.constraint_error)) return;
-    const auto keep = [&](SteppingState<double>& s, const std::vector<Followed>& curves) {
+    const auto keep = [&](SteppingState& s, const std::vector<Followed>& curves) {
         go_to(s, {1, 0});
         analysis.settled =
             std::make_shared<const Start>(start_values(branch), s.q, s.lambda, s.Phi_d, s.system,
                                           pieces_of(curves), start_stability(s));
     };
     if (last) {
-        SteppingState<double> s = series_state(model, branch, analysis);
+        SteppingState s = series_state(model, branch, analysis);
         std::vector<Followed> curves = curves_of(model);
         if (settle_near(s, curves, options, *last)) return keep(s, curves);
     }
-    SteppingState<double> s = series_state(model, branch, analysis);
+    SteppingState s = series_state(model, branch, analysis);
     std::vector<Followed> curves = curves_of(model);
     s.Phi_d = analysis.Phi_d;
     Continuation settling(s, curves, options, Drive::start);
@@ -917,8 +916,8 @@ Equilibrium evaluate(const Model& model, const Branch& branch, const Path& path,
     displace(from, x, q);
     Equilibrium point{0, expansion.start, std::vector<Wrench>(model.joints.size()), 0};
     const double a = polynomial(expansion.load, place.tau);
-    record<double>(model, inputs_at<double>(model, branch, a), q, q,
-                   Vector<double>(x.tail(constraint_rows(model))), a, point);
+    record(model, inputs_at<double>(model, branch, a), q, q,
+           Vector<double>(x.tail(constraint_rows(model))), a, point);
     return point;
 }
 

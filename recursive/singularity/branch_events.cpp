@@ -25,7 +25,7 @@ bool ends(Outcome outcome) {
 }
 
 // Settles to the equilibrium at a = 0 and leaves its factors in the system.
-Outcome settles(SteppingState<double>& s, const Branch& branch, const Analysis& analysis) {
+Outcome settles(SteppingState& s, const Branch& branch, const Analysis& analysis) {
     const bool as_drawn = analysis.at_rest && starts_as_drawn(branch) && s.curves.empty();
     if (as_drawn) go_to(s, {1, 0});
     const Outcome outcome = as_drawn ? check_factors(s, s.q, analysis.pivot_ratio) : settle(s);
@@ -39,7 +39,7 @@ struct Stability {
     Matrix<double> softest = {};
 
     // With the factors of `next` in the system.
-    bool is_lost(SteppingState<double>& s, const Trial<double>& trial) {
+    bool is_lost(SteppingState& s, const Trial& trial) {
         if (trial.verdict == Verdict::past_singular_point) return true;
         if (trial.verdict != Verdict::accepted) return false;
         const LeastStiffness least = least_stiffness(s, softest);
@@ -49,21 +49,20 @@ struct Stability {
 
 // Parameter at which stability is lost between a stable node and p = far, by bisection with
 // accepted steps; none if `far` is reached and stable, or if the steps do not decide.
-std::optional<double> lost_between(SteppingState<double>& s,
-                                   const ContinuationSettings<double>& settings, Node<double> node,
-                                   double far) {
+std::optional<double> lost_between(SteppingState& s, const ContinuationSettings& settings,
+                                   Node node, double far) {
     constexpr double resolution = 1e-6;  // of the way from the node
     constexpr int most = 100;  // steps tried: bisection takes 20, the rest is for short ones
     const Vector<double> none = Vector<double>::Zero(s.n()),
                          lambda_none = Vector<double>::Zero(s.m());
     const double finest = resolution * std::abs(far - node.p);
-    Node<double> next = node;
+    Node next = node;
     Stability stability;
     bool lost = false;
     double h = far - node.p;
     for (int tried = 0; tried < most && std::abs(h) > finest / 2; ++tried) {
         next.p = node.p + h;
-        const Trial<double> trial = try_step(s, settings, node, none, lambda_none, next);
+        const Trial trial = try_step(s, settings, node, none, lambda_none, next);
         if (stability.is_lost(s, trial)) {
             if (std::abs(h) <= finest) return next.p;
             far = next.p;
@@ -84,10 +83,9 @@ std::optional<double> lost_between(SteppingState<double>& s,
 // Parameter between two stable nodes at which the determinant most likely has the other sign, or
 // at which two modes may have become unstable; none if the determinant stays away from zero. It is
 // evaluated at the midpoint, then at the minimum of the parabola through the three lowest values.
-std::optional<double> suspect_between(SteppingState<double>& s,
-                                      const ContinuationSettings<double>& settings,
-                                      const Node<double>& from, const Node<double>& to,
-                                      double log_from, double log_to) {
+std::optional<double> suspect_between(SteppingState& s, const ContinuationSettings& settings,
+                                      const Node& from, const Node& to, double log_from,
+                                      double log_to) {
     // A predicted minimum below this fraction of the lowest value is evaluated.
     constexpr double dips = 0.25;
     // Below this fraction of the larger end value two modes may have passed zero.
@@ -141,14 +139,14 @@ struct Traversal {
     std::optional<double> lost = {};  // parameter at which stability is lost
 };
 
-Traversal follow_by_long_steps(SteppingState<double>& s, double to) {
-    const ContinuationSettings<double> settings{Drive::rate, tolerance * s.length, tolerance};
-    Node<double> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+Traversal follow_by_long_steps(SteppingState& s, double to) {
+    const ContinuationSettings settings{Drive::rate, tolerance * s.length, tolerance};
+    Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     differentiate(s, settings, node);
     double log_here = log_determinant(s.system);
     // The step before: its first node, the slope of the log-determinant over it, and whether its
     // interior was examined.
-    Node<double> before = node;
+    Node before = node;
     double log_before = log_here, rise_before = 0;
     bool looked_before = true;
     Vector<double> curvature = Vector<double>::Zero(s.n()),
@@ -160,7 +158,7 @@ Traversal follow_by_long_steps(SteppingState<double>& s, double to) {
     for (double gone = 0; gone < 1;) {
         const double ahead = gone + h < 1 - h / 8 ? gone + h : 1;
         next.p = to * ahead;
-        const Trial<double> trial = try_step(s, settings, node, curvature, lambda_curvature, next);
+        const Trial trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         const bool accepted = trial.verdict == Verdict::accepted;
         if (accepted && is_inconsistent_at(s, next, q, lambda)) return {};
         if (accepted && negative_idle_stiffness(s, next.q, next.lambda) < 0) return {};
@@ -175,8 +173,7 @@ Traversal follow_by_long_steps(SteppingState<double>& s, double to) {
             const bool turns = !first && rise_before < 0 && rise > 0;
             for (const bool this_step : {true, false}) {
                 if (this_step ? !(first || last || turns) : !(turns && !looked_before)) continue;
-                const Node<double>&from = this_step ? node : before,
-                      &to_node = this_step ? next : node;
+                const Node &from = this_step ? node : before, &to_node = this_step ? next : node;
                 const auto suspect =
                     suspect_between(s, settings, from, to_node, this_step ? log_here : log_before,
                                     this_step ? log_next : log_here);
@@ -214,7 +211,7 @@ std::optional<Event> find_event(const Model& model, const Branch& branch,
 
 std::optional<Event> watch(const Model& model, const Branch& branch, const Analysis& analysis) {
     if (branch.to == 0 || model.bodies.empty()) return std::nullopt;
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     s.consistent = true;
     // Newton corrections at every node restore accuracy, and a pivot order costs ten factorisations.
     s.system.lu.largest_multiplier = 1e4;

@@ -8,8 +8,7 @@ namespace elastocheck::recursive {
 namespace {
 
 // K_G in the place of K, all other entries zero.
-void assemble_delayed(const SteppingState<double>& s, const Follow& follow,
-                      SaddleMatrix<double>& G) {
+void assemble_delayed(const SteppingState& s, const Follow& follow, SaddleMatrix<double>& G) {
     std::fill(G.values.begin(), G.values.end(), 0.);
     if (follow.lever || follow.axis) {
         SaddleMatrix<double> levers = G;
@@ -45,14 +44,13 @@ Vector<double> times(const SaddleMatrix<double>& G, const Vector<double>& u) {
 }
 
 // Largest eigenvalue of T K_G by subspace iteration on three vectors.
-double largest(SteppingState<double>& s, const SaddleMatrix<double>& G) {
+double largest(SteppingState& s, const SaddleMatrix<double>& G) {
     constexpr int vectors = 3, turns = 12;
     const int n = s.n();
     const auto W2 = s.system.weight.head(n).array().square();
     Matrix<double> U(n, std::min(vectors, s.free));
     for (Eigen::Index c = 0; c < U.cols(); ++c)
-        for (Eigen::Index k = 0; k < n; ++k)
-            U(k, c) = scattered<double>(k + c * n) / s.system.weight[k];
+        for (Eigen::Index k = 0; k < n; ++k) U(k, c) = scattered(k + c * n) / s.system.weight[k];
     Eigen::MatrixXd H;
     s.lower.setZero();
     for (int turn = 0; turn < turns; ++turn) {
@@ -76,7 +74,7 @@ double largest(SteppingState<double>& s, const SaddleMatrix<double>& G) {
 double delayed_stiffness(const Model& model, const Branch& branch, const Method& method,
                          const Analysis& analysis, const Equilibrium& state) {
     const auto* linear = std::get_if<Linear>(&method.kind);
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     if (linear == nullptr || s.free <= 0) return 0;
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});

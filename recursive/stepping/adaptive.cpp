@@ -16,7 +16,7 @@ namespace {
 // forces at q and of stiffness times position, since the reactions may be zero. The correction of
 // the motion does not detect this error: in a driven mechanism the drivers prescribe the whole
 // motion, and all forces are in λ.
-double share_of_reactions(SteppingState<double>& s, const ContinuationSettings<double>& settings,
+double share_of_reactions(SteppingState& s, const ContinuationSettings& settings,
                           const State<double>& q, const Vector<double>& one,
                           const Vector<double>& other) {
     const auto force = [&](const auto& lambda) {
@@ -35,9 +35,9 @@ double share_of_reactions(SteppingState<double>& s, const ContinuationSettings<d
 
 // Records the points at equal increments of the parameter up to `to`. Pre: the state has just
 // settled.
-Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recording& recording) {
-    const ContinuationSettings<double> settings{Drive::rate, method.length_tolerance,
-                                                method.angle_tolerance};
+Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& recording) {
+    const ContinuationSettings settings{Drive::rate, method.length_tolerance,
+                                        method.angle_tolerance};
     const std::size_t last = recording.points - 1, &reached = recording.reached;
     const auto parameter = [&](std::size_t k) {
         return to * static_cast<double>(k) / static_cast<double>(last);
@@ -47,7 +47,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         recording.keep(s.model, s.inputs, q, q, lambda, a);
     };
 
-    Node<double> node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
+    Node node{s.q, s.lambda, {}, {}, 0, 0}, next = node;
     Vector<double> lambda = s.lambda, curvature = Vector<double>::Zero(s.n()),
                    lambda_curvature = Vector<double>::Zero(s.m());
     State<double> q = s.q;
@@ -98,7 +98,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
         if (steps == most_steps) return Outcome::iteration_limit;
         next.p = std::abs(to - node.p) < std::abs(h) * 1.1 ? to : node.p + h;
         KnotCrossing met;
-        Trial<double> trial =
+        Trial trial =
             step_to_knot(s, settings, node, curvature, lambda_curvature, next, q, lambda, met);
         const double step = next.p - node.p;
         if (step == 0) {  // the node lies on a knot
@@ -171,7 +171,7 @@ Outcome adapt(SteppingState<double>& s, const Adaptive& method, double to, Recor
 EquilibriumPath sweep_adaptive(const Model& model, const Branch& branch, const Options& options,
                                const Analysis& analysis, const Visit& visit, Stop& stop) {
     const int steps = options.steps > 0 ? options.steps : branch.steps;
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     EquilibriumPath path;
     Recording recording(model, (options.record > 0 ? options.record : steps) + 1, path, visit);
     path.outcome = settle(s);

@@ -2,8 +2,7 @@
 
 namespace elastocheck::recursive {
 
-void between(const Node<double>& from, const Node<double>& to, double t, State<double>& q,
-             Vector<double>& lambda) {
+void between(const Node& from, const Node& to, double t, State<double>& q, Vector<double>& lambda) {
     const double h = to.p - from.p;
     const double h01 = t * t * (3 - 2 * t), h10 = t * (1 - t) * (1 - t) * h,
                  h11 = t * t * (t - 1) * h;
@@ -24,7 +23,7 @@ void between(const Node<double>& from, const Node<double>& to, double t, State<d
 namespace {
 
 // Distance within which a deflection counts as lying on the knot, on either side [m] or [rad].
-double slack(const ContinuationSettings<double>& settings, const CurvePlace& at) {
+double slack(const ContinuationSettings& settings, const CurvePlace& at) {
     return 1e-6 * (at.angle ? settings.angle_tolerance : settings.length_tolerance);
 }
 
@@ -38,15 +37,14 @@ double cubic(const std::array<double, 4>& x, double t) {
 // First knot reached in the step of size h from `from`; `at(t, q)` fills q at the fraction t of the
 // step.
 template <class At>
-KnotCrossing first_meeting(SteppingState<double>& s, const ContinuationSettings<double>& settings,
-                           double from, double h, State<double>& q, At&& at) {
+KnotCrossing first_meeting(SteppingState& s, const ContinuationSettings& settings, double from,
+                           double h, State<double>& q, At&& at) {
     for (int k = 0; k < 4; ++k) {
         const double t = static_cast<double>(k) / 3;
         at(t, q);
         go_to(s, settings.at(from + t * h));
         for (std::size_t c = 0; c < s.curves.size(); ++c)
-            s.along[c][static_cast<std::size_t>(k)] =
-                deflection<double>(s.model, s.inputs, q, s.curves[c]);
+            s.along[c][static_cast<std::size_t>(k)] = deflection(s.model, s.inputs, q, s.curves[c]);
     }
     constexpr int samples = 24;
     KnotCrossing first;
@@ -83,19 +81,19 @@ KnotCrossing first_meeting(SteppingState<double>& s, const ContinuationSettings<
 // Moves `next`, an equilibrium near the knot with its derivative, onto the knot. Returns false
 // where the iteration leaves the interval between the node at p and `limit`. The factors are those
 // of `next`.
-bool land(SteppingState<double>& s, const ContinuationSettings<double>& settings,
-          const KnotCrossing& knot, double p, double limit, Node<double>& next, State<double>& q) {
+bool land(SteppingState& s, const ContinuationSettings& settings, const KnotCrossing& knot,
+          double p, double limit, Node& next, State<double>& q) {
     const CurvePlace& at = *knot.curve;
     const double step = next.p - p;
     for (int k = 0; k < 5; ++k) {
         go_to(s, settings.at(next.p));
-        const double x = deflection<double>(s.model, s.inputs, next.q, at);
+        const double x = deflection(s.model, s.inputs, next.q, at);
         if (std::abs(x - knot.knot) <= slack(settings, at)) return true;
         const double ahead = step * 1e-4;
         q = next.q;
         advance(q, ahead * next.dq);
         go_to(s, settings.at(next.p + ahead));
-        const double rate = (deflection<double>(s.model, s.inputs, q, at) - x) / ahead;
+        const double rate = (deflection(s.model, s.inputs, q, at) - x) / ahead;
         const double dp = (knot.knot - x) / rate;
         if (!(std::abs(dp) <= std::abs(step)) || !((next.p + dp - p) * step > 0) ||
             !((limit - next.p - dp) * step >= 0))
@@ -115,10 +113,9 @@ bool land(SteppingState<double>& s, const ContinuationSettings<double>& settings
 
 }  // namespace
 
-Trial<double> step_to_knot(SteppingState<double>& s, const ContinuationSettings<double>& settings,
-                           const Node<double>& node, const Vector<double>& curvature,
-                           const Vector<double>& lambda_curvature, Node<double>& next,
-                           State<double>& q, Vector<double>& lambda, KnotCrossing& met) {
+Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, const Node& node,
+                   const Vector<double>& curvature, const Vector<double>& lambda_curvature,
+                   Node& next, State<double>& q, Vector<double>& lambda, KnotCrossing& met) {
     met = {};
     if (s.curves.empty()) return try_step(s, settings, node, curvature, lambda_curvature, next);
     const double whole = next.p;
@@ -130,7 +127,7 @@ Trial<double> step_to_knot(SteppingState<double>& s, const ContinuationSettings<
             advance(at, s.dq);
         });
     double h = whole - node.p;
-    Trial<double> trial;
+    Trial trial;
     for (int k = 0; k < 4; ++k) {
         next.p = expected.curve ? node.p + expected.t * h : whole;
         if (next.p == node.p) {  // the node lies on the knot and the step leaves the piece
@@ -158,16 +155,16 @@ Trial<double> step_to_knot(SteppingState<double>& s, const ContinuationSettings<
     return trial;
 }
 
-void take_pieces(SteppingState<double>& s, const ContinuationSettings<double>& settings,
-                 const Node<double>& node, double ahead, State<double>& q) {
+void take_pieces(SteppingState& s, const ContinuationSettings& settings, const Node& node,
+                 double ahead, State<double>& q) {
     q = node.q;
     s.dq = ahead * node.dq;
     advance(q, s.dq);
     for (const CurvePlace& at : s.curves) {
         go_to(s, settings.at(node.p));
-        const double x = deflection<double>(s.model, s.inputs, node.q, at);
+        const double x = deflection(s.model, s.inputs, node.q, at);
         go_to(s, settings.at(node.p + ahead));
-        const bool rises = deflection<double>(s.model, s.inputs, q, at) > x;
+        const bool rises = deflection(s.model, s.inputs, q, at) > x;
         const auto& knots = at.curve->knots;
         Piece piece = piece_at(*at.curve, x);
         for (std::size_t k = 0; k < knots.size(); ++k)
@@ -176,6 +173,21 @@ void take_pieces(SteppingState<double>& s, const ContinuationSettings<double>& s
         piece_of(s, at) = piece;
     }
     go_to(s, settings.at(node.p));
+}
+
+bool find_sides(const Model& model, const Inputs<double>& inputs, const State<double>& q,
+                const std::vector<CurvePlace>& curves, std::vector<int>& sides) {
+    bool changed = false;
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        const auto& kinks = curves[c].kinks;
+        if (kinks.empty()) continue;
+        const double x = deflection(model, inputs, q, curves[c]);
+        const auto side = static_cast<int>(
+            std::count_if(kinks.begin(), kinks.end(), [&](double kink) { return kink <= x; }));
+        changed = changed || side != sides[c];
+        sides[c] = side;
+    }
+    return changed;
 }
 
 }  // namespace elastocheck::recursive

@@ -18,10 +18,9 @@ namespace elastocheck::recursive {
 
 // Cubic Hermite interpolation at the fraction t between two nodes, rotations as vectors π:
 // π(0) = 0, π'(0) = ω, π(h) = log(A⁺Aᵀ), π'(h) = J(π)⁻¹ ω⁺.
-void between(const Node<double>& from, const Node<double>& to, double t, State<double>& q,
-             Vector<double>& lambda);
+void between(const Node& from, const Node& to, double t, State<double>& q, Vector<double>& lambda);
 
-inline Piece& piece_of(SteppingState<double>& s, const CurvePlace& at) {
+inline Piece& piece_of(SteppingState& s, const CurvePlace& at) {
     return s.inputs.rest[at.element].piece[at.axis];
 }
 
@@ -36,14 +35,13 @@ struct KnotCrossing {
 
 // The step of continuation.hpp from `node` to next.p on the present pieces, shortened to the first
 // knot reached, which `met` returns. q and lambda are workspace.
-Trial<double> step_to_knot(SteppingState<double>& s, const ContinuationSettings<double>& settings,
-                           const Node<double>& node, const Vector<double>& curvature,
-                           const Vector<double>& lambda_curvature, Node<double>& next,
-                           State<double>& q, Vector<double>& lambda, KnotCrossing& met);
+Trial step_to_knot(SteppingState& s, const ContinuationSettings& settings, const Node& node,
+                   const Vector<double>& curvature, const Vector<double>& lambda_curvature,
+                   Node& next, State<double>& q, Vector<double>& lambda, KnotCrossing& met);
 
 // Selects for every curve the piece that the path follows from the node on: the piece of its
 // deflection or, on a knot, the piece a little ahead.
-void take_pieces(SteppingState<double>& s, const ContinuationSettings<double>& settings,
-                 const Node<double>& node, double ahead, State<double>& q);
+void take_pieces(SteppingState& s, const ContinuationSettings& settings, const Node& node,
+                 double ahead, State<double>& q);
 
 }  // namespace elastocheck::recursive

@@ -42,29 +42,15 @@ inline std::vector<CurvePlace> curves_of(const Model& model) {
 }
 
 // The argument of the curve at q and these inputs, [m] or [rad].
-template <class Real>
-Real deflection(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
-                const CurvePlace& at) {
-    return deflections<Real>(model.elastics[at.element].kind, inputs.rest[at.element],
-                             q)[static_cast<int>(at.axis)];
+inline double deflection(const Model& model, const Inputs<double>& inputs, const State<double>& q,
+                         const CurvePlace& at) {
+    return deflections<double>(model.elastics[at.element].kind, inputs.rest[at.element],
+                               q)[static_cast<int>(at.axis)];
 }
 
 // Side of every kink: per curve, the number of kinks at or below its deflection. Fills `sides` and
 // returns whether any changed. Allocates nothing.
-template <class Real>
-bool find_sides(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
-                const std::vector<CurvePlace>& curves, std::vector<int>& sides) {
-    bool changed = false;
-    for (std::size_t c = 0; c < curves.size(); ++c) {
-        const auto& kinks = curves[c].kinks;
-        if (kinks.empty()) continue;
-        const Real x = deflection<Real>(model, inputs, q, curves[c]);
-        const auto side = static_cast<int>(std::count_if(
-            kinks.begin(), kinks.end(), [&](double kink) { return static_cast<Real>(kink) <= x; }));
-        changed = changed || side != sides[c];
-        sides[c] = side;
-    }
-    return changed;
-}
+bool find_sides(const Model& model, const Inputs<double>& inputs, const State<double>& q,
+                const std::vector<CurvePlace>& curves, std::vector<int>& sides);
 
 }  // namespace elastocheck::recursive

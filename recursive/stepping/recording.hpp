@@ -25,11 +25,10 @@ struct Recording {
         path.points.assign(visit ? 1 : points, blank);
     }
 
-    template <class Real>
-    void keep(const Model& model, const Inputs<Real>& inputs, const State<Real>& q,
-              const State<Real>& where_lambda_acts, const Vector<Real>& lambda, double load) {
+    void keep(const Model& model, const Inputs<double>& inputs, const State<double>& q,
+              const State<double>& where_lambda_acts, const Vector<double>& lambda, double load) {
         Equilibrium& point = path.points[visit ? 0 : reached];
-        record<Real>(model, inputs, q, where_lambda_acts, lambda, load, point);
+        record(model, inputs, q, where_lambda_acts, lambda, load, point);
         ++reached;
         if (visit) visit(point);
     }

@@ -66,7 +66,7 @@ bool has_negative_eigenvalue(const Eigen::SparseMatrix<double>& saddle,
 
 }  // namespace
 
-bool is_unstable(const SteppingState<double>& s) {
+bool is_unstable(const SteppingState& s) {
     if (s.free <= 0 || !has_energy(s.model, s.branch)) return false;
     const Held<double>& idle = s.system.held;
     std::vector<int> held;
@@ -110,7 +110,7 @@ std::string moving_bodies(const Model& model, const Eigen::VectorXd& motion) {
 
 // The motion of least stiffness with the matrix in the system: the eigenvector of ZᵀKZ, Z a basis
 // of the null space of Φ_q, in the norm |W x|. Computed densely, where a message needs it.
-std::string softest_motion(const SteppingState<double>& s) {
+std::string softest_motion(const SteppingState& s) {
     constexpr Eigen::Index most = 600;    // coordinates
     constexpr double independent = 1e-9;  // of rows of length one
     const Eigen::Index n = s.n(), m = s.m();
@@ -135,7 +135,7 @@ std::string softest_motion(const SteppingState<double>& s) {
 
 }  // namespace
 
-StartStability start_stability(SteppingState<double>& s) {
+StartStability start_stability(SteppingState& s) {
     StartStability start;
     start.least = least_stiffness(s, start.softest);
     // modes soft relative to the stiffest are below the rounding of is_unstable()
@@ -146,7 +146,7 @@ StartStability start_stability(SteppingState<double>& s) {
     return start;
 }
 
-Outcome check_start_stability(SteppingState<double>& s, const StartStability& start) {
+Outcome check_start_stability(SteppingState& s, const StartStability& start) {
     if (!start.unstable || !has_energy(s.model, s.branch)) return Outcome::converged;
     s.unstable_start = start.motion;
     return Outcome::singular;
@@ -156,6 +156,74 @@ double least_eigenvalue(const Eigen::MatrixXd& Q) {
     const Eigen::MatrixXd S = (Q + Q.transpose()) / 2;
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(S, Eigen::EigenvaluesOnly)
         .eigenvalues()[0];
+}
+
+double least_of_idle(const SteppingState& s) {
+    constexpr double several = 256;  // multiple of the rounding of a sum
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const Held<double>& held = s.system.held;
+    const SaddleMatrix<double>& M = s.system.M;
+    double least = 0;
+    for (int first = 0, end = 0; first < held.idle; first = end) {
+        for (end = first + 1; end < held.idle && held.with[static_cast<std::size_t>(end)] == first;)
+            ++end;
+        const int modes = end - first, places = held.end(first) - held.begin(first);
+        const auto z = [&](int mode, int place) {
+            return Eigen::Map<const Vector6<double>>(held.value.data() + held.begin(first + mode) +
+                                                     place);
+        };
+        const auto body = [&](int place) {
+            return held.row[static_cast<std::size_t>(held.begin(first) + place)] / 6;
+        };
+        Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(modes, modes), sizes = Q;
+        for (int i = 0; i < places; i += 6)
+            for (int j = 0; j < places; j += 6) {
+                const int at = M.block_at(body(i), body(j));
+                if (at < 0) continue;
+                const Eigen::Map<const Matrix6<double>> K(M.values.data() + at);
+                for (int a = 0; a < modes; ++a)
+                    for (int b = 0; b < modes; ++b) {
+                        Q(a, b) += static_cast<double>(z(a, i).dot(K * z(b, j)));
+                        sizes(a, b) += static_cast<double>(
+                            z(a, i).cwiseAbs().dot(K.cwiseAbs() * z(b, j).cwiseAbs()));
+                    }
+            }
+        if (!Q.allFinite()) continue;
+        if (const double lowest = least_eigenvalue(Q); lowest < -several * epsilon * sizes.norm())
+            least = std::min(least, lowest);
+    }
+    return least;
+}
+
+double negative_idle_stiffness(SteppingState& s, const State<double>& near,
+                               const Vector<double>& lambda_near) {
+    constexpr int corrections = 3;
+    constexpr double noticed = 1e-6;
+    if (s.system.held.idle == 0 || !has_energy(s.model, s.branch)) return 0;
+    const auto least = [&](const State<double>& q) {
+        const double stiffness = least_of_idle(s);
+        if (!(stiffness < 0)) return 0.;
+        external_force<double>(s.model, s.branch, s.inputs, q, s.upper);
+        elastic_force<double>(s.model, s.inputs, q, s.force);
+        const double acts = size_of_force(s, s.upper) + size_of_force(s, s.force);
+        return stiffness < -noticed * acts / s.length ? stiffness : 0.;
+    };
+    if (!(least(near) < 0)) return 0;
+    const Counts counts = s.counts;  // a check only: not counted
+    State<double> q = near;
+    Vector<double> lambda = lambda_near;
+    bool there = true;
+    for (int k = 0; k < corrections && there; ++k) {
+        residual_at(s, q, lambda);
+        back_substitute(s);
+        there = s.x.allFinite();
+        s.dq = s.x.head(s.n());
+        advance(q, s.dq);
+        lambda += s.x.tail(s.m());
+        there = there && factorise_at(s, q, lambda) == Outcome::converged;
+    }
+    s.counts = counts;
+    return there ? least(q) : 0;
 }
 
 }  // namespace elastocheck::recursive

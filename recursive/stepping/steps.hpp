@@ -5,217 +5,38 @@
 
 namespace elastocheck::recursive {
 
-// f_ext for the step to `next`, minus the held part of the imbalance at the design position. Where
-// the load does not follow, the applied load keeps its moment and only the increment acts at the
-// current lever.
-template <class Real>
-void apply_load(SteppingState<Real>& s, const Follow& follow, Drive drive, Real amount, Real held) {
-    if (follow.load) {
-        external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);
-        if (held != Real(0)) s.applied -= held * s.R_d;
-    } else {
-        add_load_rate<Real>(s.branch, drive, amount, s.q, s.applied);
-        if (drive == Drive::start) s.applied += amount * s.R_d;
-    }
-}
-
-// f_elast at the new configuration, according to `follow`:
-//
-//   nothing   f_elast⁺ = f_ext - Φ_q(qⁿ)ᵀ λⁿ: the upper row just solved. With it the next right-
-//             hand side f_ext - f_elast is that of (29), and by induction that of (28)
-//   lever     each element's sum of K_T Δr', K_R Δπ, at the current attachment points
-//   axis      each element's true force, its increments added at the levers of their step
-//   both      the law itself, evaluated by store_driven() at the inputs of the next step
-template <class Real>
-void store(SteppingState<Real>& s, const Follow& follow) {
-    if (follow.lever && follow.axis) return;
-    if (!follow.lever && !follow.axis) {
-        constraint_force(s.system.M, s.lambda, s.force);
-        s.stored = s.applied - s.force;
-        return;
-    }
-    if (follow.lever) s.stored.setZero();
-    for (std::size_t k = 0; k < s.model.elastics.size(); ++k) {
-        const ElasticKind& kind = s.model.elastics[k].kind;
-        const auto [i, j] = bodies_of(kind);
-        ElementForce<Real>& kept = s.element[k];
-        const ElementForce<Real> now = element_force<Real>(kind, s.inputs.rest[k], s.q);
-        const auto motion = [&](BodyId b) -> Vector6<Real> {
-            return b == ground ? Vector6<Real>::Zero()
-                               : Vector6<Real>(s.dq.template segment<6>(6 * b));
-        };
-        const auto k_e = element_stiffness<Real>(kind, s.inputs.rest[k], s.before);
-        if (follow.lever) {
-            const Vector6<Real> dq_i = motion(k_e.i), dq_j = motion(k_e.j);
-            Vector6<Real> de;  // (12)-(13)
-            de << dq_j.template head<3>() - k_e.s_j.cross(dq_j.template tail<3>()) -
-                      dq_i.template head<3>() + k_e.s_i.cross(dq_i.template tail<3>()),
-                dq_j.template tail<3>() - dq_i.template tail<3>();
-            const Vector6<Real> df = k_e.K * de;
-            kept = {kept.F + df.template head<3>(), kept.M + df.template tail<3>(), now.lever_i,
-                    now.lever_j};
-            add_element_force<Real>(i, j, kept, s.stored);
-        } else {
-            const ElementForce<Real> increment{now.F - kept.F, now.M - kept.M, k_e.s_i, k_e.s_j};
-            add_element_force<Real>(i, j, increment, s.stored);
-            kept = now;
-        }
-    }
-}
-
-// Adds the change of f_elast at qⁿ by the drivers in this step, ∂f_elast/∂a Δa, to the stored
-// forces.
-template <class Real>
-void store_driven(SteppingState<Real>& s, const Follow& follow, Drive drive, Real amount) {
-    if (follow.lever && follow.axis) return elastic_force<Real>(s.model, s.inputs, s.q, s.stored);
-    for_each_stored_rate<Real>(s.model, s.branch, s.inputs, drive, amount, s.q,
-                               [&](std::size_t k, const ElementForce<Real>& force) {
-                                   const auto [i, j] = bodies_of(s.model.elastics[k].kind);
-                                   add_element_force<Real>(i, j, force, s.stored);
-                                   if (!follow.lever && !follow.axis) return;
-                                   s.element[k].F += force.F;
-                                   s.element[k].M += force.M;
-                               });
-}
-
-// Whether the step drives an angle beyond the range of the linearised rotation. Φ itself cannot
-// show it: half a turn and a whole turn look like none.
-template <class Real>
-bool turns_too_far(const SteppingState<Real>& s, Drive drive, Real amount) {
-    for (const auto& driver : s.branch.drivers) {
-        const int joint = driven_joint(driver.what);
-        if (joint >= 0 && is_angle(s.model.constraints[constraint_of(s.model, {joint})].kind) &&
-            !(std::abs(amount * speed<Real>(driver, drive)) <= Real(guard::largest_turn)))
-            return true;
-    }
-    return false;
-}
-
 // One step from (qⁿ, aⁿ) to (qⁿ⁺¹, aⁿ⁺¹), or from tⁿ to tⁿ⁺¹ while settling.
 //
 // ⎡ K(qⁿ)    Φ_q(qⁿ)ᵀ ⎤ ⎧ Δq ⎫ⁿ   ⎧ f_ext - f_elast - ∂f_elast/∂a Δa ⎫
 // ⎣ Φ_q(qⁿ)     0     ⎦ ⎩ λ  ⎭  = ⎩    -∂Φ/∂a Δa   or   -Φ(qⁿ; aⁿ⁺¹)    ⎭      (28), (29)
 //
 // λ is the total multiplier, so that Φ_qᵀ λⁿ⁻¹ on both sides cancels.
-template <class Real>
-Outcome step(SteppingState<Real>& s, const Linear& method, Parameters<Real> next) {
-    const Drive drive = next.t != s.parameters.t ? Drive::start : Drive::rate;
-    const Real amount = drive == Drive::start ? next.t - s.parameters.t : next.a - s.parameters.a;
-    if (turns_too_far(s, drive, amount)) return Outcome::diverged;
-    const Parameters<Real> here = s.parameters;
-    if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
-        s.lower.setZero();
-        add_constraint_rate<Real>(s.model, s.branch, s.inputs, drive, -amount, s.q, s.lower);
-        if (drive == Drive::start) s.lower -= amount * s.Phi_d;
-    }
-    go_to(s, next);
-    apply_load(s, method.follow, drive, amount, 1 - next.t);
-    store_driven(s, method.follow, drive, amount);
-    if (!method.closed) go_to(s, here);
-    if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
-        return outcome;
-    if (!method.closed) go_to(s, next);
-    if (const Outcome outcome = check_idle_load(s, s.q, Real(0)); outcome != Outcome::converged)
-        return outcome;
-    s.upper = s.applied - s.stored;
-    if (method.closed) {
-        s.lower = -s.Phi;
-        if (next.t != Real(1)) s.lower += (1 - next.t) * s.Phi_d;
-    }
-    back_substitute(s);
-    ++s.counts.evaluations;
-    s.before = s.q;
-    s.lambda = s.x.tail(s.m());
-    s.dq = s.x.head(s.n());
-    if (!s.x.allFinite()) return Outcome::not_finite;
-    if (has_diverged(s)) return Outcome::diverged;
-    advance(s.q, s.dq);
-    s.a = next.a;
-    pass_kinks(s);
-    store(s, method.follow);
-    return Outcome::converged;
-}
+Outcome step(SteppingState& s, const Linear& method, Parameters next);
 
 // The same step with the consistent tangent ∂G/∂q in place of K, and the true forces.
 //
 // A matrix is valid on its own side of a kink. Across a kink the step uses the matrix of qⁿ alone.
 // With the matrix of the other side (midpoint, or second solve) each step would be thrown back
 // before the kink.
-template <class Real>
-Outcome step(SteppingState<Real>& s, const Consistent& method, Parameters<Real> next) {
-    const int n = s.n(), m = s.m();
-    if (turns_too_far(s, Drive::rate, next.a - s.parameters.a)) return Outcome::diverged;
-    go_to(s, next);
-    // for the check of idle modes
-    external_force<Real>(s.model, s.branch, s.inputs, s.q, s.applied);
-    if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
-        return outcome;
-    if (const Outcome outcome = check_idle_load(s, s.q, s.missed); outcome != Outcome::converged)
-        return outcome;
-    // A determinant with another sign than at a = 0 has passed through zero: there the branch
-    // turned back, bifurcated or became unstable.
-    if (s.system.lu.orientation != s.orientation) return Outcome::singular;
-    residual_at(s, s.q, s.lambda);
-    back_substitute(s);
-    s.before = s.q;
-    if (method.solve == Consistent::Solve::midpoint) {
-        // G(z⁺) = G(z) + ∂G(½(z + z⁺)) Δz + O(Δ³): the same residual, the matrix half a step ahead.
-        s.dq = s.x.head(n) / 2;
-        advance(s.q, s.dq);
-        if (beyond_a_kink(s, s.q)) {
-            s.q = s.before;
-        } else {
-            s.lambda_half = s.lambda + s.x.tail(m) / 2;
-            if (const Outcome outcome = factorise_at(s, s.q, s.lambda_half);
-                outcome != Outcome::converged)
-                return outcome;
-            s.q = s.before;
-            back_substitute(s);
-            const Real change =
-                (s.x.head(n) - 2 * s.dq).cwiseProduct(s.system.weight.head(n)).squaredNorm();
-            if (disagree(s, change, size_of_solution(s), Real(0))) return Outcome::diverged;
-        }
-    }
-    s.lambda += s.x.tail(m);
-    s.dq = s.x.head(n);
-    if (!s.x.allFinite()) return Outcome::not_finite;
-    if (has_diverged(s)) return Outcome::diverged;
-    advance(s.q, s.dq);
-    const bool kinked = pass_kinks(s);
-    if (method.solve == Consistent::Solve::corrected && !kinked) {
-        residual_at(s, s.q, s.lambda);
-        back_substitute(s);
-        if (!s.x.allFinite()) return Outcome::not_finite;
-        if (disagree(s, size_of_solution(s), s.last.squaredNorm(), Real(0)))
-            return Outcome::diverged;
-        s.dq = s.x.head(n);
-        advance(s.q, s.dq);
-        s.lambda += s.x.tail(m);
-        pass_kinks(s);
-    }
-    s.a = next.a;
-    return Outcome::converged;
-}
+Outcome step(SteppingState& s, const Consistent& method, Parameters next);
 
 // Checks the held modes at the end of the last step, as each next step does for the one before it:
 // whether they are still idle and not loaded.
-template <class Real>
-Outcome check_held_modes(SteppingState<Real>& s) {
+inline Outcome check_held_modes(SteppingState& s) {
     if (s.pushing.empty()) return Outcome::converged;
     if (const Outcome outcome = factorise_at(s, s.q, s.lambda); outcome != Outcome::converged)
         return outcome;
-    return check_idle_load(s, s.q, s.consistent ? s.missed : Real(0));
+    return check_idle_load(s, s.q, s.consistent ? s.missed : 0);
 }
 
 // Error of the last step, by a correction with its own factors; for other steps the next step shows
 // it.
-template <class Real>
-Outcome check_last_step(SteppingState<Real>& s) {
+inline Outcome check_last_step(SteppingState& s) {
     if (s.kinked > 0) return Outcome::converged;  // the step is not comparable
     residual_at(s, s.q, s.lambda);
     back_substitute(s);
-    return disagree(s, size_of_solution(s), s.last.squaredNorm(), Real(0)) ? Outcome::diverged
-                                                                           : Outcome::converged;
+    return disagree(s, size_of_solution(s), s.last.squaredNorm(), 0) ? Outcome::diverged
+                                                                     : Outcome::converged;
 }
 
 }  // namespace elastocheck::recursive

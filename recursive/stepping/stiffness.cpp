@@ -4,6 +4,24 @@
 
 namespace elastocheck::recursive::detail {
 
+void orthonormalise(const Vector<double>& weight, Matrix<double>& U) {
+    constexpr double nothing = 1e-9;
+    const auto W2 = weight.head(U.rows()).array().square();
+    Eigen::Index kept = 0;
+    for (Eigen::Index c = 0; c < U.cols(); ++c) {
+        Vector<double> u = U.col(c);
+        const double whole = std::sqrt((u.array().square() * W2).sum());
+        for (int pass = 0; pass < 2; ++pass)
+            for (Eigen::Index k = 0; k < kept; ++k) {
+                const double part = (U.col(k).array() * W2 * u.array()).sum();
+                u -= part * U.col(k);
+            }
+        const double left = std::sqrt((u.array().square() * W2).sum());
+        if (left > nothing * whole) U.col(kept++) = u / left;
+    }
+    U.conservativeResize(Eigen::NoChange, kept);
+}
+
 LeastStiffness least_of(const Eigen::MatrixXd& H) {
     // If K is symmetric, H is nearly so: each θ of H = S + N is within |N| of one of S (Bauer and
     // Fike 1960).
@@ -19,3 +37,36 @@ LeastStiffness least_of(const Eigen::MatrixXd& H) {
 }
 
 }  // namespace elastocheck::recursive::detail
+
+namespace elastocheck::recursive {
+
+LeastStiffness least_stiffness(SteppingState& s, Matrix<double>& U) {
+    constexpr int vectors = 3, first_turns = 5, turns = 2;
+    if (s.free <= 0) return {};
+    const int n = s.n();
+    const auto W2 = s.system.weight.head(n).array().square();
+    const bool first = U.cols() == 0;
+    if (first) {
+        U.resize(n, std::min(vectors, s.free));
+        for (Eigen::Index c = 0; c < U.cols(); ++c)
+            for (Eigen::Index k = 0; k < n; ++k)
+                U(k, c) = scattered(k + c * n) / s.system.weight[k];
+        detail::orthonormalise(s.system.weight, U);
+    }
+    Eigen::MatrixXd H;
+    s.lower.setZero();
+    for (int turn = first ? first_turns : turns; turn > 0; --turn) {
+        Matrix<double> V(n, U.cols());
+        for (Eigen::Index c = 0; c < U.cols(); ++c) {
+            s.upper = U.col(c).array() * W2;
+            back_substitute(s.system, s.upper, s.lower, s.x);  // a check only: not counted
+            V.col(c) = s.x.head(n);
+        }
+        H = (U.transpose() * W2.matrix().asDiagonal() * V).cast<double>();
+        U = V;
+        detail::orthonormalise(s.system.weight, U);
+    }
+    return detail::least_of(H);
+}
+
+}  // namespace elastocheck::recursive

@@ -10,12 +10,11 @@ namespace elastocheck::recursive {
 
 // Returns the recorded points up to the end or the failure; with a visitor they are streamed
 // instead. On failure `stop` says where; the caller writes the message. Pre: Linear or Consistent.
-template <class Real>
-EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
-                      const Analysis& analysis, const Visit& visit, Stop& stop) {
+inline EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& options,
+                             const Analysis& analysis, const Visit& visit, Stop& stop) {
     const int N = options.steps > 0 ? options.steps : branch.steps;
     const int points = options.record > 0 ? options.record : N;
-    SteppingState<Real> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     EquilibriumPath path;
     Recording recording(model, points + 1, path, visit);
     const auto equal_steps = [&](const auto& method, const auto& where_lambda_acts) -> Outcome {
@@ -28,9 +27,7 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
         s.kinked = 0;
         for (int k = 1; k <= N; ++k) {
             stop.at = branch.to * k / N;
-            if (const Outcome o = step(s, method, {1, static_cast<Real>(stop.at)});
-                o != Outcome::converged)
-                return o;
+            if (const Outcome o = step(s, method, {1, stop.at}); o != Outcome::converged) return o;
             if (static_cast<long>(k) * points % N == 0) keep(stop.at);
         }
         return check_held_modes(s);
@@ -55,6 +52,4 @@ EquilibriumPath sweep(const Model& model, const Branch& branch, const Options& o
     return path;
 }
 
-extern template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&,
-                                              const Analysis&, const Visit&, Stop&);
 }  // namespace elastocheck::recursive

@@ -65,7 +65,7 @@ struct Klu {
 bool compare(const std::string& name, const Scene& scene, int steps) {
     const Model model = compile(scene);
     const Branch& branch = model.branches[0];
-    SteppingState<double> s(model, branch, analyse(model));
+    SteppingState s(model, branch, analyse(model));
     const Linear published;
     if (settle(s, published, 1) != Outcome::converged) return false;
     std::vector<double> step_time, own_time, klu_time, slower;
@@ -81,7 +81,7 @@ bool compare(const std::string& name, const Scene& scene, int steps) {
     std::vector<double> b(s.system.lu.size()), x(b.size());
     bool good = true;
     for (int k = 1; k <= steps; ++k) {
-        const Parameters<double> next{1, 1e-3 * branch.to * k / steps};
+        const Parameters next{1, 1e-3 * branch.to * k / steps};
         step_time.push_back(
             seconds([&] { good = step(s, published, next) == Outcome::converged && good; }));
         values = entries();

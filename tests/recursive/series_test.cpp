@@ -325,7 +325,7 @@ TEST(Series, TheChangeOfACoefficientIsTheTangentTimesIt) {
     // vanish.
     for (const auto& name : support::small_scene_names()) {
         const auto [model, branch] = one_ways(compile(support::scene(name))).front();
-        SteppingState<double> s(model, branch, analyse(model));
+        SteppingState s(model, branch, analyse(model));
         ASSERT_EQ(settle(s), Outcome::converged);
         s.applied = Vector<double>::Zero(s.n());
         ASSERT_EQ(factorise_at(s, s.q, s.lambda), Outcome::converged);

@@ -164,10 +164,10 @@ TEST(Tangent, OfEveryLawAndFormulationIsTheDerivativeOfItsForce) {
                     bool at_a_knot = false;
                     for (const auto& at : curves_of(c.model))
                         for (const double knot : at.curve->knots)
-                            at_a_knot = at_a_knot ||
-                                        std::abs(deflection<double>(c.model, inputs_of<double>(c),
-                                                                    state_of<double>(c.poses), at) -
-                                                 knot) < 1e-3;
+                            at_a_knot =
+                                at_a_knot || std::abs(deflection(c.model, inputs_of<double>(c),
+                                                                 state_of<double>(c.poses), at) -
+                                                      knot) < 1e-3;
                     if (!at_a_knot)
                         expect_derivative(c, fmt::format("{}, bodies {} {}, {} rad",
                                                          name_of(formulation), i, j, angle));

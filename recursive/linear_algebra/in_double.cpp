@@ -1,8 +1,7 @@
-// The templates of the formula, the linear algebra and the stepping loop in double precision, which
-// every other source file declares `extern`.
-#include "recursive/stepping/stability.hpp"
-#include "recursive/stepping/stiffness.hpp"
-#include "recursive/stepping/sweep.hpp"
+// The templates of the formula and of the linear algebra in double precision, which every other source
+// file declares `extern`.
+#include "recursive/formula/reactions.hpp"
+#include "recursive/linear_algebra/assembly.hpp"
 
 namespace elastocheck::recursive {
 
@@ -43,35 +42,5 @@ template void assemble_consistent<double>(const Model&, const Branch&, const Inp
                                           SaddleMatrix<double>&, Vector<double>&);
 template void constraint_force<double>(const Model&, const Inputs<double>&, const State<double>&,
                                        const Vector<double>&, Vector<double>&, Vector<double>&);
-template struct SteppingState<double>;
-template void go_to<double>(SteppingState<double>&, Parameters<double>);
-template Outcome check_factors<double>(SteppingState<double>&, const State<double>&, double);
-template Outcome check_idle_load<double>(SteppingState<double>&, const State<double>&, double);
-template Outcome factorise_at<double>(SteppingState<double>&, const State<double>&,
-                                      const Vector<double>&);
-template void residual_at<double>(SteppingState<double>&, const State<double>&,
-                                  const Vector<double>&);
-template bool is_inconsistent<double>(const SteppingState<double>&, const State<double>&);
-template void drive_at<double>(SteppingState<double>&, Drive, double, const State<double>&,
-                               const Vector<double>&);
-template void record<double>(const Model&, const Inputs<double>&, const State<double>&,
-                             const State<double>&, const Vector<double>&, double, Equilibrium&);
-template void differentiate<double>(SteppingState<double>&, const ContinuationSettings<double>&,
-                                    Node<double>&);
-template Outcome correct<double>(SteppingState<double>&, const ContinuationSettings<double>&,
-                                 State<double>&, Vector<double>&, double, double&);
-template Trial<double> try_step<double>(SteppingState<double>&, const ContinuationSettings<double>&,
-                                        const Node<double>&, const Vector<double>&,
-                                        const Vector<double>&, Node<double>&);
-template bool is_inconsistent_at<double>(SteppingState<double>&, const Node<double>&,
-                                         State<double>&, Vector<double>&);
-template Outcome settle<double>(SteppingState<double>&);
-template Outcome settled<double>(const SteppingState<double>&, Outcome, double);
-template LeastStiffness least_stiffness<double>(SteppingState<double>&, Matrix<double>&);
-template double negative_idle_stiffness<double>(SteppingState<double>&, const State<double>&,
-                                                const Vector<double>&);
-
-template EquilibriumPath sweep<double>(const Model&, const Branch&, const Options&, const Analysis&,
-                                       const Visit&, Stop&);
 
 }  // namespace elastocheck::recursive
