@@ -116,7 +116,7 @@ int rank(const Offence& o) {
 
 // Judges one accepted series against its measurement.
 void judge_series(const Baseline& baseline, const Tolerances& tolerances, const Series& was,
-                  const Measurement& measurement, Verdict& verdict) {
+                  const Measurement& measurement, GateVerdict& verdict) {
     const auto cannot = [&](const std::string& why) {
         verdict.reasons.push_back(described(was) + " " + why);
     };
@@ -175,7 +175,7 @@ std::vector<std::size_t> limited(const Limit& limit, const Series& s, const Meas
     return places;
 }
 
-void judge_limit(const Limit& limit, const Measurement& measurement, Verdict& verdict) {
+void judge_limit(const Limit& limit, const Measurement& measurement, GateVerdict& verdict) {
     const std::string title = fmt::format(
         "limit on {}: {}{}", limit.of == Quantity::equilibrium ? "a figure" : name(limit.of),
         limit.channel, limit.over.empty() ? "" : fmt::format(" over branch '{}'", limit.over));
@@ -223,7 +223,7 @@ std::string described(const GatedBranch& branch) {
 // Branches present on both sides at the same parameters. Series of the other branches are not
 // compared, since numbers at other parameters are not comparable.
 std::vector<std::string> common_branches(const Baseline& baseline, const Measurement& measurement,
-                                         Verdict& verdict) {
+                                         GateVerdict& verdict) {
     std::vector<std::string> common;
     const auto cannot = [&](const std::string& branch, const std::string& why) {
         verdict.reasons.push_back(fmt::format("branch '{}' {}", branch, why));
@@ -374,7 +374,7 @@ bool comes_before(const Offence& a, const Offence& b) {
     return rank(a) != rank(b) ? rank(a) < rank(b) : a.noticed() > b.noticed();
 }
 
-Judgement Verdict::judgement() const {
+Judgement GateVerdict::judgement() const {
     if (!offences.empty()) return Judgement::failed;
     return reasons.empty() && compared > 0 ? Judgement::passed : Judgement::could_not_judge;
 }
@@ -483,8 +483,8 @@ Measurement measure(const Model& model, const Comparison& comparison) {
     return result;
 }
 
-Verdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind) {
-    Verdict verdict;
+GateVerdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind) {
+    GateVerdict verdict;
     verdict.kind = kind;
     verdict.reasons = measurement.inconclusive;
     if (baseline.reason.find_first_not_of(" \t\r\n") == std::string::npos)

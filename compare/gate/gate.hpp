@@ -157,7 +157,7 @@ bool comes_before(const Offence& a, const Offence& b);
 enum class Judgement { passed, failed, could_not_judge };
 const char* name(Judgement judgement);  // "passed", "FAILED", "COULD NOT JUDGE"
 
-struct Verdict {
+struct GateVerdict {
     ToleranceClass kind = ToleranceClass::same_build;
     int compared = 0;                  // numbers compared
     std::vector<Offence> offences;     // in the order of comes_before
@@ -167,6 +167,6 @@ struct Verdict {
     Judgement judgement() const;
 };
 
-Verdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind);
+GateVerdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind);
 
 }  // namespace elastocheck::compare

@@ -395,7 +395,7 @@ TrialRun run(const Trial& trial, const std::vector<Solver>& solvers) {
     return result;
 }
 
-// ---- Verdict.
+// ---- CellVerdict.
 
 // Index pairs of the places that the two versions of a scene share.
 struct Match {
@@ -485,7 +485,7 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
     const Distance claim = claim_here.most(run.places);
     for (std::size_t k = 0; k < found.placements.size(); ++k) {
         if (!is_finite(found.placements[k])) {
-            cell.verdict = Verdict::wrong;
+            cell.verdict = CellVerdict::wrong;
             cell.why = "a state is not finite";
             return;
         }
@@ -525,16 +525,16 @@ void judge_points(const Solver& solver, const Found& found, const SideRun& run, 
         cell.digits = std::clamp(-std::log10(worst / cell.range), 0.0, 16.0);
     }
     if (breaks)
-        cell.verdict = Verdict::wrong;
+        cell.verdict = CellVerdict::wrong;
     else if (found.outcome != Outcome::converged)
-        cell.verdict = Verdict::reported_failure, cell.digits = nan;
+        cell.verdict = CellVerdict::reported_failure, cell.digits = nan;
     else if (elsewhere)
-        cell.verdict = Verdict::elsewhere,
+        cell.verdict = CellVerdict::elsewhere,
         cell.why = "at another equilibrium, which is also proved: " + cell.why;
     else if (any_unknown)
-        cell.verdict = Verdict::unjudged, cell.digits = nan;
+        cell.verdict = CellVerdict::unjudged, cell.digits = nan;
     else
-        cell.verdict = std::isfinite(claim.length) ? Verdict::right : Verdict::no_claim;
+        cell.verdict = std::isfinite(claim.length) ? CellVerdict::right : CellVerdict::no_claim;
 }
 
 // Invariance check: a transformed mechanism must give the same answer, within the claim of the
@@ -546,7 +546,7 @@ void judge_invariance(const Solver& solver, const Found& found, const SideRun& r
                       const Found& base_found, const SideRun& base, const Transform& how,
                       StressCell& cell) {
     if (found.outcome != Outcome::converged || base_found.outcome != Outcome::converged) return;
-    if (cell.verdict == Verdict::wrong) return;
+    if (cell.verdict == CellVerdict::wrong) return;
     const Match both = match(run.places, base.places);
     const bool same_bodies =
         both.here.size() == run.places.size() && both.there.size() == base.places.size();
@@ -566,7 +566,7 @@ void judge_invariance(const Solver& solver, const Found& found, const SideRun& r
                                    ? c.length + how.length * c_base.length + rounding
                                    : 1e-7 * cell.range + rounding;
         if (!(d.length <= allowed)) {
-            cell.verdict = Verdict::wrong;
+            cell.verdict = CellVerdict::wrong;
             cell.why = fmt::format("differs by {:.2e} mm from its result for the unchanged scene",
                                    1e3 * d.length);
         }
@@ -597,33 +597,36 @@ StressCell judge(const Trial& trial, const std::vector<Solver>& solvers, std::si
     cell.outcome = found.outcome, cell.detail = found.detail;
     cell.range = range_of(run);
     if (found.threw) {
-        cell.verdict = Verdict::wrong;
+        cell.verdict = CellVerdict::wrong;
         cell.why = "ended with an exception";
         return cell;
     }
     judge_points(solvers[s], found, run, cell);
     if (base != nullptr)
         cell.apart = apart(found, run, base->found[s], *base, *trial.variant.transforms);
-    if (cell.verdict == Verdict::wrong) return cell;
+    if (cell.verdict == CellVerdict::wrong) return cell;
     if (is_reference(solvers[s]) && says_that_it_ends(found.outcome)) {
         if (base != nullptr && all_known(*base))
-            cell.verdict = Verdict::wrong, cell.why =
-                                               "reports that no equilibrium continues the branch, "
-                                               "but finds one in the transformed scene";
+            cell.verdict = CellVerdict::wrong,
+            cell.why =
+                "reports that no equilibrium continues the branch, "
+                "but finds one in the transformed scene";
         else if (all_proved(run) && !found.placements.empty())
-            cell.verdict = Verdict::wrong, cell.why =
-                                               "reports that no equilibrium continues the branch, "
-                                               "but the states of another solver are proved";
+            cell.verdict = CellVerdict::wrong,
+            cell.why =
+                "reports that no equilibrium continues the branch, "
+                "but the states of another solver are proved";
     }
     if (found.outcome != Outcome::converged) return cell;
     const std::string end = ended(solvers, run);
     if (found.placements.size() < run.points)
-        cell.verdict = Verdict::wrong, cell.why = "converged, but points are missing";
+        cell.verdict = CellVerdict::wrong, cell.why = "converged, but points are missing";
     else if (trial.variant.known == Construction::no_equilibrium)
-        cell.verdict = Verdict::wrong,
+        cell.verdict = CellVerdict::wrong,
         cell.why = "converged although by construction no equilibrium exists";
     else if (!end.empty())
-        cell.verdict = Verdict::wrong, cell.why = "converged where both references report: " + end;
+        cell.verdict = CellVerdict::wrong,
+        cell.why = "converged where both references report: " + end;
     else if (base != nullptr)
         judge_invariance(solvers[s], found, run, base->found[s], *base, *trial.variant.transforms,
                          cell);
@@ -665,14 +668,14 @@ const char* name(Knowledge knowledge) {
     return "";
 }
 
-const char* name(Verdict verdict) {
+const char* name(CellVerdict verdict) {
     switch (verdict) {
-        case Verdict::right: return "right";
-        case Verdict::no_claim: return "unpromised";
-        case Verdict::reported_failure: return "honest";
-        case Verdict::elsewhere: return "elsewhere";
-        case Verdict::unjudged: return "unjudged";
-        case Verdict::wrong: return "wrong";
+        case CellVerdict::right: return "right";
+        case CellVerdict::no_claim: return "unpromised";
+        case CellVerdict::reported_failure: return "honest";
+        case CellVerdict::elsewhere: return "elsewhere";
+        case CellVerdict::unjudged: return "unjudged";
+        case CellVerdict::wrong: return "wrong";
     }
     return "";
 }
@@ -695,10 +698,12 @@ std::vector<Trial> trials(const std::string& name, const Scene& scene,
     return all;
 }
 
-int Survival::count(Verdict verdict) const {
+int Survival::count(CellVerdict verdict) const {
     return static_cast<int>(std::ranges::count(cells, verdict, &StressCell::verdict));
 }
-int Survival::judged() const { return static_cast<int>(cells.size()) - count(Verdict::unjudged); }
+int Survival::judged() const {
+    return static_cast<int>(cells.size()) - count(CellVerdict::unjudged);
+}
 
 Survival stress(std::span<const Trial> trials, const StressOptions& options) {
     Survival survival;
@@ -752,11 +757,11 @@ char sign(const Survival& survival, const std::string& scene, const std::string&
         if (cell.scene != scene || cell.sweep != sweep || cell.solver != solver ||
             (!variant.empty() && cell.variant != variant))
             continue;
-        if (cell.verdict == Verdict::wrong) return 'X';
+        if (cell.verdict == CellVerdict::wrong) return 'X';
         if (result == '.') result = '!';
-        unjudged |= cell.verdict == Verdict::unjudged;
-        elsewhere |= cell.verdict == Verdict::elsewhere;
-        if (cell.verdict == Verdict::right || cell.verdict == Verdict::no_claim)
+        unjudged |= cell.verdict == CellVerdict::unjudged;
+        elsewhere |= cell.verdict == CellVerdict::elsewhere;
+        if (cell.verdict == CellVerdict::right || cell.verdict == CellVerdict::no_claim)
             digits = std::min(digits, cell.digits);
     }
     if (unjudged) return '?';

@@ -106,7 +106,7 @@ enum class Knowledge {
 };
 const char* name(Knowledge knowledge);
 
-enum class Verdict {
+enum class CellVerdict {
     right,             // converged, within its claim
     no_claim,          // converged, without a claim: its digits are reported
     reported_failure,  // another outcome
@@ -114,13 +114,13 @@ enum class Verdict {
     unjudged,          // converged, but the truth is unknown
     wrong,
 };
-const char* name(Verdict verdict);
+const char* name(CellVerdict verdict);
 
 struct StressCell {
     std::string scene, sweep, variant, side, solver;
     Outcome outcome = Outcome::converged;
     std::string detail;  // message of the solver
-    Verdict verdict = Verdict::unjudged;
+    CellVerdict verdict = CellVerdict::unjudged;
     std::string why;  // reason, for a verdict that needs one
     Knowledge knowledge = Knowledge::none;
     // -log10(error / range); NaN where the truth is unknown
@@ -147,7 +147,7 @@ struct Survival {
         std::string scene, variant;
         double seconds = 0;
     } dearest;  // most expensive trial
-    int count(Verdict verdict) const;
+    int count(CellVerdict verdict) const;
     int judged() const;  // all cells except unjudged ones
 };
 

@@ -82,9 +82,9 @@ int stress(const StressRequest& request, const Delivery& delivery) {
                                      {"cells.csv", csv(cell_table(survival))}});
         if (delivery.as_json) print_document(document);
     }
-    return survival.count(compare::Verdict::wrong) > 0 ? limit_broken
-           : survival.judged() == 0                    ? could_not_judge
-                                                       : fine;
+    return survival.count(compare::CellVerdict::wrong) > 0 ? limit_broken
+           : survival.judged() == 0                        ? could_not_judge
+                                                           : fine;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct GatedScene {
     std::vector<compare::Change> changed;  // numbers of the scene changed since the acceptance
     std::vector<std::string> notes;        // remarks that do not affect the verdict
     bool bad_input = false;  // the scene could not be read; verdict.reasons has the reason
-    compare::Verdict verdict;
+    compare::GateVerdict verdict;
 };
 
 // 1 if any limit is broken, else 2 if a scene could not be read, else 3 if anything could not be

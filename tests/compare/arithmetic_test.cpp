@@ -96,7 +96,7 @@ TEST(Arithmetic, WhateverItIsWhoConvergesIsStillRight) {
         };
         std::set<std::string> variants;
         for (const auto& cell : survival.cells) {
-            EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
+            EXPECT_NE(cell.verdict, CellVerdict::wrong) << told(cell);
             if (cell.sweep == as_it_is) continue;
             variants.insert(cell.variant);
             if (converged_as_drawn(cell)) {

@@ -55,7 +55,7 @@ TEST(Stress, AnAnswerThatTheTellingChangesIsWrong) {
     const Survival survival = stress(std::vector{itself, lie});
     ASSERT_FALSE(survival.cells.empty());
     for (const auto& cell : survival.cells)
-        EXPECT_EQ(cell.verdict == Verdict::wrong, cell.sweep == "moved") << told(cell);
+        EXPECT_EQ(cell.verdict == CellVerdict::wrong, cell.sweep == "moved") << told(cell);
     EXPECT_EQ(sign(survival, "pendulum", "moved", "published"), 'X');
 }
 
@@ -92,7 +92,7 @@ TEST(Stress, ReactionsAreJudgedOfWhoPromisesMoreThanSteps) {
         const auto method = recursive::find_method(cell.solver);
         if (method && has_steps(*method)) {
             EXPECT_EQ(cell.reactions, 0) << told(cell);
-        } else if (cell.verdict == Verdict::right) {
+        } else if (cell.verdict == CellVerdict::right) {
             EXPECT_GT(cell.reactions, 0) << told(cell);
         }
     }
@@ -105,7 +105,7 @@ TEST(Stress, WhoFindsWhatCannotBeIsWrong) {
                             .scene = small("pendulum"),
                             .known = Variant::Construction::no_equilibrium}};
     const Survival survival = stress(std::vector{impossible});
-    EXPECT_EQ(survival.count(Verdict::wrong), static_cast<int>(survival.solvers.size()));
+    EXPECT_EQ(survival.count(CellVerdict::wrong), static_cast<int>(survival.solvers.size()));
 }
 
 TEST(Stress, AnHonestOutcomeIsNotWrong) {
@@ -115,7 +115,7 @@ TEST(Stress, AnHonestOutcomeIsNotWrong) {
     for (const auto& cell : survival.cells)
         if (cell.solver == "energy") {
             EXPECT_EQ(cell.outcome, Outcome::not_conservative);
-            EXPECT_EQ(cell.verdict, Verdict::reported_failure) << told(cell);
+            EXPECT_EQ(cell.verdict, CellVerdict::reported_failure) << told(cell);
         }
     EXPECT_EQ(sign(survival, "follower", "x", "energy"), '!');
     EXPECT_EQ(sign(survival, "follower", "x", "equilibrium"), '9');  // by the series
@@ -134,11 +134,11 @@ TEST(Stress, DigitsCountTheErrorAgainstWhatMoves) {
                 << told(cell);
         }
         if (cell.solver == "published") {
-            EXPECT_EQ(cell.verdict, Verdict::no_claim);
+            EXPECT_EQ(cell.verdict, CellVerdict::no_claim);
             EXPECT_LT(cell.digits, 4);
         }
         if (cell.solver == "equilibrium") {
-            EXPECT_EQ(cell.verdict, Verdict::right);
+            EXPECT_EQ(cell.verdict, CellVerdict::right);
             EXPECT_GT(cell.digits, 9);
         }
     }
@@ -174,7 +174,8 @@ TEST(Stress, ANaNInWhateverActsIsNeverAnEquilibrium) {
             [&](Scene& s) { s.elastics[e] = stiffened(s.elastics[e], nan); });
     const Survival survival = stress(poisoned);
     EXPECT_GT(survival.cells.size(), 150u);
-    for (const auto& cell : survival.cells) EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
+    for (const auto& cell : survival.cells)
+        EXPECT_NE(cell.verdict, CellVerdict::wrong) << told(cell);
 }
 
 // A sample of ./dev stress.
@@ -185,7 +186,8 @@ TEST(Stress, SmallScenesSurvive) {
             if (trial.sweep != "steps") sample.push_back(std::move(trial));
     const Survival survival = stress(sample);
     EXPECT_GT(survival.judged(), 350);
-    for (const auto& cell : survival.cells) EXPECT_NE(cell.verdict, Verdict::wrong) << told(cell);
+    for (const auto& cell : survival.cells)
+        EXPECT_NE(cell.verdict, CellVerdict::wrong) << told(cell);
 }
 
 }  // namespace

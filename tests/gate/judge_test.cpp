@@ -40,7 +40,7 @@ Baseline baseline() {
     return b;
 }
 
-Verdict judged(const Baseline& b, const Measurement& m) {
+GateVerdict judged(const Baseline& b, const Measurement& m) {
     return judge(b, m, ToleranceClass::same_build);
 }
 
@@ -51,7 +51,7 @@ double& value(Measurement& m, Quantity quantity, const std::string& channel, std
 }
 
 TEST(Gate, WhatIsAsAcceptedPassesAndEveryNumberIsCounted) {
-    const Verdict verdict = judged(baseline(), measurement());
+    const GateVerdict verdict = judged(baseline(), measurement());
     EXPECT_EQ(verdict.judgement(), Judgement::passed);
     EXPECT_EQ(verdict.compared, 2 * (3 + 3 + 1 + 3 + 1));
 }
@@ -75,7 +75,7 @@ TEST(Gate, OnTheToleranceIsWithinAndOneUlpBeyondIsNot) {
             EXPECT_EQ(judged(baseline(), m).judgement(), Judgement::passed)
                 << name(quantity) << channel << sign;
             value(m, quantity, channel, k) = std::nextafter(edge, sign * infinity);
-            const Verdict verdict = judged(baseline(), m);
+            const GateVerdict verdict = judged(baseline(), m);
             EXPECT_EQ(verdict.judgement(), Judgement::failed) << name(quantity) << channel << sign;
             ASSERT_EQ(verdict.offences.size(), 1u);
             const Offence& offence = verdict.offences[0];
@@ -191,7 +191,7 @@ TEST(Gate, WhatCannotBeComparedIsNeverAPass) {
         Baseline b = baseline();
         Measurement m = measurement();
         inflict(b, m);
-        const Verdict verdict = judged(b, m);
+        const GateVerdict verdict = judged(b, m);
         EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge) << what;
         bool said = false;
         for (const auto& reason : verdict.reasons)
@@ -204,7 +204,7 @@ TEST(Gate, NumbersElsewhereAreNotComparedWithTheAcceptedOnes) {
     Measurement m = measurement();
     m.branches[0].a.back() = 30;
     value(m, Quantity::recursive, "toe", 2) = 9;
-    const Verdict verdict = judged(baseline(), m);
+    const GateVerdict verdict = judged(baseline(), m);
     EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge);
     EXPECT_EQ(verdict.compared, 11);  // the other branch
     EXPECT_EQ(verdict.reasons.size(), 1u);
@@ -230,7 +230,7 @@ TEST(Gate, ABrokenLimitIsBrokenWhateverElseCouldNotBeJudged) {
     Measurement m = measurement();
     value(m, Quantity::recursive, "toe", 1) = 7;
     value(m, Quantity::recursive, "travel", 1) = nan;
-    const Verdict verdict = judged(baseline(), m);
+    const GateVerdict verdict = judged(baseline(), m);
     EXPECT_EQ(verdict.judgement(), Judgement::failed);
     EXPECT_EQ(verdict.reasons.size(), 1u);
 }
@@ -238,7 +238,7 @@ TEST(Gate, ABrokenLimitIsBrokenWhateverElseCouldNotBeJudged) {
 TEST(Gate, AnAbsoluteLimitGatesAccuracyEvenWhereNothingChanged) {
     Baseline b = baseline();
     b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", 0.5});
-    Verdict verdict = judged(b, measurement());
+    GateVerdict verdict = judged(b, measurement());
     EXPECT_EQ(verdict.judgement(), Judgement::passed);
     EXPECT_EQ(verdict.compared, 2 * 11 + 2);
     b.limits[0].max = std::nextafter(0.5, 0);
@@ -250,7 +250,7 @@ TEST(Gate, AnAbsoluteLimitGatesAccuracyEvenWhereNothingChanged) {
 }
 
 // Channels of the offences, in their order.
-std::vector<std::string> order(const Verdict& verdict) {
+std::vector<std::string> order(const GateVerdict& verdict) {
     std::vector<std::string> channels;
     for (const auto& o : verdict.offences) channels.push_back(o.channel);
     return channels;
@@ -272,7 +272,7 @@ TEST(Gate, WhatAnEngineerNoticesComesFirst) {
     value(m, Quantity::equilibrium, "bush.force_z", 1) += 0.9;   // 9e8 tolerances, and not noticed
     value(m, Quantity::equilibrium, "coil.force_z", 1) += 1000;  // noticed, within the suspension
     value(m, Quantity::work_recursive, "steps", 0) += 1;  // nothing is tolerated, and not noticed
-    const Verdict verdict = judged(b, m);
+    const GateVerdict verdict = judged(b, m);
     EXPECT_EQ(order(verdict),
               (std::vector<std::string>{"toe", "coil.force_z", "travel", "bush.force_z", "steps"}));
     EXPECT_GT(verdict.offences[3].share(), 1e8);
@@ -286,7 +286,7 @@ TEST(Gate, OfWhatIsNoticedAlikeTheLargerShareComesFirstAndABrokenLimitBeforeAll)
     value(m, Quantity::recursive, "toe", 1) = 1.5;   // 4 times
     EXPECT_EQ(order(judged(b, m)), (std::vector<std::string>{"toe", "travel"}));
     b.limits.push_back({Quantity::deviation_at_equal_abscissa, "toe", 0.499});
-    const Verdict verdict = judged(b, m);
+    const GateVerdict verdict = judged(b, m);
     ASSERT_EQ(verdict.offences.size(), 4u);  // in both branches
     EXPECT_TRUE(verdict.offences[0].of_limit && verdict.offences[1].of_limit);
 }
@@ -339,7 +339,7 @@ TEST(Gate, AFigureIsLimitedOnBothSidesAtTheDesignPositionOrAtEveryPointOfABranch
           Case{figure("bump_steer", 0, 5.5, "travel"), 0, 4},
           Case{figure("toe", -2, 2, "travel"), 1, 2}, Case{figure("toe", -2, 2), 0, 1}}) {
         b.limits = {limit};
-        const Verdict verdict = judged(b, b.accepted);
+        const GateVerdict verdict = judged(b, b.accepted);
         EXPECT_EQ(verdict.compared, all + compared) << limit.channel << limit.max;
         EXPECT_EQ(verdict.offences.size(), broken) << limit.channel << limit.max;
         EXPECT_EQ(verdict.judgement(), broken > 0 ? Judgement::failed : Judgement::passed);
@@ -427,7 +427,7 @@ TEST(Gate, WhereABaselineDoesNotSayWhatIsNoticedTheUsualIs) {
     Measurement m = measurement();
     value(m, Quantity::equilibrium, "toe", 1) = 1.5;
     value(m, Quantity::recursive, "travel", 1) = 0;
-    const Verdict verdict = judged(b, m);
+    const GateVerdict verdict = judged(b, m);
     ASSERT_EQ(verdict.offences.size(), 2u);
     EXPECT_DOUBLE_EQ(verdict.offences[0].noticeable, 0.01 + 1e-3 * 32)
         << verdict.offences[0].channel;

@@ -148,13 +148,13 @@ TEST(RandomScenes, WhoPromisesKeepsItOrSaysThatHeDoesNot) {
             continue;
         }
         for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells) {
-            EXPECT_NE(cell.verdict, Verdict::wrong)
+            EXPECT_NE(cell.verdict, CellVerdict::wrong)
                 << seed << ", " << cell.side << ", " << cell.solver << ": " << cell.why << " "
                 << cell.detail;
             if (cell.solver != "equilibrium" && cell.solver != "energy" && cell.solver != "series")
                 continue;
             ++asked;
-            judged += cell.verdict == Verdict::right;
+            judged += cell.verdict == CellVerdict::right;
         }
     }
     EXPECT_GE(judged, asked * 4 / 10);
@@ -180,7 +180,8 @@ TEST(RandomScenes, ThatWereWrongOnceAreNotAgain) {
             "random",
             {.label = "as it is", .scene = parse_scene(random_scene(seed), "random.yaml")}};
         for (const auto& cell : stress({&trial, 1}, {.threads = 1}).cells)
-            EXPECT_TRUE(cell.verdict != Verdict::wrong && cell.verdict != Verdict::elsewhere)
+            EXPECT_TRUE(cell.verdict != CellVerdict::wrong &&
+                        cell.verdict != CellVerdict::elsewhere)
                 << seed << ", " << cell.side << ", " << cell.solver << ": " << cell.why << " "
                 << cell.detail;
     }

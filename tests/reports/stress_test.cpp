@@ -40,7 +40,7 @@ TEST(Survival, ScenesThatAreExtremeByTheirMakingAreRightOrHonest) {
     const auto survival = compare::stress(extremes());
     EXPECT_GT(survival.judged(), 300);
     for (const auto& cell : survival.cells)
-        EXPECT_TRUE(cell.verdict != compare::Verdict::wrong)
+        EXPECT_TRUE(cell.verdict != compare::CellVerdict::wrong)
             << fmt::format("{}, {}, {}, {}: {} {}", cell.scene, cell.variant, cell.side,
                            cell.solver, cell.why, cell.detail);
     if (HasFailure()) std::cout << stress_text(survival);

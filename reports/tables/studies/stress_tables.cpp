@@ -13,12 +13,13 @@ namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
+using compare::CellVerdict;
 using compare::finite_or_nan;
 using compare::Survival;
-using compare::Verdict;
 
-constexpr std::array verdicts{Verdict::right,     Verdict::no_claim, Verdict::reported_failure,
-                              Verdict::elsewhere, Verdict::unjudged, Verdict::wrong};
+constexpr std::array verdicts{
+    CellVerdict::right,     CellVerdict::no_claim, CellVerdict::reported_failure,
+    CellVerdict::elsewhere, CellVerdict::unjudged, CellVerdict::wrong};
 constexpr std::size_t terminal_width = 118;  // of a terminal
 
 compare::Column words(std::string name, std::string description = {}) {
@@ -132,7 +133,7 @@ std::string stress_text(const Survival& survival) {
     for (const auto& s : survival.skipped)
         fmt::format_to(out, "not run: {}, {}: {}\n", s.scene, s.variant, s.why);
     for (const auto& cell : survival.cells)
-        if (cell.verdict == Verdict::wrong)
+        if (cell.verdict == CellVerdict::wrong)
             fmt::format_to(out, "WRONG: {}: {}\n", where(cell), cell.why);
     return text;
 }
@@ -157,7 +158,7 @@ json stress_json(const Survival& survival) {
             {{"scene", s.scene}, {"sweep", s.sweep}, {"variant", s.variant}, {"why", s.why}});
     json wrong = json::array();
     for (const auto& c : survival.cells)
-        if (c.verdict == Verdict::wrong)
+        if (c.verdict == CellVerdict::wrong)
             wrong.push_back({{"scene", c.scene},
                              {"variant", c.variant},
                              {"way", c.side},
