@@ -35,7 +35,7 @@ using compare::ToleranceClass;
 struct GateOptions {
     std::vector<std::string> scenes;
     Settings settings;
-    std::string folder, junit, summary, kind, from, reason;
+    std::string folder, junit, summary, kind, reason;
     bool accept = false, as_json = false;
     Running running;
     compare::Progress progress;  // of the scene that is measured
@@ -106,9 +106,8 @@ std::string name_beside(const Task& task) {
     return name;
 }
 
-// Measurement of a scene by this build, or the one given by --from.
+// Measurement of a scene by this build.
 BaselineFile measured(const Task& task, const GateOptions& options) {
-    if (!options.from.empty()) return read_baseline(options.from);
     const LoadedScene loaded = load_scene(task.scene, options.settings);
     const Model& model = loaded.model;
     check_memory(model, {.legs = static_cast<int>(compare::legs.size())});
@@ -252,8 +251,6 @@ GatedScene gate_scene(const Task& task, const GateOptions& options) {
     } catch (const SceneError& error) {
         scene.bad_input = true;
         scene.verdict.reasons.emplace_back(error.what());
-    } catch (const BaselineError& error) {  // of --from
-        scene.verdict.reasons.emplace_back(error.what());
     }
     return scene;
 }
@@ -333,7 +330,6 @@ int accept(const GateOptions& options) {
             "--accept: not in CI (variable CI is set): a person accepts a baseline");
     if (blank(options.reason))
         throw std::invalid_argument("--accept: needs --reason, a text for the reviewer");
-    if (!options.from.empty()) throw std::invalid_argument("--accept: not with --from");
     if (options.as_json) throw std::invalid_argument("--accept: not with --json");
     if (!options.settings.empty()) throw std::invalid_argument("--accept: not with --set");
     int code = fine;
@@ -349,8 +345,6 @@ int gate(const GateOptions& options) {
     if (options.accept) return accept(options);
     const Delivery delivery{.as_json = options.as_json};
     if (!options.reason.empty()) throw std::invalid_argument("--reason: only with --accept");
-    if (!options.from.empty() && options.scenes.size() != 1)
-        throw std::invalid_argument("--from: needs exactly one SCENE");
     // GitHub's file exists already, and other steps write to it too.
     const char* given = std::getenv("GITHUB_STEP_SUMMARY");
     const bool to_append = given != nullptr && !options.summary.empty() && options.summary == given;
@@ -391,9 +385,7 @@ Command gate_command() {
         {"--summary", Text{&options->summary, a_file("*.md")},
          "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY"},
         {"--class", Text{&options->kind, one_of(kinds)},
-         "tolerances: same-build, cross-build or physical (default: by how the builds differ)"},
-        {"--from", Text{&options->from, a_file("*.json")},
-         "judge this measurement (a file like a baseline) without solving"}};
+         "tolerances: same-build, cross-build or physical (default: by how the builds differ)"}};
     list.push_back(json_option(options->as_json));
     list.push_back(jobs_option(options->running));
     list.push_back(quiet_option(options->running));

@@ -55,7 +55,6 @@ constexpr const char* report_schema = "elastocheck/report/1";
 struct ReportRequest {
     std::vector<std::string> scenes;
     Settings settings;
-    std::string from;  // a result.json instead of scenes
     std::string folder;
     std::string measured;        // CSV
     CandidateRequest candidate;  // external solver, for one scene
@@ -291,21 +290,6 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
     return document;
 }
 
-// A measurement over the curves of a result that is not solved again.
-void overlay(json& result, const ReportRequest& request) {
-    if (result["scenes"].size() != 1)
-        throw std::invalid_argument("report: --measured: the result has several scenes");
-    json& scene = result["scenes"][0];
-    const std::string why = add_measured(scene, request);
-    if (!why.empty() && scene.contains("verdict")) {
-        scene["verdict"]["conclusive"] = false;
-        scene["verdict"]["reasons"].push_back(why);
-        if (scene.contains("judgement"))
-            scene["judgement"]["verdict"] = name(compare::Grade::not_judged);
-    }
-    result = json::parse(result.dump());
-}
-
 // Answer of each scene, and whether it passes.
 json answer_document(const json& result, const std::vector<Answer>& answers,
                      const std::string& page) {
@@ -345,17 +329,15 @@ void remove_times(json& value) {
 
 // Returns the exit code. `reproduce` is the command line as given.
 int report(const ReportRequest& request, const std::string& reproduce) {
-    if (request.from.empty() == request.scenes.empty())
-        throw std::invalid_argument(
-            "report: needs scene files or --from a result.json, one of the two");
-    if (!request.measured.empty() && request.from.empty() && request.scenes.size() != 1)
+    if (request.scenes.empty()) throw std::invalid_argument("report: needs scene files");
+    if (!request.measured.empty() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --measured belongs to one scene; give one");
     if (!request.measured.empty() && request.candidate.wanted() && !request.candidate.map.empty())
         throw std::invalid_argument(
             "report: --map: is of --candidate or of --measured; give one of them");
     if (request.candidate.wanted() && request.scenes.size() != 1)
         throw std::invalid_argument("report: --candidate belongs to one scene; give one");
-    if (request.against && request.from.empty() && request.scenes.size() != 2)
+    if (request.against && request.scenes.size() != 2)
         throw std::invalid_argument("report: --against: needs two scenes, the base first");
     CandidateRequest candidate = request.candidate;
     if (!request.measured.empty()) candidate.map.clear();  // it is of the measurement
@@ -366,7 +348,7 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     if (request.open && request.archive)
         throw std::invalid_argument("--open: not with --archive, which has no page");
     if (request.live && (request.archive || request.scenes.size() != 1))
-        throw std::invalid_argument("--live: of one scene, and not with --archive or --from");
+        throw std::invalid_argument("--live: of one scene, and not with --archive");
     const std::string live =
         request.live ? live_page(request.scenes.front(), request.settings) : "";
     const std::string opener = request.open ? browser() : "";
@@ -377,34 +359,20 @@ int report(const ReportRequest& request, const std::string& reproduce) {
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
     (void)map_of(request.candidate);
     if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
-    if (!request.from.empty() &&
-        (request.quick || !request.only.empty() || !request.branches.empty()))
-        throw std::invalid_argument("report: --quick, --only and --branch: not with --from");
     if (request.quick && request.only == "evidence")
         throw std::invalid_argument("report: --quick leaves out what --only evidence shows");
-    std::string file = request.from;
-    json result;
-    if (!request.from.empty()) {
-        result = parse_result(read_whole(file), file);
-        if (!request.measured.empty()) overlay(result, request);
-    } else {
-        file = "result.json";
-        result = document(reproduce, provenance());
-        constexpr double solved = 0.95;  // the rest: the page
-        for (std::size_t k = 0; k < request.scenes.size(); ++k) {
-            const double each = solved / static_cast<double>(request.scenes.size());
-            const auto of_scene = [&, at = static_cast<double>(k)](std::string_view what,
-                                                                   double done) {
-                progress(fmt::format("{}: {}", request.scenes[k], what), (at + done) * each);
-            };
-            result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
-        }
-        remove_times(result);
-        result = json::parse(result.dump());  // as read from the file: NaN is null
+    json result = document(reproduce, provenance());
+    constexpr double solved = 0.95;  // the rest: the page
+    for (std::size_t k = 0; k < request.scenes.size(); ++k) {
+        const double each = solved / static_cast<double>(request.scenes.size());
+        const auto of_scene = [&, at = static_cast<double>(k)](std::string_view what, double done) {
+            progress(fmt::format("{}: {}", request.scenes[k], what), (at + done) * each);
+        };
+        result["scenes"].push_back(solve_scene(request.scenes[k], request, threads, of_scene));
     }
+    remove_times(result);
+    result = json::parse(result.dump());  // NaN is null
     if (request.against) {
-        if (result["scenes"].size() != 2)
-            throw std::invalid_argument("report: --against: the result has not two scenes");
         add_against(result["scenes"][0], result["scenes"][1]);
         // a variant has no verdict on the fast method unless a tolerance is given
         for (auto& scene : result["scenes"])
@@ -413,7 +381,7 @@ int report(const ReportRequest& request, const std::string& reproduce) {
         result = json::parse(result.dump());
     }
     const auto answers =
-        write_report(result, file, request.folder,
+        write_report(result, "result.json", request.folder,
                      {.archive = request.archive,
                       .progress = [](std::string_view what) { progress(what, 0.95); },
                       .live = live});
@@ -453,8 +421,6 @@ Command report_command() {
         {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
          "scene files (YAML)"},
         set_option(request->settings),
-        {"--from", Text{&request->from, a_file("*.json")},
-         "write the report from this result.json without solving"},
         {"-o,--output", Text{&request->folder, a_folder()},
          "folder for report.html, report.md, result.json, curves.csv, figures/", true},
         {"--tolerance", Text{&request->tolerance},

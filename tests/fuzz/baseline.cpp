@@ -1,12 +1,23 @@
 #include "reports/gate/baseline.hpp"
 
+#include <algorithm>
+
 #include "compare/comparison/changes.hpp"
 #include "reports/files/files.hpp"
 #include "reports/gate/gate_report.hpp"
 #include "reports/json/json.hpp"
+#include "reports/text/escape.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace elastocheck::fuzz {
+
+void expect_plain(std::string_view what, std::string_view text) {
+    std::string one_line(text);
+    std::ranges::replace(one_line, '\n', ' ');
+    if (const std::string wrong = reports::flaw(one_line); !wrong.empty())
+        throw Fault(std::string(what) + ": " + wrong);
+}
+
 namespace {
 
 using reports::BaselineFile;

@@ -24,8 +24,6 @@ struct Target {
 
 // A scene as text, up to the model that the solvers take. A line `# --set PATH=VALUE` is a setting as well.
 void scene(std::string_view input);
-// A result document: every text of the report made of it.
-void result(std::string_view input);
 // A baseline: judged against a sound one, both ways round, and told in every form the gate has.
 void baseline(std::string_view input);
 // Measured curves: compared with curves of a suspension, and told.
@@ -40,7 +38,6 @@ void points(std::string_view input);     // .csv, .shk
 void property(std::string_view input);   // .bus, .spr, .bum, .reb
 
 inline constexpr std::array targets{Target{"scene", scene},
-                                    Target{"result", result, true},
                                     Target{"baseline", baseline, true},
                                     Target{"measurement", measurement},
                                     Target{"table", table},

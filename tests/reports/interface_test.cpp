@@ -149,7 +149,7 @@ TEST(Names, AHyphenIsNoFileAndNoFolder) {
     const Folder folder;
     for (const std::string arguments :
          {"compare S -o -", "solve S -o -", "solve S -o-", "solve S --method series --rates -",
-          "converge S --output=-", "trade S -o -", "report S -o -", "report --from - -o out",
+          "converge S --output=-", "trade S -o -", "report S -o -", "report - -o out",
           "gate S --junit -", "gate S --summary=-", "gate S --baseline -", "inspect -"}) {
         const std::string given = std::regex_replace(arguments, std::regex("\\bS\\b"), bushing);
         const Said said =
@@ -300,7 +300,6 @@ TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
              {"elastocheck inspect ca", {"cars", "car.yaml"}},
              {"elastocheck gate car.yaml ca", {"cars", "car.yaml"}},  // any number of scenes
              {"elastocheck report --measured ca", {"cars", "car.csv"}},
-             {"elastocheck report --from re", {"result.json"}},
              {"elastocheck compare car.yaml -o ca", {"cars"}}})
         EXPECT_EQ(offered(line, folder.path.string()), words) << line;
 }
@@ -359,16 +358,11 @@ TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
 
 // ---- report
 
-// Draws a report from an existing document, so that nothing is solved.
 struct Report {
     Folder folder;
-    std::string document = (folder.path / "in/result.json").string();
-    Report() {
-        expect_says("compare " + bushing + " --steps 4 -o " + (folder.path / "in").string(), 0);
-    }
     Said draws(const std::string& options, const std::string& environment = "") const {
         return support::says("env -u CI -u BROWSER " + environment +
-                             " " ELASTOCHECK_COMMAND " report --from " + document + " -o " +
+                             " " ELASTOCHECK_COMMAND " report --quick " + bushing + " -o " +
                              (folder.path / "out").string() + " " + options);
     }
 };
@@ -392,7 +386,7 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
     expect_parts(said.out, {answer["scenes"][0]["answer"].get<std::string>()});
 }
 
-TEST(ReportCommand, LaysMeasuredPointsOverAResultWithoutSolving) {
+TEST(ReportCommand, LaysMeasuredPointsOverTheCurves) {
     const Report report;
     report.folder.write("rig.csv", "Fz [kN],X,time\n1,-99.5,0\n-2,-101,1\n");
     report.folder.write("map.yaml",
@@ -408,25 +402,11 @@ TEST(ReportCommand, LaysMeasuredPointsOverAResultWithoutSolving) {
     EXPECT_EQ(points["readings"][0]["channels"][0]["compared"], 2);
     expect_parts(text_of(report.folder.path / "out/report.html"),
                  {"Comparison with the measurement"});
-    // nothing within range: could not be judged, as where the scene is solved
+    // nothing within range: could not be judged
     report.folder.write("rig.csv", "Fz [kN],X\n1e6,0\n");
     expect_said(report.draws(measured + map), 3, {.err = {"is within the range of the legs"}});
     EXPECT_EQ(report.draws(map).code, 2) << "a map of nothing";
     EXPECT_EQ(report.draws(measured + map + " --candidate x.csv").code, 2) << "a map of two";
-}
-
-// Pass and fail are of a candidate. Nobody asked about the published recursion.
-TEST(ReportCommand, JudgesOnlyWhatItWasAskedToJudge) {
-    const Report report;
-    for (const char* verdict : {"pass", "fail", "not judged"}) {
-        json document = json::parse(text_of(report.document));
-        document["scenes"][0]["judgement"] = {
-            {"verdict", verdict}, {"method", "published"}, {"tolerance", {{"mm", 0.01}}}};
-        report.folder.write("in/result.json", document.dump());
-        expect_said(report.draws(""), 0, {.out = {"single_bushing.yaml: judged\nThe page: "}});
-        const std::string page = text_of(report.folder.path / "out/report.html");
-        expect_parts(page, {}, {"class=\"mark"});
-    }
 }
 
 TEST(ReportCommand, OpensThePageByWhatBrowserSays) {

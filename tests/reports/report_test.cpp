@@ -50,7 +50,7 @@ TEST(Report, IsAFunctionOfTheDocumentAndOfNothingElse) {
     const Folder folder;
     write_report(sample_result(), "result.json", folder.path / "a");
     const std::string copy = text_of(folder.path / "a" / "result.json");
-    write_report(parse_result(copy, "copy"), "copy", folder.path / "b");
+    write_report(json::parse(copy), "copy", folder.path / "b");
     const Contents a = contents_of(folder.path / "a"), b = contents_of(folder.path / "b");
     ASSERT_EQ(a.size(), b.size());
     for (const auto& [name, text] : a) EXPECT_EQ(text, b.at(name)) << name;
@@ -222,52 +222,26 @@ TEST(Report, ADocumentThatCannotBeDrawnLeavesTheOldReport) {
     EXPECT_EQ(contents_of(folder.path / "r"), before);
 }
 
-TEST(ReportCommand, DrawsFromADocumentAndNamesWhatIsWrongWithIt) {
+TEST(Report, AnInconclusiveSceneIsMarkedAndSaysWhy) {
     const Folder folder;
-    const auto good = folder.write("result.json", small_result("good").dump());
-    const std::string out = (folder.path / "out").string();
-    expect_said(support::says(command + " report --from " + good + " -o " + out), 0);
-    EXPECT_TRUE(fs::exists(folder.path / "out" / "report.html"));
-    json bad = small_result("bad");
-    bad["scenes"][0]["branches"][0].erase("legs");
-    expect_said(support::says(command + " report --from " + folder.write("bad.json", bad.dump()) +
-                              " -o " + out),
-                2, {.err = {"bad.json: scenes[0].branches[0].legs: missing"}});
     json doubtful = small_result("doubtful");
     doubtful["scenes"][0]["verdict"] = {
         {"conclusive", false}, {"numbers_compared", 0}, {"reasons", {"nothing was compared"}}};
-    const auto inconclusive =
-        expect_said(support::says(command + " report --from " +
-                                  folder.write("d.json", doubtful.dump()) + " -o " + out),
-                    3);
+    EXPECT_FALSE(write_report(doubtful, "result.json", folder.path / "out")[0].conclusive);
     expect_parts(
         text_of(folder.path / "out" / "report.html"),
         {"class=\"badge\">inconclusive", "<p class=\"answer\">Not judged: nothing was compared; "});
 }
 
-TEST(ReportCommand, ADocumentNestedTooDeepIsRefusedNotCrashedOn) {
-    const Folder folder;
-    for (const std::string open : {"[", "{\"a\":"}) {
-        std::string deep = "{\"schema\":\"elastocheck/result/3\",\"scenes\":";
-        for (int k = 0; k < 100'000; ++k) deep += open;
-        expect_said(support::says(command + " report --from " + folder.write("deep.json", deep) +
-                                  " -o " + (folder.path / "out").string()),
-                    2, {.err = {"deep.json: nested more than 64 levels deep"}});
-    }
-}
-
 TEST(ReportCommand, SaysWhatItNeeds) {
     const Folder folder;
     const auto scene = scenes + "/single_bushing.yaml";
-    const auto document = folder.write("document.json", small_result("x").dump());
+    folder.write("document.json", "{}");
     struct Case {
         std::string arguments, why;
     };
     for (const auto& [arguments, why] :
-         {Case{"-o out", "needs scene files or --from"},
-          Case{scene + " --from " + document + " -o out", "one of the two"},
-          Case{scene, "--output is required"},
-          Case{"--from " + document + ".none -o out", "cannot be read"},
+         {Case{"-o out", "needs scene files"}, Case{scene, "--output is required"},
           Case{scene + " " + scene + " --measured x.csv -o out", "--measured belongs to one scene"},
           Case{scene + " -o " + folder.path.string(), "document.json: is no part of a report"},
           Case{scene + " " + scene + ".none -o out", "single_bushing.yaml.none: no such file"},
@@ -301,10 +275,10 @@ TEST(ReportCommand, SolvesAndDrawsAScene) {
 TEST(ReportCommand, KilledAtAnyMomentItLeavesTheOldReportOrTheNewOne) {
     const Folder folder;
     const std::string out = (folder.path / "out").string();
-    const std::string documents[] = {folder.write("a.json", small_result("first").dump()),
-                                     folder.write("b.json", small_result("second").dump())};
-    const auto draw = [&](const std::string& document) {
-        const char* argv[] = {command.c_str(), "report", "--from", document.c_str(), "-o",
+    const auto bar = support::text_of(scenes + "/pinned_bar.yaml");
+    const std::string documents[] = {folder.write("a.yaml", bar), folder.write("b.yaml", bar)};
+    const auto draw = [&](const std::string& scene) {
+        const char* argv[] = {command.c_str(), "report", "--quick", scene.c_str(), "-o",
                               out.c_str(),     nullptr};
         posix_spawn_file_actions_t quiet;
         ::posix_spawn_file_actions_init(&quiet);

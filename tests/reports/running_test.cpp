@@ -73,12 +73,7 @@ TEST(Running, KinematicsAndComplianceNeedNoStudy) {
             arguments == std::string("--quick"));
     }
     EXPECT_TRUE(scene_of(folder, "--only evidence").contains("convergence"));
-    const std::string to = (folder.path / "report").string();
-    const std::string again = (folder.path / "again").string();
-    expect_says("report --from " + to + "/result.json -o " + again, 0);
-    EXPECT_EQ(text_of(to + "/report.html"), text_of(again + "/report.html"));
-    expect_says("report " + strut + " --only kinematics -o " + again, 2);
-    expect_says("report --from " + to + "/result.json --quick -o " + again, 2);
+    expect_says("report " + strut + " --only kinematics -o " + (folder.path / "again").string(), 2);
 }
 
 TEST(Running, AReportOfSomeBranchesHasTheseAlone) {

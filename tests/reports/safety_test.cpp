@@ -184,16 +184,14 @@ TEST(Harm, StepCountsThatNoMemoryHoldsAreRefusedBeforeTheWork) {
 TEST(Harm, WhatCannotBeNamedOrOpenedIsBadInput) {
     const Folder folder;
     fs::create_symlink("loop", folder.path / "loop");
-    const std::string document = folder.write("r.json", "{}");
     for (const std::string& arguments : std::vector<std::string>{
              "compare " + scene + " -o ''", "solve " + scene + " -o ''",
              "report " + scene + " -o ''", "gate " + scene + " --junit ''", "gate --baseline ''",
              std::string("solve ''"), std::string("inspect loop"), "compare " + scene + " -o loop",
              "compare " + scene + " -o loop/x", "solve " + scene + " -o loop/x.csv",
-             "report " + scene + " -o loop", std::string("report --from loop -o out"),
+             "report " + scene + " -o loop", std::string("report loop -o out"),
              std::string("gate --baseline loop"), "gate " + scene + " --junit loop/j.xml",
-             "report " + scene + " --measured loop -o out",
-             std::string("report --from /dev/zero -o out")})
+             "report " + scene + " --measured loop -o out"})
         expect_said(in(folder, arguments), 2, {.not_err = {"internal error"}});
 }
 

@@ -514,29 +514,6 @@ TEST(Sections, ForcesOfABeamAreThoseOfItsMostLoadedSegment) {
     }
 }
 
-TEST(Sections, ParseResultRefusesWhatItCannotRead) {
-    const auto refusal = [](const std::string& text) {
-        try {
-            (void)parse_result(text, file);
-        } catch (const ResultError& error) {
-            return std::string(error.what());
-        }
-        return std::string("read");
-    };
-    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/2\", \"scene\": {}}").substr(0, 63),
-              "result.json: schema: 'elastocheck/result/2' is not a document t");
-    const std::string whole = sample_result().dump();
-    EXPECT_EQ(refusal(whole), "read");
-    for (const std::string& text : {whole.substr(0, whole.size() / 2), std::string()})
-        EXPECT_TRUE(refusal(text).starts_with("result.json: is no JSON, or was cut off ("))
-            << refusal(text);
-    EXPECT_EQ(refusal("[]"), "result.json: expected an object, found array");
-    EXPECT_EQ(refusal("{}"), "result.json: schema: missing");
-    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\"}"), "result.json: scenes: missing");
-    EXPECT_EQ(refusal("{\"schema\": \"elastocheck/result/3\", \"scenes\": []}"),
-              "result.json: scenes: it has no scene");
-}
-
 TEST(Sections, WarningsOfTheReaderStandBelowTheFirstSentence) {
     json result = sample_result();
     expect_parts(said(result, "first"), {}, {"Warning"});

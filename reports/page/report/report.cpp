@@ -13,7 +13,6 @@
 #include "reports/files/files.hpp"
 #include "reports/files/folder.hpp"
 #include "reports/files/templates.hpp"
-#include "reports/json/json.hpp"
 #include "reports/json/json_cursor.hpp"
 #include "reports/page/answer.hpp"
 #include "reports/page/common.hpp"
@@ -263,48 +262,6 @@ std::string numbers_csv(const json& result, const std::string& file) {
 
 namespace {
 
-// Checks also fields without a section, since they are copied to the report's own result.json. (It
-// escapes line ends.)
-void expect_plain(const JsonCursor& field) {
-    const auto check = [&](std::string text) {
-        std::ranges::replace_if(
-            text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-        if (const std::string wrong = flaw(text); !wrong.empty())
-            field.fail("expected plain text: " + wrong);
-    };
-    if (field.value->is_string()) check(field.value->get<std::string>());
-    if (field.value->is_array())
-        for (const auto& item : field.items()) expect_plain(item);
-    if (field.value->is_object())
-        for (const auto& [key, value] : field.value->items()) {
-            check(key);
-            expect_plain({&value, field.path.empty() ? key : field.path + "." + key, field.file});
-        }
-}
-
-}  // namespace
-
-json parse_result(std::string_view text, const std::string& file) {
-    json result;
-    const JsonCursor root{&result, "", &file};
-    try {
-        result = parse_json(text);
-    } catch (const JsonError& error) {
-        root.fail(error.what());
-    }
-    const JsonCursor schema = root["schema"];
-    if (schema.text() != result_schema)
-        schema.fail(
-            fmt::format("'{}' is not a document this program reads; allowed: '{}'. Run the command "
-                        "that made it again",
-                        schema.text(), result_schema));
-    if (root["scenes"].items().empty()) root["scenes"].fail("it has no scene");
-    expect_plain(root);
-    return result;
-}
-
-namespace {
-
 // A report before its figures are drawn.
 struct Draft {
     Page page{};
@@ -389,16 +346,6 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
 }
 
 }  // namespace
-
-std::vector<NamedContent> report_texts(const json& result, const std::string& file) {
-    Draft report = draft({&result, "", &file});
-    std::vector<NamedContent> files;
-    for (const auto& plot : report.plots) files.push_back(data_file(plot));
-    report.page.pictures.resize(report.plots.size());
-    for (const bool archive : {true, false})
-        std::ranges::move(texts(report, result, file, archive).files, std::back_inserter(files));
-    return files;
-}
 
 std::vector<Answer> write_report(const json& result, const std::string& file,
                                  const fs::path& folder, const ReportOptions& options) {

@@ -11,14 +11,6 @@
 
 namespace elastocheck::reports {
 
-// Parses a result document of the current schema. Throws ResultError, naming `file`.
-nlohmann::ordered_json parse_result(std::string_view text, const std::string& file);
-
-// All text files of a report, including the data of its figures, without drawing or
-// writing. Also for documents made elsewhere. Throws ResultError.
-std::vector<NamedContent> report_texts(const nlohmann::ordered_json& result,
-                                       const std::string& file);
-
 struct ReportOptions {
     // only what belongs in version control: README.md, numbers.csv, figures/*.svg
     bool archive = false;
@@ -39,8 +31,7 @@ struct Answer {
 };
 
 // Replaces `folder` by report.html, report.md, result.json, curves.csv and figures/, in one step,
-// and returns the answer of each scene. `result` is from parse_result, `file` its name for
-// messages. Throws ResultError, FileError; an older report is then untouched.
+// and returns the answer of each scene. NaN is null in `result`; `file` is its name in messages. Throws ResultError, FileError; an older report is then untouched.
 std::vector<Answer> write_report(const nlohmann::ordered_json& result, const std::string& file,
                                  const std::filesystem::path& folder,
                                  const ReportOptions& options = {});
