@@ -376,13 +376,13 @@ Command gate_command() {
     std::vector<std::string> kinds;
     for (const auto kind : compare::tolerance_classes) kinds.emplace_back(name(kind));
     std::vector<Option> list{
-        {"SCENE", TextList{&options->scenes, TextList::Form::separate, a_file("*.yaml")},
+        {"SCENE", TextList{&options->scenes, TextList::Form::separate, a_file()},
          "scene files (default: every scene of the baselines)"},
         set_option(options->settings),
         {"--baseline", Text{&options->folder, a_folder()},
          "folder of the baselines (default: baselines/ beside each SCENE, or here)"},
-        {"--junit", Text{&options->junit, a_file("*.xml")}, "write JUnit XML to this file"},
-        {"--summary", Text{&options->summary, a_file("*.md")},
+        {"--junit", Text{&options->junit, a_file()}, "write JUnit XML to this file"},
+        {"--summary", Text{&options->summary, a_file()},
          "write a Markdown summary to this file; added to $GITHUB_STEP_SUMMARY"},
         {"--class", Text{&options->kind, one_of(kinds)},
          "tolerances: same-build, cross-build or physical (default: by how the builds differ)"}};

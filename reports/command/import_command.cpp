@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
-#include "compare/design/maps.hpp"
 #include "compare/studies/formulations.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
@@ -52,18 +51,15 @@ struct ExportRequest {
     std::string over;                   // branch
     std::string rows;                   // "joints.rack=-50:50:11"; empty: one variable
     std::vector<std::string> channels;  // none: the main positions and angles
-    std::string within = "0.01mm,0.001deg,1%";
-    std::string axes;  // of blocks: "iso", "sae"; empty: iso
+    std::string axes;                   // of blocks: "iso", "sae"; empty: iso
 };
 
 constexpr FileKind scene_file{"scene made by import", "# Imported from "};
 constexpr FileKind dataset_file{"dataset made by export", "Exported model name:"};
 constexpr FileKind lookup_file{"lookup table made by export", lookup_head};
-constexpr FileKind polynomial_file{"polynomials made by export", polynomial_head};
 constexpr FileKind blocks_file{"K&C blocks made by export", blocks_head};
 constexpr FileKind suspension_file{"suspension made by export", "// Exported by elastocheck"};
 
-constexpr int finer = 4;  // polynomials are judged at so many points for each step of the branch
 constexpr int steps_of_conversion = 20;  // of each branch, for the effect of a conversion
 constexpr double least_told = 1e-9;      // [mm], [deg]: smaller differences are rounding
 
@@ -321,17 +317,13 @@ int add_compliance(const ExportRequest& request, KCBlocks& blocks) {
 }
 
 const FileKind& kind_of(const std::string& format) {
-    return format == "polynomial" ? polynomial_file
-           : format == "blocks"   ? blocks_file
-                                  : lookup_file;
+    return format == "blocks" ? blocks_file : lookup_file;
 }
 
 // Solves the branch once for each row. NaN beyond the end of a branch.
 int export_map(const ExportRequest& request) {
-    const bool polynomial = request.format == "polynomial", blocks = request.format == "blocks";
+    const bool blocks = request.format == "blocks";
     if (!request.output.empty()) check_may_write(request.output, kind_of(request.format));
-    const auto tolerance =
-        compare::parse_tolerance(request.within, compare::ToleranceParts::with_forces);
     if (request.over.empty())
         throw std::invalid_argument(
             fmt::format("--format {} needs --over BRANCH, the branch whose parameter is the first "
@@ -341,7 +333,7 @@ int export_map(const ExportRequest& request) {
         throw std::invalid_argument("--channels: blocks have their own outputs");
     Rows rows{{}, {0}};
     if (!request.rows.empty()) rows = rows_of(request.rows);
-    compare::MapTable table;
+    MapTable table;
     table.y = rows.values;
     MapAxes axes;
     KCBlocks made;
@@ -378,10 +370,9 @@ int export_map(const ExportRequest& request) {
                         ? ""
                         : fmt::format("{} [as in the scene]", fmt::join(rows.held, " "))};
         }
-        const auto path = compare::walk(
-            loaded.model, table.channels, branch,
-            compare::sides_of(loaded.model, branch, polynomial ? finer * branch.steps : 0),
-            {.leg = compare::Leg::equilibrium});
+        const auto path = compare::walk(loaded.model, table.channels, branch,
+                                        compare::sides_of(loaded.model, branch),
+                                        {.leg = compare::Leg::equilibrium});
         if (path.outcome != Outcome::converged) {
             print_error("{}: {}: {}\n",
                         rows.held.empty()
@@ -406,25 +397,12 @@ int export_map(const ExportRequest& request) {
         return could_not_judge;
     }
     std::string text;
-    int code = fine;
     if (blocks) {
         if (const int failed = add_compliance(request, made); failed != fine) return failed;
         made.values = table.values;
         made.scene = axes.scene;
         made.x = branch_breakpoints(*first, written(*first), table.x);
         text = blocks_csv(made, request.axes == "sae" ? BlockAxes::sae : BlockAxes::iso);
-    } else if (polynomial) {
-        const auto maps = compare::polynomial_maps(table, tolerance, 2 * finer);
-        for (const auto& map : maps)
-            if (!map.within) {
-                code = limit_broken;
-                print_error(
-                    "{}: no polynomial up to degree {} is within the tolerance; the least "
-                    "error is {:.2g} {}\n",
-                    table.channels[map.channel].name, compare::most_map_degree, map.error,
-                    symbol(table.channels[map.channel].unit));
-            }
-        text = polynomial_csv(table, maps, axes, 2 * finer);
     } else {
         text = lookup_csv(table, axes);
     }
@@ -432,18 +410,17 @@ int export_map(const ExportRequest& request) {
         print("{}", text);
     else
         write_whole(request.output, text, kind_of(request.format));
-    return code;
+    return fine;
 }
 
 int export_scene(const ExportRequest& request) {
-    const bool map =
-        request.format == "lookup" || request.format == "polynomial" || request.format == "blocks";
+    const bool map = request.format == "lookup" || request.format == "blocks";
     for (const auto& [given, option] : {std::pair{!request.over.empty(), "--over"},
                                         {!request.rows.empty(), "--rows"},
                                         {!request.channels.empty(), "--channels"}})
         if (given && !map)
             throw std::invalid_argument(
-                fmt::format("{}: only with --format lookup, polynomial or blocks", option));
+                fmt::format("{}: only with --format lookup or blocks", option));
     if (!request.axes.empty() && request.format != "blocks")
         throw std::invalid_argument("--axes: only with --format blocks");
     if (map && (request.allow_missing || !request.formulation.empty()))
@@ -480,9 +457,9 @@ Command import_command() {
         "import",
         "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
         "hardpoints .sub, lists of points .csv .shk",
-        {{"FILE", Text{&request->file, a_file("*")}, "the model (.adm, .json, .sub, .csv, .shk)",
+        {{"FILE", Text{&request->file, a_file()}, "the model (.adm, .json, .sub, .csv, .shk)",
           true},
-         {"-o,--output", Text{&request->output, a_file("*.yaml")}, "write the scene to this file"},
+         {"-o,--output", Text{&request->output, a_file()}, "write the scene to this file"},
          {"--wheel", Text{&request->wheel},
           "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
          {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
@@ -511,23 +488,18 @@ Command export_command() {
         "export",
         "Export the trimmed scene as a model of ADAMS or Chrono, or its outputs as a map",
         {scene_option(request->scene),
-         {"--format",
-          Text{&request->format, one_of({"adm", "chrono", "lookup", "polynomial", "blocks"})},
+         {"--format", Text{&request->format, one_of({"adm", "chrono", "lookup", "blocks"})},
           "adm (default): an ADAMS dataset; chrono: a suspension of Chrono::Vehicle (JSON); "
-          "lookup: a table of outputs over a branch (CSV); polynomial: the same as polynomials; "
-          "blocks: K&C blocks in SI units (CSV)"},
-         {"-o,--output", Text{&request->output, a_file("*.adm *.json *.csv")},
-          "write the model to this file"},
-         {"--over", Text{&request->over}, "lookup, polynomial, blocks: the branch"},
+          "lookup: a table of outputs over a branch (CSV); blocks: K&C blocks in SI units (CSV)"},
+         {"-o,--output", Text{&request->output, a_file()}, "write the model to this file"},
+         {"--over", Text{&request->over}, "lookup, blocks: the branch"},
          {"--rows", Text{&request->rows},
-          "lookup, polynomial, blocks: a second variable, which the branch holds: "
+          "lookup, blocks: a second variable, which the branch holds: "
           "travel=-0.08:0.08:9"},
          {"--axes", Text{&request->axes, one_of({"iso", "sae"})},
           "blocks: x forward, y left, z up (iso, default), or x forward, y right, z down (sae)"},
          {"--channels", TextList{&request->channels, TextList::Form::commas},
-          "lookup, polynomial: outputs, as for solve (default: the main positions and angles)"},
-         {"--within", Text{&request->within},
-          "polynomial: its limit (default: 0.01mm,0.001deg,1%)"},
+          "lookup: outputs, as for solve (default: the main positions and angles)"},
          {"--formulation", Text{&request->formulation, one_of({"adams", "chrono"})},
           "adams or chrono, as the format: convert the bushings to that program's formulation "
           "and report the change of the outputs"},

@@ -54,8 +54,7 @@ Command new_command() {
     const auto request = std::make_shared<Request>();
     return {"new",
             "Print a template scene; without a name, list the templates",
-            {{"NAME", Text{&request->name, such_as(templates())}, "name of the template"},
-             json_option(request->as_json)},
+            {{"NAME", Text{&request->name}, "name of the template"}, json_option(request->as_json)},
             [request](const std::string&) { return new_scene(request->name, request->as_json); }};
 }
 

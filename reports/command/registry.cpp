@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "reports/command/grammar/completion.hpp"
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/grammar/manual.hpp"
 #include "reports/files/provenance.hpp"
@@ -68,20 +67,6 @@ Program program_with(std::string (*place)(const std::string&)) {
             place("models/scenes/README.md"), place("reports/README.md"))};
 }
 
-// A hidden command that prints a text made from its only argument.
-Command printing(const char* name, const char* description, std::vector<Option> options,
-                 std::function<std::string()> text) {
-    return {.name = name,
-            .description = description,
-            .options = std::move(options),
-            .run =
-                [text = std::move(text)](const std::string&) {
-                    print(text());
-                    return fine;
-                },
-            .hidden = true};
-}
-
 }  // namespace
 
 Program program() { return program_with(documentation); }
@@ -94,17 +79,15 @@ std::vector<Command> commands() {
                              stress_command(),     equilibria_command(), sensitivity_command(),
                              solve_for_command(),  optimise_command(),   fit_command(),
                              tolerances_command(), study_command(),      live_command()};
-    const auto given = std::make_shared<std::string>();
-    all.push_back(printing(
-        "completion", "Print the completion of this command for a shell",
-        {{"SHELL", Text{given.get(), one_of({"bash", "zsh", "fish"})}, "bash, zsh or fish", true}},
-        [given] { return completion(*given); }));
-    all.push_back(printing("complete", "Print what may stand at the end of a command line",
-                           {{"LINE", Text{given.get()}, "the line up to the cursor", true}},
-                           [given] { return offers(commands(), *given); }));
-    all.push_back(printing("man", "Print the page of the manual", {}, [] {
-        return manual(program_with(installed), commands(), provenance().version);
-    }));
+    all.push_back({.name = "man",
+                   .description = "Print the page of the manual",
+                   .options = {},
+                   .run =
+                       [](const std::string&) {
+                           print(manual(program_with(installed), commands(), provenance().version));
+                           return fine;
+                       },
+                   .hidden = true});
     return all;
 }
 

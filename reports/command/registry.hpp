@@ -13,8 +13,7 @@ namespace elastocheck::reports {
 // which they are in the source tree for a program in its build tree.
 Program program();
 
-// In the order of --help; then the hidden ones that print this description: completion, complete,
-// man.
+// In the order of --help; then the hidden one that prints this description: man.
 std::vector<Command> commands();
 
 }  // namespace elastocheck::reports

@@ -63,7 +63,6 @@ struct ReportRequest {
     std::string only;                   // kc, evidence; empty: both
     bool quick = false;
     Running running;
-    bool archive = false;
     bool against = false;  // compare the second of two scenes with the first
     bool as_json = false;  // write the answers as a document to standard output
     bool live = false;     // live.html beside the page
@@ -345,10 +344,8 @@ int report(const ReportRequest& request, const std::string& reproduce) {
     const auto start = std::chrono::steady_clock::now();
     const int threads = threads_of(request.running);
     // Invalid requests are rejected before the work.
-    if (request.open && request.archive)
-        throw std::invalid_argument("--open: not with --archive, which has no page");
-    if (request.live && (request.archive || request.scenes.size() != 1))
-        throw std::invalid_argument("--live: of one scene, and not with --archive");
+    if (request.live && request.scenes.size() != 1)
+        throw std::invalid_argument("--live: of one scene");
     const std::string live =
         request.live ? live_page(request.scenes.front(), request.settings) : "";
     const std::string opener = request.open ? browser() : "";
@@ -380,11 +377,9 @@ int report(const ReportRequest& request, const std::string& reproduce) {
                 scene.erase("judgement");
         result = json::parse(result.dump());
     }
-    const auto answers =
-        write_report(result, "result.json", request.folder,
-                     {.archive = request.archive,
-                      .progress = [](std::string_view what) { progress(what, 0.95); },
-                      .live = live});
+    const auto answers = write_report(
+        result, "result.json", request.folder,
+        {.progress = [](std::string_view what) { progress(what, 0.95); }, .live = live});
     progress("");
     int code = fine;
     // the verdict of a candidate counts for the page, as in `judge`
@@ -402,7 +397,7 @@ int report(const ReportRequest& request, const std::string& reproduce) {
                 print_error("{}: inconclusive: {}\n", answer.source, reason);
         }
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    const std::string page = request.folder + (request.archive ? "/README.md" : "/report.html");
+    const std::string page = request.folder + "/report.html";
     if (request.as_json)
         print_document(answer_document(result, answers, page));
     else if (request.against)
@@ -418,14 +413,14 @@ int report(const ReportRequest& request, const std::string& reproduce) {
 Command report_command() {
     const auto request = std::make_shared<ReportRequest>();
     std::vector<Option> options{
-        {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+        {"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file()},
          "scene files (YAML)"},
         set_option(request->settings),
         {"-o,--output", Text{&request->folder, a_folder()},
-         "folder for report.html, report.md, result.json, curves.csv, figures/", true},
+         "folder for report.html, report.md, result.json, curves.csv, numbers.csv, figures/", true},
         {"--tolerance", Text{&request->tolerance},
          "required accuracy (default: 0.01mm,0.001deg,1%)"},
-        {"--measured", Text{&request->measured, a_file("*.csv")},
+        {"--measured", Text{&request->measured, a_file()},
          "CSV of measured curves, for comparison"},
         {"--branch", TextList{&request->branches, TextList::Form::separate},
          "only these branches of the scene"},
@@ -443,9 +438,6 @@ Command report_command() {
                    {{"--against", Flag{&request->against},
                      "of two scenes: what the second has "
                      "otherwise than the first, as a section"},
-                    {"--archive", Flag{&request->archive},
-                     "the form for version control: README.md, "
-                     "numbers.csv, figures/*.svg, without times"},
                     {"--live", Flag{&request->live},
                      "write live.html beside the page, which solves the scene again while its "
                      "hardpoints are moved"},

@@ -68,7 +68,7 @@ Command sensitivity_command() {
           "stations BRANCH:VALUE in place of --points for that branch, such as jounce:1500"},
          {"--most", Integer{&request->most, 0, 100000},
           "numbers shown per output, those with the largest effect (default: 5; 0: all)"},
-         {"--csv", Text{&request->csv, a_file("*.csv")}, "file of all derivatives at all stations"},
+         {"--csv", Text{&request->csv, a_file()}, "file of all derivatives at all stations"},
          set_option(request->settings),
          json_option(request->as_json)},
         [request](const std::string& line) {

@@ -171,14 +171,14 @@ Command solve_command() {
           "balanced, tangent, chord, midpoint, adaptive or series"},
          {"--arc-length", Flag{&given->solver.recursion.arc_length},
           "series: continuation by arc length, through limit points"},
-         {"--rates", Text{&given->rates, a_file("*.csv")},
+         {"--rates", Text{&given->rates, a_file()},
           "series: write derivatives of travel and outputs to this CSV file"},
-         {"--states", Text{&given->states, a_file("*.jsonl")},
+         {"--states", Text{&given->states, a_file()},
           "write the poses of the bodies to this file (JSON lines)"},
          {"--channels", TextList{&given->channels, TextList::Form::commas},
           "outputs to write, in this order: NAME,... as in the CSV's head; * matches any letters"},
          every_option(given->solver.every),
-         {"-o,--output", Text{&given->folder, a_file("*.csv")}, "write the CSV to this file"}});
+         {"-o,--output", Text{&given->folder, a_file()}, "write the CSV to this file"}});
     return {"solve", "Solve a scene with one method and print the curves as CSV",
             std::move(options),
             [given](const std::string& line) { return solve(*given, given->delivery(line)); }};

@@ -93,7 +93,7 @@ Command stress_command() {
     const auto request = std::make_shared<StressRequest>();
     return {"stress",
             "Stress test: solve transformed and extreme scenes by every leg and method",
-            {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file("*.yaml")},
+            {{"SCENE", TextList{&request->scenes, TextList::Form::separate, a_file()},
               "scene files (YAML); default: all built-in scenes and those with extreme geometry"},
              set_option(request->settings),
              output_option(request->folder, "folder for stress.json and cells.csv"),

@@ -411,18 +411,13 @@ std::string figure_data(const Figure& figure) {
 
 Svg draw(const Figure& figure) { return figure.sheet ? draw_sheet(figure) : draw_plot(figure); }
 
-NamedContent data_file(const Plot& plot) { return {plot.name + ".csv", figure_data(*plot.figure)}; }
-
-std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder,
-                               bool with_data) {
+std::vector<Illustration> draw(const std::vector<Plot>& plots, const fs::path& folder) {
     std::vector<Illustration> pictures;
     for (const auto& plot : plots) {
         pictures.push_back(illustrate(draw(*plot.figure), fmt::format("f{}", pictures.size() + 1),
                                       plot.figure->title, plot.figure->description));
         fill(folder / "figures" / (plot.name + ".svg"), pictures.back().alone);
-        if (!with_data) continue;
-        const auto [file, content] = data_file(plot);
-        fill(folder / "figures" / file, content);
+        fill(folder / "figures" / (plot.name + ".csv"), figure_data(*plot.figure));
     }
     return pictures;
 }

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "reports/files/folder.hpp"
 #include "reports/page/page.hpp"
 #include "reports/page/svg.hpp"
 
@@ -19,13 +18,10 @@ struct Plot {
 // The figure as SVG: axes with round ticks, a legend above, series; or the sheet of a drawing.
 Svg draw(const Figure& figure);
 
-// NAME.csv: the columns series, x, y (bars also x low, x high, y low, y high); one block per series,
-// separated by two blank lines, with one blank line at a gap.
-NamedContent data_file(const Plot& plot);
-
-// Writes figures/NAME.svg, and NAME.csv if `with_data`, into `folder`; one picture per plot. The k-th
-// picture's ids begin with "fk", counted from 1. Throws FileError.
-std::vector<Illustration> draw(const std::vector<Plot>& plots, const std::filesystem::path& folder,
-                               bool with_data = true);
+// Writes figures/NAME.svg and NAME.csv into `folder`; one picture per plot. The k-th picture's ids
+// begin with "fk", counted from 1. The data: the columns series, x, y (bars also x low, x high,
+// y low, y high); one block per series, separated by two blank lines, with one blank line at a gap.
+// Throws FileError.
+std::vector<Illustration> draw(const std::vector<Plot>& plots, const std::filesystem::path& folder);
 
 }  // namespace elastocheck::reports

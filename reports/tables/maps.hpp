@@ -1,12 +1,21 @@
-// Lookup tables and polynomials of outputs, as vehicle models take them (`export`).
+// Lookup tables of outputs, as vehicle models take them (`export`).
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "compare/design/maps.hpp"
+#include "elastocheck/channels.hpp"
 
 namespace elastocheck::reports {
+
+// Outputs on a grid: the parameter of a branch, and values at which something is held on it.
+struct MapTable {
+    std::vector<compare::Channel> channels;
+    std::vector<double> x;  // parameter, in the branch's unit, increasing
+    std::vector<double> y;  // held values, increasing; one: no second variable
+    // [y][x][channel]; NaN where the branch does not reach the parameter
+    std::vector<std::vector<std::vector<double>>> values;
+};
 
 // What the two variables of a table are: "travel [mm]", and "joints.rack [mm]" or empty.
 struct MapAxes {
@@ -14,17 +23,10 @@ struct MapAxes {
     std::string x, y;
 };
 
-// First lines of both files; others that begin like this may be overwritten.
+// First line of the file; others that begin like this may be overwritten.
 inline constexpr const char* lookup_head = "# Lookup table of elastocheck";
-inline constexpr const char* polynomial_head = "# Polynomials of elastocheck";
 
 // A remark for each output with its definition, sign and unit, the head, a line per point.
-std::string lookup_csv(const compare::MapTable& table, const MapAxes& axes);
-
-// A remark for each output, then a line for each coefficient: output, unit, i, j, c_ij, and the
-// scales and the error of its polynomial. `every` as in polynomial_maps().
-std::string polynomial_csv(const compare::MapTable& table,
-                           const std::vector<compare::PolynomialMap>& maps, const MapAxes& axes,
-                           int every);
+std::string lookup_csv(const MapTable& table, const MapAxes& axes);
 
 }  // namespace elastocheck::reports

@@ -29,8 +29,7 @@ consumer(candidate "off on .*\nfail, [0-9]+ numbers compared\n$" WITHOUT CLI11
 execute_process(COMMAND ${WORK}/prefix/bin/elastocheck inspect ${WORK}/prefix/share/elastocheck/scenes/pinned_bar.yaml
                 OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-foreach(text bash-completion/completions/elastocheck zsh/vendor-completions/_elastocheck
-        fish/vendor_completions.d/elastocheck.fish man/man1/elastocheck.1 doc/elastocheck/copyright)
+foreach(text man/man1/elastocheck.1 doc/elastocheck/copyright)
   file(SIZE ${WORK}/prefix/share/${text} size)
   if(size LESS 500)
     message(FATAL_ERROR "${text} has ${size} bytes")

@@ -1,4 +1,4 @@
-// Command-line interface for programs and shells: --json, --version, completion, manual, --open.
+// Command-line interface for programs and shells: --json, --version, manual, --open.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -256,84 +256,6 @@ TEST(Help, OfAnInstalledCommandPointsToWhatWasInstalledWithIt) {
     }
 }
 
-// ---- completion
-
-// Offers of bash after `line`, whose last word is incomplete: one per line.
-std::vector<std::string> offered(const std::string& line, const std::string& folder = "/") {
-    const Folder own;
-    const std::string script = own.write("script", elastocheck_says("completion bash").out + R"(
-cd "$1"
-COMP_LINE=$2 COMP_POINT=${#2} COMP_WORDS=(${2//=/ = })  # as bash splits --method=en
-[[ $2 != *' ' ]] || COMP_WORDS+=("")
-COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
-compopt() { :; }
-_elastocheck "$3"
-printf '%s\n' "${COMPREPLY[@]}"
-)");
-    const Said said =
-        support::says("bash " + script + " " + folder + " '" + line + "' " ELASTOCHECK_COMMAND);
-    EXPECT_EQ(said.err, "") << line;
-    std::vector<std::string> words = parts_of(said.out, '\n');
-    std::erase(words, "");
-    return words;
-}
-
-using Words = std::vector<std::string>;
-
-TEST(Completion, OfBashKnowsCommandsOptionsWordsAndFiles) {
-    if (support::says("bash --version").code != 0) GTEST_SKIP() << "bash is not installed";
-    const Folder folder;
-    std::filesystem::create_directory(folder.path / "cars");
-    for (const char* name : {"car.yaml", "car.csv", "result.json", "cars/a.yaml"})
-        folder.write(name, "");
-    for (const auto& [line, words] : std::vector<std::pair<const char*, Words>>{
-             {"elastocheck co", {"compare", "converge"}},
-             {"elastocheck --v", {"--version"}},
-             {"elastocheck compare --fo", {"--formulations"}},
-             {"elastocheck solve x.yaml --me", {"--method"}},
-             {"elastocheck solve --method p", {"published"}},
-             {"elastocheck solve --method=en", {"energy"}},
-             {"elastocheck import a.csv --unit ", {"mm", "cm", "m", "in"}},
-             {"elastocheck gate --class=", {"same-build", "cross-build", "physical"}},
-             {"elastocheck new mcpherson_", {"mcpherson_rigid", "mcpherson_strut"}},
-             {"elastocheck solve --steps ", {}},
-             {"elastocheck inspect ca", {"cars", "car.yaml"}},
-             {"elastocheck gate car.yaml ca", {"cars", "car.yaml"}},  // any number of scenes
-             {"elastocheck report --measured ca", {"cars", "car.csv"}},
-             {"elastocheck compare car.yaml -o ca", {"cars"}}})
-        EXPECT_EQ(offered(line, folder.path.string()), words) << line;
-}
-
-// What the scripts of all shells show is everything listed by --help.
-TEST(Completion, OffersEveryCommandAndOption) {
-    const std::string help = elastocheck_says("--help").out,
-                      commands = "\n" + elastocheck_says("complete 'elastocheck '").out;
-    static const std::regex command("\n  ([a-z]+) "), option("\n  (-.,)?--([a-z0-9-]+)");
-    int count = 0;
-    for (std::sregex_iterator at(help.begin(), help.end(), command), end; at != end;
-         ++at, ++count) {
-        const std::string name = (*at)[1],
-                          offers = elastocheck_says("complete 'elastocheck " + name + " --'").out,
-                          of_command = elastocheck_says(name + " --help").out;
-        expect_parts(commands, {"\n" + name + "  "});
-        for (std::sregex_iterator o(of_command.begin(), of_command.end(), option); o != end; ++o)
-            expect_parts(offers, {"--" + (*o)[2].str() + "  "});
-    }
-    EXPECT_GT(count, 10);
-    expect_parts(help + commands, {}, {"completion"});
-}
-
-TEST(Completion, OfEveryShellCanBeParsed) {
-    const Folder folder;
-    for (const std::string shell : {"bash", "zsh", "fish"})
-        if (support::says(shell + " --version").code == 0)
-            expect_said(
-                support::says(shell + " -n " +
-                              folder.write(shell, elastocheck_says("completion " + shell).out)),
-                0);
-    expect_says("completion csh", 2);
-}
-
 // ---- the manual
 
 TEST(Manual, HoldsWhatHelpSaysAndManReadsIt) {
@@ -432,7 +354,6 @@ TEST(ReportCommand, OpenSaysBeforeTheWorkThatNobodyCanLook) {
     expect_said(report.draws("--open", "PATH=" + nothing + " BROWSER=firefox"), 2,
                 {.err = {"there is nothing to open a page with"}});
     expect_said(report.draws("--open", "CI=true BROWSER=true"), 2, {.err = {"--open: not in CI"}});
-    expect_said(report.draws("--open --archive", "BROWSER=true"), 2);
     EXPECT_FALSE(std::filesystem::exists(report.folder.path / "out"));
 }
 

@@ -106,7 +106,7 @@ const Line lines[] = {
      "$E study $SCENES/../studies/mcpherson.yaml --count 16 -o studied --csv rows.csv --quiet && "
      "rm -r studied"},
     {"live", "$E live $SCENES/pendulum.yaml -o live.html"},  // without its component an error
-    {"completion", "$E completion bash; $E man"},
+    {"man", "$E man"},
     // Errors are reported with line and number.
     {"inspect",
      "{ head -c 3000 /dev/zero | tr '\\0' '\\n'; sed 's/^units:.*/units: {length: 1.5}/' "

@@ -237,7 +237,7 @@ Command tolerances_command() {
         "Scatter of the figures by the tolerances of the numbers of a scene; exact rates by the "
         "equilibrium leg",
         {scene_option(request->scene),
-         {"TOLERANCES", Text{&request->file, a_file("*.yaml")},
+         {"TOLERANCES", Text{&request->file, a_file()},
           "file with the tolerances, such as points.tie_rod_inner.z: {normal: {sd: 0.5}}", true},
          {"--of", TextList{&request->of, TextList::Form::commas},
           "outputs, OUTPUT or OUTPUT@BRANCH:PARAMETER (default: the characteristics at the "
@@ -267,7 +267,7 @@ Command solve_for_command() {
               "figure and value: bump_steer=0 at the start of the first branch, "
               "toe@jounce:3000=-0.1 elsewhere; repeat it",
               true},
-             {"-o,--output", Text{&request->output, a_file("*.yaml")},
+             {"-o,--output", Text{&request->output, a_file()},
               "write the scene with the changed numbers; the old ones are in comments"},
              set_option(request->settings),
              jobs_option(request->running),
@@ -286,14 +286,14 @@ Command fit_command() {
         "Fit numbers of a scene to measured curves, with 95 % intervals; exact gradients "
         "of the equilibrium leg",
         {scene_option(request->scene),
-         {"--measured", Text{&request->measured, a_file("*.csv")},
-          "measured points (CSV), as for report", true},
+         {"--measured", Text{&request->measured, a_file()}, "measured points (CSV), as for report",
+          true},
          {"--vary", TextList{&request->vary, repeated},
           "number to fit, or pattern with *; limits as NAME=LOW:HIGH; repeat it", true},
-         {"--map", Text{&request->map, a_file("*.yaml")},
+         {"--map", Text{&request->map, a_file()},
           "YAML file with the table's column names, units, signs and offsets"},
          {"--robust", Flag{&request->robust}, "give gross outliers little weight (Cauchy's loss)"},
-         {"-o,--output", Text{&request->output, a_file("*.yaml")},
+         {"-o,--output", Text{&request->output, a_file()},
           "write the scene with the fitted numbers; the old ones are in comments"},
          set_option(request->settings),
          jobs_option(request->running),

@@ -225,7 +225,7 @@ Command optimise_command() {
             "with the smallest change or the least value of a figure; the prices of the bounds "
             "that hold, and proofs of the result",
             {scene_option(request->scene),
-             {"GOALS", Text{&request->file, a_file("*.yaml")},
+             {"GOALS", Text{&request->file, a_file()},
               "file with the numbers, their limits and the bands, such as vary: "
               "{points.tie_rod_inner.z: [260, 340]} and goals: [{figure: toe, over: travel, from: "
               "-80, to: 80, within: [-0.1, 0.1]}]",
@@ -233,7 +233,7 @@ Command optimise_command() {
              {"--starts", Integer{&request->starts, 1, 1000},
               "points to search from: the scene, and others within the limits, the same on every "
               "run (default: 4)"},
-             {"-o,--output", Text{&request->output, a_file("*.yaml")},
+             {"-o,--output", Text{&request->output, a_file()},
               "write the scene with the changed numbers; the old ones are in comments"},
              set_option(request->settings),
              jobs_option(request->running),

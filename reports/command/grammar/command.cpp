@@ -7,7 +7,7 @@ namespace elastocheck::reports {
 
 Value value_of(const Option& option) {
     return std::visit(overloaded{[](const Flag&) {
-                                     return Value{Value::Kind::none, "", {}, {}};
+                                     return Value{Value::Kind::none, "", {}};
                                  },
                                  [](const Text& text) { return text.value; },
                                  [](const TextList& list) { return list.value; },
@@ -19,7 +19,7 @@ Value value_of(const Option& option) {
 }
 
 Option scene_option(std::string& file) {
-    return {"SCENE", Text{&file, a_file("*.yaml")}, "scene file (YAML)", true};
+    return {"SCENE", Text{&file, a_file()}, "scene file (YAML)", true};
 }
 
 Option set_option(Settings& settings) {

@@ -1,6 +1,6 @@
 // A command of the program as data: name, help text, options with the variables that they set, and
-// the function that runs it. The parser with its --help (parse.hpp), shell completion and the
-// manual page use this description.
+// the function that runs it. The parser with its --help (parse.hpp) and the manual page use this
+// description.
 #pragma once
 
 #include <functional>
@@ -15,30 +15,23 @@ namespace elastocheck::reports {
 // --set PATH=VALUE, repeatable: changes numbers of the scene file before it is read.
 using Settings = std::vector<Setting>;
 
-// Kind of an option's value. The parser rejects others; completion offers these.
+// Kind of an option's value. The parser rejects others.
 struct Value {
     enum class Kind {
         none,  // a flag without value
         text,
-        file,           // matching `pattern`; no empty name, and not `-`
-        folder,         // likewise
-        words,          // one of `words`
-        similar_words,  // `words` are offered; the command checks
+        file,    // no empty name, and not `-`
+        folder,  // likewise
+        words,   // one of `words`
     };
     Kind kind = Kind::text;
     std::string name = "TEXT";  // in --help
-    std::string pattern = {};   // "*.yaml"
     std::vector<std::string> words = {};
 };
-inline Value a_file(std::string pattern) {
-    return {Value::Kind::file, "FILE", std::move(pattern), {}};
-}
-inline Value a_folder() { return {Value::Kind::folder, "FOLDER", {}, {}}; }
+inline Value a_file() { return {Value::Kind::file, "FILE", {}}; }
+inline Value a_folder() { return {Value::Kind::folder, "FOLDER", {}}; }
 inline Value one_of(std::vector<std::string> words) {
-    return {Value::Kind::words, "WORD", {}, std::move(words)};
-}
-inline Value such_as(std::vector<std::string> words) {
-    return {Value::Kind::similar_words, "WORD", {}, std::move(words)};
+    return {Value::Kind::words, "WORD", std::move(words)};
 }
 
 // Variables set by options. Each outlives the parsing, usually as a member of a request that `run`
@@ -83,7 +76,7 @@ struct Command {
     std::vector<Option> options;
     // Returns the exit code; receives the command line as given.
     std::function<int(const std::string& command_line)> run;
-    bool hidden = false;  // from --help, completion and the manual
+    bool hidden = false;  // from --help and the manual
 };
 
 // Options shared by several commands.

@@ -33,8 +33,7 @@ Command live_command() {
         "Write a page that solves the scene again while hardpoints and rates are moved",
         {scene_option(given->scene),
          set_option(given->settings),
-         {"-o,--output", Text{&given->output, a_file("*.html")}, "write the page to this file",
-          true}},
+         {"-o,--output", Text{&given->output, a_file()}, "write the page to this file", true}},
         [given](const std::string&) { return live(given->scene, given->settings, given->output); }};
 }
 

@@ -317,8 +317,7 @@ std::string title_of(const JsonCursor& root) {
                : fmt::format("{}: {} against {}", first, file(scenes[1]), file(scenes[0]));
 }
 
-Texts texts(Draft draft, const json& result, const std::string& file, bool archive,
-            const std::string& live = {}) {
+Texts texts(Draft draft, const json& result, const std::string& file, const std::string& live) {
     const JsonCursor root{&result, "", &file};
     json scenes = json::array();
     for (const auto& part : draft.parts) scenes.push_back(draft.page.scene(part));
@@ -330,17 +329,14 @@ Texts texts(Draft draft, const json& result, const std::string& file, bool archi
                        {"reproduce", for_terminal(root["reproduce"].text())},
                        {"tints", tints()},
                        {"live", !live.empty()}};
-    const std::string markdown = render("markdown/page", data, Escape::markdown);
     Texts made;
-    if (archive)
-        made.files = {{"README.md", markdown}, {"numbers.csv", numbers_csv(result, file)}};
-    else
-        made.files = {{"report.html", render("html/page", data, Escape::html)},
-                      {"report.md", markdown},
-                      {"result.json", result.dump(1) + "\n"},
-                      {"curves.csv", curves_csv(result, file)},
-                      {"forces.csv", forces_csv(result, file)}};
-    if (!live.empty() && !archive) made.files.push_back({"live.html", live});
+    made.files = {{"report.html", render("html/page", data, Escape::html)},
+                  {"report.md", render("markdown/page", data, Escape::markdown)},
+                  {"result.json", result.dump(1) + "\n"},
+                  {"curves.csv", curves_csv(result, file)},
+                  {"forces.csv", forces_csv(result, file)},
+                  {"numbers.csv", numbers_csv(result, file)}};
+    if (!live.empty()) made.files.push_back({"live.html", live});
     for (const auto& part : draft.parts) made.answers.push_back(answer(part.scene));
     return made;
 }
@@ -352,8 +348,8 @@ std::vector<Answer> write_report(const json& result, const std::string& file,
     Staging staging(folder);
     Draft report = draft({&result, "", &file});
     if (options.progress) options.progress(fmt::format("{} figures", report.plots.size()));
-    report.page.pictures = draw(report.plots, staging.path(), !options.archive);
-    const Texts made = texts(std::move(report), result, file, options.archive, options.live);
+    report.page.pictures = draw(report.plots, staging.path());
+    const Texts made = texts(std::move(report), result, file, options.live);
     for (const auto& [name, content] : made.files) fill(staging.path() / name, content);
     staging.publish();
     return made.answers;

@@ -12,8 +12,6 @@
 namespace elastocheck::reports {
 
 struct ReportOptions {
-    // only what belongs in version control: README.md, numbers.csv, figures/*.svg
-    bool archive = false;
     std::function<void(std::string_view)> progress = {};
     std::string live = {};  // text of live.html, which the page links to; empty: none
 };
