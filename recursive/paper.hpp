@@ -1,6 +1,6 @@
 // The paper's loop as printed, for reading beside eq. (29).
-// It is the reference for the sweep (sweep.hpp), which solves the same equations and has more
-// options.
+// `published` runs by the sweep (sweep.hpp) and not by this loop, since it also settles the start,
+// checks each step and allocates nothing; tests/recursive/paper_test.cpp asserts that both are equal.
 #pragma once
 
 #include <vector>

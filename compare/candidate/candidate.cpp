@@ -10,11 +10,9 @@
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
 #include "compare/definitions/definitions.hpp"
-#include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"
-#include "elastocheck/equilibrium.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -84,15 +82,12 @@ class Reference {
             std::ranges::copy(requested, std::back_inserter(all));
             std::ranges::sort(all, nearer);
             all.erase(std::unique(all.begin(), all.end()), all.end());
-            bool ended = false;
-            reference::equilibrium::solve(
-                side.model, side.branch, all, {}, [&](const Equilibrium& state) {
-                    ended = ended || !ends_at_table(side.model, side.branch, state).empty();
-                    if (ended || !std::ranges::binary_search(requested, state.load, nearer)) return;
-                    known_[state.load] =
-                        row_of(model_, channels_, side, {.leg = Leg::equilibrium}, state, analyses)
-                            .values;
-                });
+            walk_through(side, Leg::equilibrium, all, [&](const Equilibrium& state) {
+                if (!std::ranges::binary_search(requested, state.load, nearer)) return;
+                known_[state.load] =
+                    row_of(model_, channels_, side, {.leg = Leg::equilibrium}, state, analyses)
+                        .values;
+            });
         }
     }
 

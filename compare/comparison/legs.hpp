@@ -1,5 +1,6 @@
-// Runs a leg along a branch: the only place where a leg is called, a branch is split into its
-// sides, and the sides are joined into one path.
+// Runs a leg along a branch: the only place where `solve` and `residuals` of a leg are called, a branch
+// is split into its sides, and the sides are joined into one path. (A leg's linear response:
+// compliance.cpp; batches of variants: variants/solve_variants.cpp.)
 #pragma once
 
 #include <functional>
