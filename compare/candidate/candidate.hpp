@@ -41,6 +41,9 @@ struct Beside {
     std::vector<std::string> definition_names;
 };
 std::optional<Explanation> explain(const Beside& beside);
+// A sign, unit or offset with which a column that explain() does not make right is much nearer, in
+// words; empty: none. measured.hpp says what is much.
+std::string nearer_with(const Beside& beside, const Channel& channel);
 
 // ---- Convergence study (candidate_study.cpp): order, own limit, step error and formulation gap,
 // as for a method of the recursion (study.hpp).

@@ -318,6 +318,40 @@ std::optional<Explanation> explain(const Beside& b) {
     return found;
 }
 
+// A unit is named only where a model cannot be off by its factor; with others that are as near.
+std::string nearer_with(const Beside& b, const Channel& channel) {
+    constexpr double quarter = 0.25, model_is_off = 2.5;
+    const Values &v = b.candidate, &r = b.reference;
+    const auto rms = [](const Values& x) {
+        return std::sqrt(dot(x, x) / static_cast<double>(x.size()));
+    };
+    const double before = rms(less(v, r)), scatter = rms(plus(v, -mean(v)));
+    double left = quarter * before;
+    std::string how;
+    const auto try_it = [&](const Values& reading, const std::string& as, double at_most) {
+        const double now = rms(less(v, reading));
+        if (now < std::min(left, at_most)) left = now, how = as;
+    };
+    try_it(times(-1, r), "with its sign turned", quarter * scatter);
+    const double offset = mean(less(v, r));
+    const std::string unit = symbol(channel.unit);
+    try_it(plus(r, offset), fmt::format("once {:.3g} {} is taken off", offset, unit), before);
+    std::vector<std::string> near;
+    for (const double sign : {1., -1.})
+        for (const auto& of : units) {
+            const double now = rms(less(v, times(sign * of.factor, r)));
+            if ((of.factor > model_is_off || of.factor < 1 / model_is_off) &&
+                now < quarter * std::min(before, scatter)) {
+                near.push_back(fmt::format("{:.6g} times ({})", sign * of.factor, of.word));
+                try_it(times(sign * of.factor, r), "unit", quarter * scatter);
+            }
+        }
+    if (how == "unit") how = fmt::format("with the reference taken {}", fmt::join(near, " or "));
+    if (how.empty()) return "";
+    return fmt::format("{} is nearer {}: {:.2g} {} off (rms) instead of {:.2g}", channel.name, how,
+                       left, unit, before);
+}
+
 std::string describe(const Explanation& e, const Comparison& comparison, const Points& points) {
     const Channel& channel = comparison.channels[points.columns[e.column].channel];
     const std::string unit = symbol(channel.unit);
@@ -331,11 +365,12 @@ std::string describe(const Explanation& e, const Comparison& comparison, const P
         case Kind::offset:
             return fmt::format("{} once {:.6g} {} is taken off", agrees, e.offset, unit);
         case Kind::factor:
-            if (const double share = e.factor - 1; e.unit_word.empty() && std::abs(share) < 0.2)
+            if (const double share = std::abs(e.factor) - 1;
+                e.unit_word.empty() && std::abs(share) < 0.2)
                 return fmt::format(
-                    "{} is {:.2g} % too {} throughout, and agrees to {:.1e} {} without that",
-                    channel.name, 100 * std::abs(share), share > 0 ? "large" : "small", e.left,
-                    unit);
+                    "{} is {:.2g} % too {} throughout{}, and agrees to {:.1e} {} without that",
+                    channel.name, 100 * std::abs(share), share > 0 ? "large" : "small",
+                    e.factor < 0 ? " with its sign turned" : "", e.left, unit);
             return agrees + " with the reference " + times();
         case Kind::sign_and_offset:
             return fmt::format("{} with its sign turned, once {:.6g} {} is taken off", agrees,

@@ -1,27 +1,19 @@
 #include "compare/candidate/measured.hpp"
-#include "compare/deviation/deviation.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/definitions/definitions.hpp"
+#include "compare/deviation/deviation.hpp"
 #include "compare/outputs/not_a_number.hpp"
 
 namespace elastocheck::compare {
 namespace {
-
-// Curve of a leg along one branch in one reading; built once for all points.
-struct Line {
-    std::vector<double> over;     // values that place points; empty where not monotonic
-    std::vector<double> channel;  // the requested output
-
-    double at(double x) const { return reaches(over, x) ? interpolate(over, channel, x, 6) : nan; }
-};
-using Lines = std::vector<std::array<Line, legs.size()>>;  // per branch and leg
 
 constexpr double of_measured = 1e-2;  // of a column's range: what a measurement resolves
 
@@ -60,116 +52,223 @@ double polygon(std::vector<std::pair<double, double>> points, double x) {
 
 // Replaces the values of a column by the mean of both ways, where a branch has two, and returns the
 // widths. A point that has no counterpart on the other way, at a turning point, stays.
-std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<double>& x,
-                                   const std::vector<std::string>& branch) {
+std::vector<Hysteresis> take_means(PointColumn& column, const std::vector<Place>& places,
+                                   const Comparison& comparison) {
     std::vector<Hysteresis> loops;
-    std::vector<std::string> names;
-    for (const auto& name : branch)
-        if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
-    for (const auto& name : names) {
-        std::vector<std::size_t> points;
-        std::vector<double> at;
-        for (std::size_t k = 0; k < x.size(); ++k)
-            if (branch[k] == name && std::isfinite(x[k]) && std::isfinite(column.values[k]))
-                points.push_back(k), at.push_back(x[k]);
-        if (points.size() < 4) continue;
-        const auto way = directions(at);
-        std::array<std::vector<std::pair<double, double>>, 2> ways;  // down, up
-        for (std::size_t k = 0; k < points.size(); ++k)
-            ways[way[k] > 0 ? 1 : 0].emplace_back(at[k], column.values[points[k]]);
-        if (ways[0].size() < 2 || ways[1].size() < 2) continue;
-        Hysteresis loop{.branch = name, .channel = column.channel};
-        std::vector<double> mean = column.values;
-        for (std::size_t k = 0; k < points.size(); ++k) {
-            const double here = column.values[points[k]],
-                         other = polygon(ways[way[k] > 0 ? 0 : 1], at[k]);
-            if (!std::isfinite(other)) continue;
-            ++loop.points;
-            mean[points[k]] = (here + other) / 2;
-            if (std::abs(here - other) > loop.width)
-                loop.width = std::abs(here - other), loop.at = at[k];
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b)
+        for (const bool by_parameter : {true, false}) {
+            std::vector<std::size_t> points;
+            std::vector<double> at;
+            for (std::size_t k = 0; k < places.size(); ++k)
+                if (places[k].branch == static_cast<int>(b) &&
+                    places[k].by_parameter == by_parameter && std::isfinite(column.values[k]))
+                    points.push_back(k), at.push_back(places[k].x);
+            if (points.size() < 4) continue;
+            const auto way = directions(at);
+            std::array<std::vector<std::pair<double, double>>, 2> ways;  // down, up
+            for (std::size_t k = 0; k < points.size(); ++k)
+                ways[way[k] > 0 ? 1 : 0].emplace_back(at[k], column.values[points[k]]);
+            if (ways[0].size() < 2 || ways[1].size() < 2) continue;
+            Hysteresis loop{.branch = comparison.branches[b].branch,
+                            .channel = column.channel,
+                            .by_parameter = by_parameter};
+            std::vector<double> mean = column.values;
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                const double here = column.values[points[k]],
+                             other = polygon(ways[way[k] > 0 ? 0 : 1], at[k]);
+                if (!std::isfinite(other)) continue;
+                ++loop.points;
+                mean[points[k]] = (here + other) / 2;
+                if (std::abs(here - other) > loop.width)
+                    loop.width = std::abs(here - other), loop.at = at[k];
+            }
+            column.values = std::move(mean);
+            if (loop.points > 0) loops.push_back(loop);
         }
-        column.values = std::move(mean);
-        if (loop.points > 0) loops.push_back(loop);
-    }
     return loops;
+}
+
+// ---- Values of a leg where the points are; NaN where it does not reach.
+
+template <class ValuesOf>
+std::vector<double> values_at(const Comparison& comparison, const std::vector<Place>& places,
+                              std::optional<std::size_t> abscissa, Leg leg,
+                              const ValuesOf& values_of_branch) {
+    std::vector<double> values(places.size(), nan);
+    for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+        const Curve& curve = comparison.branches[b].run(leg).curve;
+        const std::array over{abscissa ? placed_by(curve, abscissa) : std::vector<double>{},
+                              placed_by(curve, {})};
+        const std::vector<double> of = values_of_branch(b);
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            const auto& x = over[places[k].by_parameter ? 1 : 0];
+            if (places[k].branch == static_cast<int>(b) && reaches(x, places[k].x))
+                values[k] = interpolate(x, of, places[k].x, 6);
+        }
+    }
+    return values;
+}
+
+std::vector<double> channel_at(const Comparison& comparison, const std::vector<Place>& places,
+                               std::optional<std::size_t> abscissa, Leg leg, std::size_t channel) {
+    return values_at(comparison, places, abscissa, leg, [&](std::size_t b) {
+        return comparison.branches[b].run(leg).curve.channel(channel);
+    });
 }
 
 // ---- Causes.
 
-std::vector<std::string> causes_of(const Comparison& comparison, const Points& points,
-                                   const std::vector<int>& branch,
-                                   std::optional<std::size_t> placed, const std::vector<double>& x,
-                                   const DefinedCurves& defined) {
+struct Given {
+    const Comparison& comparison;
+    const Points& points;  // means of both ways
+    const DefinedCurves& defined;
+};
+
+std::vector<double> truth_at(const Given& given, const std::vector<Place>& places,
+                             std::size_t channel) {
+    return channel_at(given.comparison, places, given.points.abscissa, Leg::equilibrium, channel);
+}
+
+// Turns the places of a branch whose columns agree better so, and says so.
+void turn_places(const Given& given, std::vector<Place>& places, std::vector<std::string>& causes) {
+    constexpr double much = 0.3, quarter = 0.25;  // of a column's scatter; of the deviation
+    std::vector<Place> turned = places;
+    for (Place& place : turned) place.x = -place.x;
+    for (std::size_t b = 0; b < given.comparison.branches.size(); ++b) {
+        // squares in units of the columns' scatter
+        double before = 0, by_columns = 0, by_places = 0;
+        int count = 0;
+        bool by_parameter = true;
+        for (const auto& column : given.points.columns) {
+            const auto r = truth_at(given, places, column.channel),
+                       t = truth_at(given, turned, column.channel);
+            double n = 0, sum = 0, squares = 0, as_is = 0, sign = 0, place = 0;
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                const double v = column.values[k];
+                if (places[k].branch != static_cast<int>(b) || !std::isfinite(v + r[k] + t[k]))
+                    continue;
+                n += 1, sum += v, squares += v * v;
+                as_is += (v - r[k]) * (v - r[k]), sign += (v + r[k]) * (v + r[k]);
+                place += (v - t[k]) * (v - t[k]);
+                by_parameter = places[k].by_parameter;
+            }
+            const double scatter = squares - sum * sum / n;
+            if (!(n >= 3) || !(scatter > 1e-12 * squares)) continue;
+            ++count;
+            before += as_is / scatter, by_columns += std::min(as_is, sign) / scatter;
+            by_places += place / scatter;
+        }
+        if (!(before > much * much * count) || !(by_places < quarter * quarter * before) ||
+            !(by_places < by_columns))
+            continue;
+        causes.push_back(fmt::format(
+            "the columns of branch '{}' are nearer with the sign of {} turned: {:.2g} % of their "
+            "scatter off instead of {:.2g} %",
+            given.comparison.branches[b].branch,
+            by_parameter ? "the parameter" : given.comparison.channels[*given.points.abscissa].name,
+            100 * std::sqrt(by_places / count), 100 * std::sqrt(before / count)));
+        for (std::size_t k = 0; k < places.size(); ++k)
+            if (places[k].branch == static_cast<int>(b)) places[k].x = turned[k].x;
+    }
+}
+
+std::vector<std::string> causes_of(const Given& given, std::vector<Place> places) {
+    const auto& [comparison, points, defined] = given;
     std::vector<std::string> causes;
-    const auto equilibrium = [&](std::size_t b, std::size_t channel) {
-        return comparison.branches[b].run(Leg::equilibrium).curve.channel(channel);
-    };
-    std::vector<std::vector<double>> over;
-    for (const auto& of : comparison.branches)
-        over.push_back(placed_by(of.run(Leg::equilibrium).curve, placed));
-    const auto read = [&](std::size_t b, const std::vector<double>& values, double at) {
-        return reaches(over[b], at) ? interpolate(over[b], values, at, 6) : nan;
-    };
+    turn_places(given, places, causes);
     for (std::size_t c = 0; c < points.columns.size(); ++c) {
         Beside b;
         b.column = c;
         b.channel = points.columns[c].channel;
-        std::vector<std::pair<std::size_t, double>> places;  // branch, abscissa
+        const Channel& channel = comparison.channels[b.channel];
+        const auto reference = truth_at(given, places, b.channel);
+        std::vector<std::size_t> rows;
         double worst = 0;
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            if (branch[k] < 0 || !std::isfinite(points.columns[c].values[k])) continue;
-            const auto of = static_cast<std::size_t>(branch[k]);
-            const auto whole = equilibrium(of, b.channel);
-            const double reference = read(of, whole, x[k]);
-            if (!std::isfinite(reference)) continue;
-            b.candidate.push_back(points.columns[c].values[k]);
-            b.reference.push_back(reference);
-            b.begin.push_back(whole[comparison.branches[of].run(Leg::equilibrium).curve.start]);
-            b.at.push_back(x[k]);
-            b.branch.push_back(comparison.branches[of].branch);
-            places.emplace_back(of, x[k]);
-            worst = std::max(worst, std::abs(b.candidate.back() - reference));
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            const double value = points.columns[c].values[k];
+            if (!std::isfinite(value) || !std::isfinite(reference[k])) continue;
+            const auto& branch = comparison.branches[static_cast<std::size_t>(places[k].branch)];
+            const Curve& curve = branch.run(Leg::equilibrium).curve;
+            rows.push_back(k);
+            b.candidate.push_back(value);
+            b.reference.push_back(reference[k]);
+            b.begin.push_back(curve.values[curve.start][b.channel]);
+            b.at.push_back(places[k].x);
+            b.branch.push_back(branch.branch);
+            worst = std::max(worst, std::abs(value - reference[k]));
         }
-        if (b.candidate.size() < 3) continue;
+        if (rows.size() < 3) continue;
         const auto [low, high] = std::ranges::minmax(b.candidate);
         b.tolerance = of_measured * (high - low);
         if (!(worst > b.tolerance)) continue;
-        const auto values_of = [&](const auto& curve_of_branch) {
+        const auto of_rows = [&](const std::vector<double>& all) {
             std::vector<double> values;
-            for (const auto& [of, at] : places) values.push_back(read(of, curve_of_branch(of), at));
+            for (const std::size_t k : rows) values.push_back(all[k]);
             return values;
         };
         for (const auto& other : points.columns)
             if (other.channel != b.channel &&
-                comparison.channels[other.channel].unit == comparison.channels[b.channel].unit) {
-                b.others.push_back(
-                    values_of([&](std::size_t of) { return equilibrium(of, other.channel); }));
+                comparison.channels[other.channel].unit == channel.unit) {
+                b.others.push_back(of_rows(truth_at(given, places, other.channel)));
                 b.other_channels.push_back(other.channel);
             }
         if (!defined.branches.empty())
-            for (const Channel& definition :
-                 definitions_of(defined.channels, comparison.channels[b.channel].name)) {
+            for (const Channel& definition : definitions_of(defined.channels, channel.name)) {
                 const auto d =
                     static_cast<std::size_t>(find_channel(defined.channels, definition.name));
-                b.definitions.push_back(
-                    values_of([&](std::size_t of) { return defined.branches[of].channel(d); }));
+                b.definitions.push_back(of_rows(
+                    values_at(comparison, places, points.abscissa, Leg::equilibrium,
+                              [&](std::size_t of) { return defined.branches[of].channel(d); })));
                 b.definition_names.push_back(definition.name);
             }
         // a point from which on it is wrong says nothing about a measurement
         if (const auto found = explain(b); found && found->kind != Explanation::Kind::from_there_on)
             causes.push_back(describe(*found, comparison, points));
+        else if (const auto nearer = nearer_with(b, channel); !nearer.empty())
+            causes.push_back(nearer);
     }
     return causes;
 }
 
-Lines lines_of(const Comparison& comparison, std::optional<std::size_t> placed) {
-    Lines lines(comparison.branches.size());
-    for (std::size_t b = 0; b < lines.size(); ++b)
-        for (const Leg leg : legs)
-            lines[b][static_cast<std::size_t>(leg)].over =
-                placed_by(comparison.branches[b].run(leg).curve, placed);
-    return lines;
+// Slope of the straight line through these points.
+double slope(const std::vector<double>& x, const std::vector<double>& y) {
+    const double n = static_cast<double>(x.size());
+    double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) mean_x += x[k] / n, mean_y += y[k] / n;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        xx += (x[k] - mean_x) * (x[k] - mean_x);
+        xy += (x[k] - mean_x) * (y[k] - mean_y);
+    }
+    return xx > 0 ? xy / xx : nan;
+}
+
+// The row of an output and a branch; `values` per leg and point.
+MeasuredRow measured_row(const std::array<std::vector<double>, legs.size()>& values,
+                         const std::vector<Place>& places, const PointColumn& column, int branch,
+                         std::vector<bool>& used) {
+    MeasuredRow row{.branch = {}, .channel = column.channel, .off = {}};
+    row.off.fill({nan, nan});
+    std::array<double, legs.size()> squares{};
+    std::vector<double> x, measured, truth;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const auto finite = [&](const auto& of) { return std::isfinite(of[k]); };
+        if (places[k].branch != branch || !finite(column.values) ||
+            !std::ranges::all_of(values, finite))
+            continue;
+        ++row.compared;
+        used[k] = true;
+        x.push_back(places[k].x), measured.push_back(column.values[k]);
+        truth.push_back(values[static_cast<std::size_t>(Leg::equilibrium)][k]);
+        for (std::size_t l = 0; l < legs.size(); ++l) {
+            const double off = values[l][k] - column.values[k];
+            squares[l] += off * off;
+            if (!(std::abs(off) <= std::abs(row.off[l].signed_max))) row.off[l].signed_max = off;
+        }
+    }
+    for (std::size_t l = 0; l < legs.size(); ++l)
+        if (row.compared > 0) row.off[l].rms = std::sqrt(squares[l] / row.compared);
+    row.measured_gradient = slope(x, measured), row.gradient = slope(x, truth);
+    return row;
 }
 
 }  // namespace
@@ -189,56 +288,37 @@ MeasuredComparison compare_measured(const Model& model, const Comparison& compar
                                     const Points& measured, const DefinedCurves& defined) {
     MeasuredComparison result;
     result.columns = as_they_stand(model, comparison, measured.columns);
-    const auto read = [&](std::optional<std::size_t> placed, const std::vector<double>& x) {
-        Lines lines = lines_of(comparison, placed);
-        const auto branch = branches_of(model, comparison, measured.branch, x, placed);
-        if (result.branch.empty())
-            for (const int b : branch)
-                result.branch.push_back(
-                    b < 0 ? "" : comparison.branches[static_cast<std::size_t>(b)].branch);
-        MeasuredReading reading{!placed, {}};
-        Points means;
-        means.columns = result.columns;
-        for (auto& column : means.columns) {
-            const auto loops = take_means(column, x, result.branch);
-            if (result.readings.empty())
-                result.loops.insert(result.loops.end(), loops.begin(), loops.end());
-        }
-        if (result.readings.empty())
-            result.explanations = causes_of(comparison, means, branch, placed, x, defined);
+    result.places = places_of(model, comparison, measured);
+    result.used.assign(result.places.size(), false);
+    Points means;
+    means.abscissa = measured.abscissa;
+    means.columns = result.columns;
+    for (auto& column : means.columns)
+        for (auto& loop : take_means(column, result.places, comparison))
+            result.loops.push_back(std::move(loop));
+    result.explanations = causes_of({comparison, means, defined}, result.places);
+    for (const bool by_parameter : {true, false}) {
+        const auto& x = by_parameter ? measured.a : measured.at;
+        if (std::ranges::none_of(x, [](double v) { return std::isfinite(v); })) continue;
+        std::vector<Place> places = result.places;
+        for (std::size_t k = 0; k < places.size(); ++k)
+            places[k].by_parameter = by_parameter, places[k].x = x[k];
+        MeasuredReading reading{by_parameter, {}};
         for (const auto& column : means.columns) {
-            MeasuredRow row{.channel = column.channel, .off = {}};
-            std::array<double, legs.size()> squares{};
-            row.off.fill({nan, nan});
-            for (std::size_t b = 0; b < lines.size(); ++b)
-                for (const Leg leg : legs)
-                    lines[b][static_cast<std::size_t>(leg)].channel =
-                        comparison.branches[b].run(leg).curve.channel(column.channel);
-            for (std::size_t k = 0; k < x.size(); ++k) {
-                if (branch[k] < 0) continue;
-                std::array<double, legs.size()> now{};
-                for (const Leg leg : legs)
-                    now[static_cast<std::size_t>(leg)] =
-                        lines[static_cast<std::size_t>(branch[k])][static_cast<std::size_t>(leg)]
-                            .at(x[k]) -
-                        column.values[k];
-                if (!std::ranges::all_of(now, [](double d) { return std::isfinite(d); })) continue;
-                ++row.compared;
-                for (std::size_t l = 0; l < legs.size(); ++l) {
-                    squares[l] += now[l] * now[l];
-                    if (!(std::abs(now[l]) <= std::abs(row.off[l].signed_max)))
-                        row.off[l].signed_max = now[l];
-                }
+            std::array<std::vector<double>, legs.size()> values;
+            for (const Leg leg : legs)
+                values[static_cast<std::size_t>(leg)] =
+                    channel_at(comparison, places, measured.abscissa, leg, column.channel);
+            for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
+                auto row = measured_row(values, places, column, static_cast<int>(b), result.used);
+                if (row.compared == 0) continue;
+                row.branch = comparison.branches[b].branch;
+                result.compared += row.compared;
+                reading.rows.push_back(std::move(row));
             }
-            for (std::size_t l = 0; l < legs.size(); ++l)
-                if (row.compared > 0) row.off[l].rms = std::sqrt(squares[l] / row.compared);
-            result.compared += row.compared;
-            reading.rows.push_back(row);
         }
         result.readings.push_back(std::move(reading));
-    };
-    if (!measured.a.empty()) read({}, measured.a);
-    if (measured.abscissa && !measured.at.empty()) read({measured.abscissa}, measured.at);
+    }
     return result;
 }
 

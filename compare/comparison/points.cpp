@@ -1,6 +1,7 @@
 #include "compare/comparison/points.hpp"
 #include "compare/deviation/deviation.hpp"
 #include "compare/outputs/curve.hpp"
+#include "compare/outputs/not_a_number.hpp"
 
 #include <fmt/format.h>
 
@@ -77,6 +78,25 @@ std::vector<int> branches_of(const Model& model, const Comparison& comparison,
         result.push_back(found == over.end() ? -1 : static_cast<int>(found - over.begin()));
     }
     return result;
+}
+
+std::vector<Place> places_of(const Model& model, const Comparison& comparison,
+                             const Points& points) {
+    std::vector<Place> places(std::max(points.a.size(), points.at.size()));
+    for (const bool by_parameter : {true, false}) {
+        std::vector<double> x(places.size(), nan);
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            const bool has_parameter = k < points.a.size() && std::isfinite(points.a[k]);
+            if (has_parameter == by_parameter)
+                x[k] = by_parameter ? points.a[k] : k < points.at.size() ? points.at[k] : nan;
+        }
+        if (std::ranges::none_of(x, [](double v) { return std::isfinite(v); })) continue;
+        const auto branch = branches_of(model, comparison, points.branch, x,
+                                        by_parameter ? std::nullopt : points.abscissa);
+        for (std::size_t k = 0; k < places.size(); ++k)
+            if (std::isfinite(x[k])) places[k] = {branch[k], by_parameter, x[k]};
+    }
+    return places;
 }
 
 }  // namespace elastocheck::compare

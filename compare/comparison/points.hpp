@@ -2,6 +2,7 @@
 // values.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,17 @@ std::vector<PointColumn> as_they_stand(const Model& model, const Comparison& com
 std::vector<int> branches_of(const Model& model, const Comparison& comparison,
                              const std::vector<std::string>& names, const std::vector<double>& x,
                              std::optional<std::size_t> channel);
+
+// Where a point lies: on the branch that it names, or the one that reaches it; by its parameter, or
+// without one by Points::abscissa.
+struct Place {
+    int branch = -1;  // position in Comparison::branches; -1: none reaches it
+    bool by_parameter = true;
+    double x = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing gives its place
+};
+// Throws as branches_of().
+std::vector<Place> places_of(const Model& model, const Comparison& comparison,
+                             const Points& points);
 
 // Values of a leg that place points: its parameter, or a channel; empty where the channel is not
 // monotonic.

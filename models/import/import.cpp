@@ -63,24 +63,26 @@ std::string where(const SourceLocation& place) {
 Imported import_text(std::string_view text, const std::string& file, const Options& options) {
     const std::string ending =
         reader::small_letters(std::filesystem::path(file).extension().string());
-    const bool list = ending == ".csv" || ending == ".shk", points_only = list || ending == ".sub";
+    const bool list = ending == ".csv", points_only = list || ending == ".sub";
+    if (ending == ".shk")
+        reader::fail(file, 1, "",
+                     "files of SHARK are not read; export the points as a table (.csv) with "
+                     "columns name, x, y, z");
     if (ending != ".adm" && ending != ".json" && !points_only)
         reader::fail(
             file, 0, "",
             fmt::format("{} is not a supported file extension; allowed: .adm (ADAMS datasets), "
                         ".json (Chrono::Vehicle suspensions and vehicles), .sub (hardpoints of "
-                        "Adams/Car), .csv, "
-                        ".shk (lists of points)",
+                        "Adams/Car), .csv (tables of points)",
                         reader::quote(ending)));
     if (!options.axes.empty() && !points_only)
         reader::fail(file, 0, "--axes",
-                     "only for hardpoints of Adams/Car (.sub) and lists of points; the axes of a "
-                     "model are those "
-                     "of its file");
+                     "only for hardpoints of Adams/Car (.sub) and tables of points; the axes of a "
+                     "model are those of its file");
     for (const auto& [given, option] :
          {std::pair{&options.columns, "--columns"}, {&options.unit, "--unit"}})
         if (!given->empty() && !list)
-            reader::fail(file, 0, option, "only for lists of points (.csv, .shk)");
+            reader::fail(file, 0, option, "only for tables of points (.csv)");
     if (!options.axle.empty() && ending != ".json")
         reader::fail(file, 0, "--axle", "only for a vehicle of Chrono::Vehicle (.json)");
     const Draft draft = ending == ".adm"    ? import_adm(text, file, options)

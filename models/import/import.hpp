@@ -2,6 +2,7 @@
 // README.md describes each format and what a scene can represent of it.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -22,16 +23,17 @@ struct Options {
     std::string axes = {};
     // of a table of points: "name=Punkt,x=X_mm,y=3,z=D"; empty: by headings that are known
     std::string columns = {};
-    // of the coordinates of a list of points: "mm", "cm", "m", "in"; empty: as the file says
+    // of the coordinates of a table of points: "mm", "cm", "m", "in"; empty: as the file says
     std::string unit = {};
     // of a vehicle of Chrono: "front" (its first), "rear" (its last), "1", "2", ...; empty: the
     // only one
     std::string axle = {};
 };
 
-// Allowed values of `axes`: x, then y; z completes the right-handed frame.
-inline constexpr const char* axes_of_tables[] = {"x-forward,y-left", "x-rearward,y-right",
-                                                 "x-forward,y-right", "x-rearward,y-left"};
+// Allowed values of `axes`. Without z it is up, where that is right-handed; elsewhere z must be given.
+inline constexpr const char* axes_of_tables[] = {
+    "x-forward,y-left",         "x-rearward,y-right",     "x-forward,y-right,z-down",
+    "x-rearward,y-left,z-down", "x-forward,y-right,z-up", "x-rearward,y-left,z-up"};
 
 struct Imported {
     std::string yaml;
@@ -39,8 +41,8 @@ struct Imported {
     int bodies = 0, elements = 0, joints = 0;
 };
 
-// Selects the format by extension: .adm, .json, .sub, .csv and .shk (points). Throws SceneError "file:line: ..." for errors
-// in the file and parts that a scene cannot represent.
+// Selects the format by extension: .adm, .json, .sub, .csv (points). Throws SceneError "file:line:
+// ..." for errors in the file and parts that a scene cannot represent.
 Imported import_file(const std::filesystem::path& file, const Options& options);
 
 // The same from text. `file` names it in messages and in the head of the scene, and gives the
@@ -53,8 +55,9 @@ Draft import_chrono(std::string_view text, const std::string& file, const Option
 Draft import_subsystem(std::string_view text, const std::string& file, const Options& options);
 Draft import_points(std::string_view text, const std::string& file, const Options& options);
 
-// Signs of x and y of a table of hardpoints in the axes of a scene; z has their product. Throws
-// SceneError for axes that are not among axes_of_tables.
-std::pair<double, double> directions(const std::string& axes, const std::string& file);
+// Signs of x, y and z of a table of hardpoints in the axes of a scene. Throws SceneError for axes that
+// are not among axes_of_tables.
+std::array<double, 3> directions(const std::string& axes, const std::string& file);
+std::string remark_on_axes(const std::string& axes, const std::array<double, 3>& along);
 
 }  // namespace elastocheck::importer

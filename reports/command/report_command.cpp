@@ -92,22 +92,22 @@ json recommended(compare::Solves& solves, const compare::Trade& trade) {
 }
 
 // Returns why the measurement could not be compared; empty if it was.
-std::string add_measured(json& document, const ReportRequest& request) {
-    add_measurement(document, read_whole(request.measured, largest_measurement), request.measured,
-                    map_of(request.candidate));
-    for (const auto& column : document["measured"]["left_out"])
-        print_error("{}: column left out: {}\n", request.measured, column.get<std::string>());
+std::string add_measured(json& document, const Model& model, const compare::Comparison& comparison,
+                         const Measurement& measurement) {
+    add_measurement(document, model, comparison, compare::defined_curves(model, comparison),
+                    measurement);
+    for (const auto& what : document["measured"]["left_out"])
+        print_error("{}: left out: {}\n", measurement.file, what.get<std::string>());
     for (const auto& finding : document["measured"]["findings"])
-        print_error("{}: {}\n", request.measured, finding.get<std::string>());
+        print_error("{}: {}\n", measurement.file, finding.get<std::string>());
     return compared_with_measurement(document) > 0
                ? ""
-               : fmt::format("no point of {} is within the range of the legs", request.measured);
+               : fmt::format("no point of {} is within the range of the legs", measurement.file);
 }
 
 // Leaves only the branches of --branch, in the order of the scene.
 void select_branches(Scene& scene, Model& model, const std::vector<std::string>& names) {
     if (names.empty()) return;
-    for (const auto& name : names) (void)branch_named(model, name);
     const auto left_out = [&](const Branch& branch) {
         return std::ranges::find(names, branch.name) == names.end();
     };
@@ -236,6 +236,12 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
 json solve_scene(const std::string& file, const ReportRequest& request, int threads,
                  const compare::Progress& progress_of_scene) {
     LoadedScene loaded = load_scene(file, request.settings);
+    for (const auto& name : request.branches) (void)branch_named(loaded.model, name);
+    Measurement measurement;  // read with the branches of all its tests
+    if (!request.measured.empty())
+        measurement =
+            read_measurement(read_whole(request.measured, largest_measurement), request.measured,
+                             loaded.model, map_of(request.candidate), request.branches);
     select_branches(loaded.scene, loaded.model, request.branches);
     const Scene& scene = loaded.scene;
     const Model& model = loaded.model;
@@ -253,9 +259,9 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
     const auto comparison = compare::compare(model, options, loaded.definitions);
     add_comparison(document, scene, model, comparison);
     auto reasons = reasons_of(comparison);
-    if (!request.measured.empty()) add_defined_curves(document, model, comparison);
     if (!request.measured.empty())
-        if (const std::string why = add_measured(document, request); !why.empty())
+        if (const std::string why = add_measured(document, model, comparison, measurement);
+            !why.empty())
             reasons.push_back(why);
     if (!request.quick && request.only != "evidence")
         add_sensitivity(document, loaded, file, request.settings, reasons);
@@ -355,7 +361,6 @@ int report(const ReportRequest& request, const std::string& reproduce) {
         check_memory(compile(read_scene(scene, request.settings)),
                      {.legs = static_cast<int>(compare::legs.size()), .written = true});
     (void)map_of(request.candidate);
-    if (!request.measured.empty()) (void)read_whole(request.measured, largest_measurement);
     if (request.quick && request.only == "evidence")
         throw std::invalid_argument("report: --quick leaves out what --only evidence shows");
     json result = document(reproduce, provenance());

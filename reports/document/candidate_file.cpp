@@ -1,6 +1,7 @@
 #include "reports/document/candidate_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 #include <numbers>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "compare/comparison/elements.hpp"
 #include "compare/outputs/not_a_number.hpp"
@@ -148,9 +150,28 @@ std::optional<Meaning> parameter_of(std::string_view name) {
     return std::nullopt;
 }
 
-// A heading as rigs write it.
-std::optional<Meaning> of_rig(const std::string& name, const compare::Comparison& all) {
-    const auto ours = heading_of_rig(name, all);
+// Names of a file in those of a scene.
+struct Names {
+    const compare::Comparison& all;
+    const ColumnMap& map;
+    std::vector<TestBranch> tests;
+};
+
+// A heading as rigs write it, its unit in brackets or after the last _. The wheel of a scene with one
+// is the left one.
+std::optional<Meaning> of_rig(const std::string& name, const Names& names) {
+    const compare::Comparison& all = names.all;
+    if (name.starts_with("left."))
+        if (auto of_wheel = output_of(std::string_view(name).substr(5), all)) {
+            of_wheel->name = name;
+            return of_wheel;
+        }
+    std::string heading = name;
+    const auto last = name.rfind('_');
+    if (last != name.npos &&
+        std::ranges::find(written, name.substr(last + 1), &Written::symbol) != written.end())
+        heading = fmt::format("{} [{}]", name.substr(0, last), name.substr(last + 1));
+    const auto ours = heading_of_rig(heading, all, names.tests);
     if (!ours) return std::nullopt;
     auto meaning = ours->name == "branch" ? std::optional(Meaning{.kind = MeaningKind::branch})
                                           : parameter_of(ours->name);
@@ -215,16 +236,16 @@ Meaning mapped(const ColumnMap::Entry& entry, const ColumnMap& map,
     return meaning;
 }
 
-std::string branch_named(std::string_view cell, const compare::Comparison& all,
-                         const ColumnMap& map, const std::string& file, int line,
-                         const std::string& column) {
+std::string branch_named(std::string_view cell, const Names& names, const std::string& file,
+                         int line, const std::string& column) {
+    const auto& [all, map, tests] = names;
     const auto own =
         std::ranges::find(map.branches, cell, &std::pair<std::string, std::string>::first);
     const std::string name = own == map.branches.end() ? std::string(cell) : own->second;
     std::vector<std::string> branches;
     for (const auto& branch : all.branches) branches.push_back(branch.branch);
     if (std::ranges::find(branches, name) == branches.end()) {
-        const auto meant = branches_of_test(name, map.tests);
+        const auto meant = branches_of_test(name, tests);
         if (meant.size() == 1) return meant.front();
         if (meant.size() > 1)
             fail_at(file, line,
@@ -252,9 +273,10 @@ struct Table {
     std::set<std::string, std::less<>> legs;
 };
 
-Table read_table(std::string_view csv, const std::string& file, const compare::Comparison& all,
-                 const ColumnMap& map, const std::vector<compare::Channel>* also_known,
+Table read_table(std::string_view csv, const std::string& file, const Names& names,
+                 const std::vector<compare::Channel>* also_known,
                  std::vector<std::string>& left_out) {
+    const auto& [all, map, tests] = names;
     Table table;
     const auto head = [&](const Cells& cells, int line) {
         const auto known = known_columns(all);
@@ -275,7 +297,7 @@ Table read_table(std::string_view csv, const std::string& file, const compare::C
             else
                 meaning = parameter_of(name);
             if (!meaning) meaning = output_of(name, all);
-            if (!meaning && also_known == nullptr) meaning = of_rig(name, all);
+            if (!meaning) meaning = of_rig(name, names);
             if (!meaning) {
                 const auto own = name.substr(0, name.find(" ["));
                 if (also_known != nullptr && map.file.empty() &&
@@ -302,8 +324,7 @@ Table read_table(std::string_view csv, const std::string& file, const compare::C
             const Meaning& meaning = table.columns[c];
             switch (meaning.kind) {
                 case MeaningKind::branch:
-                    table.branch.push_back(
-                        branch_named(cells[c], all, map, file, line, meaning.name));
+                    table.branch.push_back(branch_named(cells[c], names, file, line, meaning.name));
                     break;
                 case MeaningKind::parameter_unit: table.unit.emplace_back(cells[c]); break;
                 case MeaningKind::leg: table.legs.emplace(cells[c]); break;
@@ -330,15 +351,41 @@ bool is_travel(const compare::Channel& channel) {
     return channel.name == "travel" || channel.name.ends_with(".travel");
 }
 
-PointTable read_points(std::string_view csv, const std::string& file,
+void keep_rows(PointTable& table, const std::function<std::string(std::size_t point)>& why_not) {
+    std::map<std::string, std::vector<int>> left_out;  // lines by reason
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < table.lines.size(); ++k)
+        if (const std::string why = why_not(k); why.empty())
+            kept.push_back(k);
+        else
+            left_out[why].push_back(table.lines[k]);
+    const auto keep = [&](auto& of_points) {
+        if (of_points.empty()) return;
+        auto all = std::exchange(of_points, {});
+        for (const std::size_t k : kept) of_points.push_back(std::move(all[k]));
+    };
+    compare::Points& points = table.points;
+    keep(table.lines), keep(points.branch), keep(points.a), keep(points.at);
+    for (auto& column : points.columns) keep(column.values);
+    constexpr std::size_t most_lines = 10;
+    for (const auto& [why, lines] : left_out)
+        table.left_out.push_back(fmt::format(
+            "{} {} {} (line{} {}{})", lines.size(), lines.size() == 1 ? "row" : "rows", why,
+            lines.size() == 1 ? "" : "s",
+            fmt::join(lines.begin(), lines.begin() + std::min(lines.size(), most_lines), ", "),
+            lines.size() > most_lines ? ", ..." : ""));
+}
+
+PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
                        const compare::Comparison& all, const ColumnMap& map,
                        const std::vector<compare::Channel>* also_known) {
     PointTable result;
-    const Table table = read_table(csv, file, all, map, also_known, result.left_out);
+    const Names names{all, map, tests_of(model)};
+    const Table table = read_table(csv, file, names, also_known, result.left_out);
     auto& points = result.points;
     points.branch = table.branch;
-    result.count = table.lines.size();
-    const std::size_t n = result.count;
+    result.lines = table.lines;
+    const std::size_t n = result.lines.size();
     std::vector<std::size_t> parameters;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
         if (table.columns[c].kind == MeaningKind::parameter) {
@@ -360,8 +407,8 @@ PointTable read_points(std::string_view csv, const std::string& file,
             if (!meaning.moves.empty()) {
                 const std::string& branch =
                     table.branch.empty() ? all.branches.front().branch : table.branch[k];
-                const auto test = std::ranges::find(map.tests, branch, &TestBranch::branch);
-                if (!factor || test == map.tests.end() || test->moves != meaning.moves) continue;
+                const auto test = std::ranges::find(names.tests, branch, &TestBranch::branch);
+                if (!factor || test == names.tests.end() || test->moves != meaning.moves) continue;
             }
             if (!factor)
                 fail_at(file, table.lines[k],
@@ -489,11 +536,10 @@ std::vector<double> numbers_of(const JsonCursor& list, std::size_t count, const 
 }
 
 compare::CandidateState state_of(const JsonCursor& object, const std::string& file, int line,
-                                 Bodies& bodies, const compare::Comparison& all,
-                                 const ColumnMap& map) {
+                                 Bodies& bodies, const Names& names) {
     object.only_keys({"branch", "load", "bodies"});
     compare::CandidateState state{
-        branch_named(object["branch"].text(), all, map, file, line, "branch"),
+        branch_named(object["branch"].text(), names, file, line, "branch"),
         finite_or_infinite(object["load"].number()), bodies.nowhere()};
     for (const auto& [name, pose] : object["bodies"].entries()) {
         const auto r = numbers_of(pose["position"], 3, "3 numbers [m]"),
@@ -509,8 +555,7 @@ compare::CandidateState state_of(const JsonCursor& object, const std::string& fi
 }
 
 std::vector<compare::CandidateState> states_of_json(std::string_view text, const std::string& file,
-                                                    Bodies& bodies, const compare::Comparison& all,
-                                                    const ColumnMap& map) {
+                                                    Bodies& bodies, const Names& names) {
     std::vector<compare::CandidateState> states;
     int line = 0;
     for (std::string_view rest = text; !rest.empty();) {
@@ -525,7 +570,7 @@ std::vector<compare::CandidateState> states_of_json(std::string_view text, const
         try {
             const json object = parse_json(one);
             const std::string place = fmt::format("{}:{}", file, line);
-            states.push_back(state_of({&object, "", &place}, file, line, bodies, all, map));
+            states.push_back(state_of({&object, "", &place}, file, line, bodies, names));
         } catch (const JsonError& error) {
             fail_at(file, line, error.what());
         } catch (const ResultError& error) {
@@ -537,30 +582,30 @@ std::vector<compare::CandidateState> states_of_json(std::string_view text, const
 }
 
 std::vector<compare::CandidateState> states_of_table(std::string_view csv, const std::string& file,
-                                                     Bodies& bodies, const compare::Comparison& all,
-                                                     const ColumnMap& map) {
-    static const std::vector<std::string> names{"branch", "load", "body", "x",  "y",
-                                                "z",      "qw",   "qx",   "qy", "qz"};
+                                                     Bodies& bodies, const Names& names) {
+    static const std::vector<std::string> headings{"branch", "load", "body", "x",  "y",
+                                                   "z",      "qw",   "qx",   "qy", "qz"};
     std::vector<std::size_t> place;
     std::vector<compare::CandidateState> states;
     std::vector<int> lines;
     std::map<std::pair<std::string, double>, std::size_t> known;
     const auto head = [&](const Cells& cells, int line) {
-        for (const auto& name : names) {
+        for (const auto& name : headings) {
             const auto found = std::ranges::find(cells, name);
             if (found == cells.end())
-                fail_at(file, line,
-                        fmt::format("no column '{}'; states have {}", name, reader::listed(names)));
+                fail_at(
+                    file, line,
+                    fmt::format("no column '{}'; states have {}", name, reader::listed(headings)));
             place.push_back(static_cast<std::size_t>(found - cells.begin()));
         }
-        if (cells.size() != names.size())
-            fail_at(file, line, "a column too many; states have " + reader::listed(names));
+        if (cells.size() != headings.size())
+            fail_at(file, line, "a column too many; states have " + reader::listed(headings));
     };
     read_sheet(csv, file, most_measured * 10, head, [&](const Cells& cells, int line) {
-        const std::string branch = branch_named(cells[place[0]], all, map, file, line, "branch");
+        const std::string branch = branch_named(cells[place[0]], names, file, line, "branch");
         const auto number = [&](std::size_t k) {
-            const double value = number_or_none(cells[place[k]], file, line, names[k]);
-            if (std::isnan(value)) fail_at(file, line, names[k] + ": an empty cell");
+            const double value = number_or_none(cells[place[k]], file, line, headings[k]);
+            if (std::isnan(value)) fail_at(file, line, headings[k] + ": an empty cell");
             return value;
         };
         const double load = number(1);
@@ -622,7 +667,9 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file) {
                 of.at(of.value->items[k], of.path + "." + reader::shown(of.value->keys[k])));
         return list;
     };
-    for (const auto& [name, at] : entries(top.require("columns"))) {
+    const auto columns = top.optional("columns");
+    if (!columns && !top.optional("branches")) top.fail("no names; required: columns or branches");
+    for (const auto& [name, at] : columns ? entries(*columns) : decltype(entries(*columns)){}) {
         at.only_keys({"output", "unit", "sign", "offset", "change"});
         ColumnMap::Entry entry{.theirs = name, .line = at.value->line};
         entry.output = at.require("output").text("an output of the scene, 'parameter' or 'branch'");
@@ -647,9 +694,9 @@ compare::Candidate read_candidate(std::string_view content, const std::string& f
     compare::Candidate candidate;
     if (holds_states(content)) {
         Bodies bodies{scene, model, nodes_of(model), {}};
-        const auto states = begins_as_json(content)
-                                ? states_of_json(content, file, bodies, comparison, map)
-                                : states_of_table(content, file, bodies, comparison, map);
+        const Names names{comparison, map, tests_of(model)};
+        const auto states = begins_as_json(content) ? states_of_json(content, file, bodies, names)
+                                                    : states_of_table(content, file, bodies, names);
         candidate = compare::candidate_of(model, comparison, name, states);
         if (!bodies.passed_over.empty())
             candidate.notes.push_back(
@@ -657,7 +704,7 @@ compare::Candidate read_candidate(std::string_view content, const std::string& f
                 reader::listed({bodies.passed_over.begin(), bodies.passed_over.end()}));
     } else {
         const auto elements = compare::element_channels(model);
-        auto table = read_points(content, file, comparison, map, &elements);
+        auto table = read_points(content, file, model, comparison, map, &elements);
         candidate.points = std::move(table.points);
         if (!table.left_out.empty())
             candidate.notes.push_back("columns that are not compared: " +

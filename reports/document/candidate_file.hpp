@@ -2,6 +2,7 @@
 // reports/README.md.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,8 +31,6 @@ struct ColumnMap {
     // names in the file and in the scene
     std::vector<std::pair<std::string, std::string>> branches;
     std::string file;  // empty: there is none
-    // of a measurement: what the branches move, for names of tests (rig.hpp)
-    std::vector<TestBranch> tests = {};
 };
 // Throws SceneError "file:line: field: ...".
 ColumnMap read_column_map(std::string_view yaml, const std::string& file);
@@ -40,15 +39,19 @@ ColumnMap read_column_map(std::string_view yaml, const std::string& file);
 struct PointTable {
     compare::Points points;
     std::vector<std::string> parameters;  // names of the columns with a branch parameter
-    std::vector<std::string> left_out;    // columns that are not compared
-    std::size_t count = 0;                // of points
+    std::vector<std::string> left_out;    // columns and rows that are not compared
+    std::vector<int> lines;               // of the points
 };
-// Of a candidate: `also_known` are channels that it may give and that are not compared; an unknown
-// column is an error unless there is a map. Of a measurement (null): every unknown column is left
-// out, and a cell that is not a finite number is an error. Throws SheetError "file:line: ...".
-PointTable read_points(std::string_view csv, const std::string& file,
+// Headings and names of tests are the map's, this program's or a rig's (rig.hpp). Of a candidate:
+// `also_known` are channels that it may give and that are not compared; an unknown column is an error
+// unless there is a map. Of a measurement (null): every unknown column is left out, and a cell that is
+// not a finite number is an error. Throws SheetError "file:line: ...".
+PointTable read_points(std::string_view csv, const std::string& file, const Model& model,
                        const compare::Comparison& comparison, const ColumnMap& map,
                        const std::vector<compare::Channel>* also_known);
+// Keeps the points for which it returns an empty text; the others are left out for that reason, in
+// which they are counted: "3 rows beyond the range of branch 'travel' (lines 5, 6, 9)".
+void keep_rows(PointTable& table, const std::function<std::string(std::size_t point)>& why_not);
 
 // Whether a channel is the travel of a wheel, which gives the place of a point.
 bool is_travel(const compare::Channel& channel);

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "compare/candidate/measured.hpp"
-#include "compare/outputs/not_a_number.hpp"
+#include "compare/candidate/candidate.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/provenance.hpp"
-#include "reports/json/json_cursor.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -17,117 +16,95 @@ namespace {
 using json = nlohmann::ordered_json;
 using compare::Leg;
 
-// The curves of a solved scene as they stand in its document. Of the model only its branches.
-struct SolvedCurves {
-    Model model;
-    compare::Comparison comparison;
-    std::vector<double> drawn;  // outputs in the design position; NaN where the document has none
-    compare::DefinedCurves defined;
-};
-
-SolvedCurves curves_of(const JsonCursor& scene) {
-    SolvedCurves solved;
-    auto& channels = solved.comparison.channels;
-    for (const auto& channel : scene["channels"].items()) {
-        const auto unit = compare::find_unit(channel["unit"].text());
-        if (!unit) channel["unit"].fail("is not known");
-        channels.push_back({.name = channel["name"].text(), .unit = *unit, .reads = {}});
-        if (!channel["kinematic"].truth()) channels.back().reads = compare::Effort{};
-        const auto drawn = channel.find("drawn");
-        solved.drawn.push_back(drawn ? drawn->number() : compare::nan);
-    }
-    for (const auto& branch : scene["branches"].items()) {
-        Branch& of_model = solved.model.branches.emplace_back();
-        compare::BranchComparison& one = solved.comparison.branches.emplace_back();
-        of_model.name = one.branch = branch["name"].text();
-        of_model.from = branch["from"].number(), of_model.to = branch["to"].number();
-        const auto unit = compare::find_unit(branch["unit"].text());
-        if (!unit) branch["unit"].fail("is not known");
-        one.unit = *unit;
-        for (const auto& leg : branch["legs"].items()) {
-            compare::Curve curve{.unit = *unit, .a = leg["curve"]["a"].numbers(), .values = {}};
-            curve.values.assign(curve.a.size(), std::vector<double>(channels.size()));
-            for (std::size_t c = 0; c < channels.size(); ++c) {
-                const JsonCursor field = leg["curve"]["values"][channels[c].name];
-                const auto values = field.numbers();
-                if (values.size() != curve.a.size()) field.fail("not as many numbers as points");
-                for (std::size_t k = 0; k < values.size(); ++k) curve.values[k][c] = values[k];
-            }
-            one.runs.emplace_back().curve = std::move(curve);
-        }
-        if (one.runs.size() < compare::legs.size())
-            branch["legs"].fail("a measurement is compared with three legs");
-    }
-    if (const auto defined = scene.find("defined")) {
-        for (const auto& channel : (*defined)["channels"].items()) {
-            const auto unit = compare::find_unit(channel["unit"].text());
-            if (!unit) channel["unit"].fail("is not known");
-            solved.defined.channels.push_back(
-                {.name = channel["name"].text(), .unit = *unit, .reads = {}});
-        }
-        const auto of_branches = (*defined)["branches"].items();
-        if (of_branches.size() != solved.comparison.branches.size())
-            (*defined)["branches"].fail("not as many as the scene's branches");
-        for (std::size_t b = 0; b < of_branches.size(); ++b) {
-            const auto& of = solved.comparison.branches[b].run(Leg::equilibrium).curve;
-            compare::Curve curve{.unit = of.unit, .a = of.a, .start = of.start, .values = {}};
-            const std::size_t count = solved.defined.channels.size();
-            curve.values.assign(curve.a.size(), std::vector<double>(count));
-            for (std::size_t c = 0; c < count; ++c) {
-                const JsonCursor field = of_branches[b][solved.defined.channels[c].name];
-                const auto values = field.numbers();
-                if (values.size() != curve.a.size()) field.fail("not as many numbers as points");
-                for (std::size_t k = 0; k < values.size(); ++k) curve.values[k][c] = values[k];
-            }
-            solved.defined.branches.push_back(std::move(curve));
-        }
-    }
-    return solved;
+// "deg/kN": large numbers of newtons stand for one.
+std::pair<std::string, double> gradient_unit(compare::Unit of, compare::Unit per) {
+    const bool force = per == compare::Unit::newton || per == compare::Unit::newton_metre;
+    return {fmt::format("{}/{}{}", symbol(of), force ? "k" : "", symbol(per)), force ? 1e3 : 1};
 }
 
-// The points of a measurement: outputs that are positions or angles, travel as abscissa only.
-PointTable read(std::string_view csv, const std::string& file, const SolvedCurves& solved,
-                const ColumnMap& map) {
-    const auto& all = solved.comparison;
-    PointTable table = read_points(csv, file, all, map, nullptr);
-    auto& columns = table.points.columns;
-    const auto channel = [&](const compare::PointColumn& column) -> const compare::Channel& {
-        return all.channels[column.channel];
-    };
-    // The travel that places the points is no output; that of the other wheel of an axle is one.
-    std::erase_if(columns, [&](const auto& c) {
-        return is_travel(channel(c)) && (c.change || c.channel == table.points.abscissa);
+// Whether a point has a value of an output; a travel that places it is none.
+void drop_travel(PointTable& table, const std::vector<compare::Channel>& channels) {
+    std::erase_if(table.points.columns, [&](const compare::PointColumn& column) {
+        return is_travel(channels[column.channel]) &&
+               (column.change || column.channel == table.points.abscissa);
     });
-    std::erase_if(columns, [&](const auto& c) {
-        if (channel(c).kinematic()) return false;
-        table.left_out.push_back(channel(c).name + ": no position or angle");
+}
+
+// Changes of outputs that are no function of the position alone have no start.
+void drop_changes(PointTable& table, const std::vector<compare::Channel>& channels) {
+    std::erase_if(table.points.columns, [&](const compare::PointColumn& column) {
+        if (!column.change || channels[column.channel].kinematic()) return false;
+        table.left_out.push_back(channels[column.channel].name +
+                                 ": a change of an output that is no position or angle");
         return true;
     });
-    if (columns.empty())
-        fail_at(
-            file, 1,
-            "no output among the columns" +
-                (table.left_out.empty() ? "" : "; left out: " + reader::listed(table.left_out)));
-    for (auto& column : columns) {
-        if (!column.change) continue;
-        const double drawn = solved.drawn[column.channel];
-        if (!std::isfinite(drawn))
-            fail_at(file, 1,
-                    fmt::format("{}: the result lacks the design position; solve again",
-                                channel(column).name));
-        for (double& value : column.values) value += drawn;
-        column.change = false;
+}
+
+// The points with the channels of another list; columns that it lacks are left out.
+void renumber(Measurement& measurement, const std::vector<compare::Channel>& channels) {
+    auto& [points, parameters, left_out, lines] = measurement.table;
+    const auto& own = measurement.channels;
+    std::erase_if(points.columns, [&](compare::PointColumn& column) {
+        const int c = compare::find_channel(channels, own[column.channel].name);
+        if (c < 0) left_out.push_back(own[column.channel].name + ": no output of these branches");
+        column.channel = static_cast<std::size_t>(c);
+        return c < 0;
+    });
+    if (points.abscissa)
+        points.abscissa =
+            static_cast<std::size_t>(compare::find_channel(channels, own[*points.abscissa].name));
+    measurement.channels = channels;
+}
+
+json rows_json(const compare::MeasuredReading& reading, const compare::Comparison& all,
+               const compare::Points& measured) {
+    json rows = json::array();
+    for (const auto& of : reading.rows) {
+        const auto& channel = all.channels[of.channel];
+        const auto [unit, factor] = gradient_unit(
+            channel.unit, reading.by_parameter ? all.branch(of.branch).unit
+                                               : all.channels[*measured.abscissa].unit);
+        json row = {{"branch", of.branch},
+                    {"channel", channel.name},
+                    {"unit", symbol(channel.unit)},
+                    {"compared", of.compared},
+                    {"gradient",
+                     {{"unit", unit},
+                      {"measured", factor * of.measured_gradient},
+                      {"model", factor * of.gradient}}}};
+        for (const Leg leg : compare::legs) {
+            const auto& off = of.off[static_cast<std::size_t>(leg)];
+            row[name(leg)] = {{"signed_max", off.signed_max}, {"rms", off.rms}};
+        }
+        rows.push_back(row);
     }
-    return table;
+    return rows;
+}
+
+std::string word_of(const std::vector<std::string>& parameters) {
+    const auto is_load = [](const std::string& name) { return name.starts_with("load"); };
+    return std::ranges::all_of(parameters, is_load)    ? "load"
+           : std::ranges::none_of(parameters, is_load) ? "parameter"
+                                                       : "load or parameter";
+}
+
+// Reason why a point is not compared; empty if it is.
+std::string why_not(const compare::Place& place, const compare::Points& measured, std::size_t k,
+                    const compare::Comparison& all) {
+    if (!std::isfinite(place.x)) return "without a parameter or travel";
+    if (std::ranges::none_of(measured.columns,
+                             [&](const auto& column) { return std::isfinite(column.values[k]); }))
+        return "without a measured value";
+    if (place.branch < 0) return "that no branch reaches";
+    return fmt::format("beyond the range of branch '{}'",
+                       all.branches[static_cast<std::size_t>(place.branch)].branch);
 }
 
 }  // namespace
 
-void add_measurement(json& scene_document, std::string_view csv, const std::string& file,
-                     const ColumnMap& map) {
-    const std::string result = "result.json";
-    const SolvedCurves solved = curves_of({&scene_document, "", &result});
-    const compare::Comparison& all = solved.comparison;
+Measurement read_measurement(std::string_view csv, const std::string& file, const Model& model,
+                             const ColumnMap& map, const std::vector<std::string>& only) {
+    compare::Comparison all = compare::outline(model);
     std::vector<std::string> branches;
     for (const auto& branch : all.branches) branches.push_back(branch.branch);
     for (const auto& [theirs, ours] : map.branches)
@@ -135,97 +112,84 @@ void add_measurement(json& scene_document, std::string_view csv, const std::stri
             fail_at(file, 0,
                     fmt::format("'{}={}': the scene has no branch '{}'{}", theirs, ours, ours,
                                 reader::did_you_mean(ours, branches, "allowed")));
-    ColumnMap with_tests = map;
-    for (const auto& branch : JsonCursor{&scene_document, "", &result}["branches"].items())
-        if (const auto moves = branch.find("case"))
-            with_tests.tests.push_back(
-                {branch["name"].text(), moves->text(), branch["unit"].text() == "mm"});
-    const PointTable table = read(csv, file, solved, with_tests);
+    Measurement measurement{.file = file,
+                            .hash = input_hash(csv),
+                            .table = read_points(csv, file, model, all, map, nullptr),
+                            .channels = std::move(all.channels)};
+    PointTable& table = measurement.table;
+    if (!only.empty() && !table.points.branch.empty())
+        keep_rows(table, [&](std::size_t k) {
+            const std::string& branch = table.points.branch[k];
+            return std::ranges::find(only, branch) != only.end()
+                       ? ""
+                       : fmt::format("of branch '{}', which was not requested", branch);
+        });
+    if (table.lines.empty())
+        fail_at(file, 0, "no point of the requested branches: " + reader::listed(table.left_out));
+    drop_travel(table, measurement.channels);
+    drop_changes(table, measurement.channels);
+    if (table.points.columns.empty())
+        fail_at(
+            file, 1,
+            "no output among the columns" +
+                (table.left_out.empty() ? "" : "; left out: " + reader::listed(table.left_out)));
+    return measurement;
+}
+
+void add_measurement(json& scene_document, const Model& model, const compare::Comparison& all,
+                     const compare::DefinedCurves& defined, Measurement measurement) {
+    renumber(measurement, all.channels);
+    PointTable& table = measurement.table;
     const compare::Points& measured = table.points;
     compare::MeasuredComparison found;
     try {
-        found = compare::compare_measured(solved.model, all, measured, solved.defined);
+        found = compare::compare_measured(model, all, measured, defined);
     } catch (const std::invalid_argument& error) {
-        fail_at(file, 1, error.what());
+        fail_at(measurement.file, 1, error.what());
     }
-    json columns = json::object();
+    json columns = json::object(), branches = json::array(), readings = json::array(),
+         loops = json::array();
     if (measured.abscissa) columns[all.channels[*measured.abscissa].name] = measured.at;
     for (const auto& column : found.columns)
         columns[all.channels[column.channel].name] = column.values;
-    const bool loads = std::ranges::all_of(
-                   table.parameters,
-                   [](const std::string&name) { return name.starts_with("load"); }),
-               drives = std::ranges::none_of(table.parameters, [](const std::string&name) {
-                   return name.starts_with("load");
-               });
-    const std::string word = loads ? "load" : drives ? "parameter" : "load or parameter";
-    json readings = json::array();
-    for (const auto& reading : found.readings) {
-        json rows = json::array();
-        for (const auto& of : reading.rows) {
-            const auto& channel = all.channels[of.channel];
-            json row = {{"channel", channel.name},
-                        {"unit", symbol(channel.unit)},
-                        {"compared", of.compared}};
-            for (const Leg leg : compare::legs) {
-                const auto& off = of.off[static_cast<std::size_t>(leg)];
-                row[name(leg)] = {{"signed_max", off.signed_max}, {"rms", off.rms}};
-            }
-            rows.push_back(row);
-        }
-        const std::string by = reading.by_parameter ? word : all.channels[*measured.abscissa].name;
-        readings.push_back({{"reading", "at equal " + by}, {"channels", rows}});
-    }
-    json loops = json::array();
+    for (const auto& place : found.places)
+        branches.push_back(
+            place.branch < 0 ? "" : all.branches[static_cast<std::size_t>(place.branch)].branch);
+    for (const auto& reading : found.readings)
+        readings.push_back(
+            {{"reading",
+              "at equal " + (reading.by_parameter ? word_of(table.parameters)
+                                                  : all.channels[*measured.abscissa].name)},
+             {"channels", rows_json(reading, all, measured)}});
     for (const auto& loop : found.loops) {
         const auto& channel = all.channels[loop.channel];
-        const auto& branch = all.branch(loop.branch);
-        const std::string at_unit = measured.a.empty()
-                                        ? symbol(all.channels[*measured.abscissa].unit)
-                                        : symbol(branch.unit);
-        loops.push_back({{"branch", loop.branch},
-                         {"channel", channel.name},
-                         {"unit", symbol(channel.unit)},
-                         {"width", loop.width},
-                         {"at", loop.at},
-                         {"at_unit", at_unit},
-                         {"points", loop.points}});
+        loops.push_back(
+            {{"branch", loop.branch},
+             {"channel", channel.name},
+             {"unit", symbol(channel.unit)},
+             {"width", loop.width},
+             {"at", loop.at},
+             {"at_unit", symbol(loop.by_parameter ? all.branch(loop.branch).unit
+                                                  : all.channels[*measured.abscissa].unit)},
+             {"points", loop.points}});
     }
-    scene_document["measured"] = {{"file", file},
-                                  {"hash", input_hash(csv)},
-                                  {"points", table.count},
-                                  {"left_out", table.left_out},
-                                  {"columns", columns},
-                                  {"branch", found.branch},
-                                  {"branch_given", !measured.branch.empty()},
-                                  {"readings", readings},
-                                  {"loops", loops},
-                                  {"findings", found.explanations}};
-    if (!measured.a.empty()) scene_document["measured"]["parameter"] = measured.a;
-    if (measured.abscissa)
-        scene_document["measured"]["abscissa"] = all.channels[*measured.abscissa].name;
-}
-
-void add_defined_curves(json& scene_document, const Model& model,
-                        const compare::Comparison& comparison) {
-    const compare::DefinedCurves defined = compare::defined_curves(model, comparison);
-    json channels = json::array(), branches = json::array();
-    for (const auto& channel : defined.channels)
-        channels.push_back({{"name", channel.name},
-                            {"unit", symbol(channel.unit)},
-                            {"definition", channel.definition}});
-    for (std::size_t b = 0; b < defined.branches.size(); ++b) {
-        const auto& reference = comparison.branches[b].run(Leg::equilibrium).curve;
-        // a leg that ended early leaves its points without values
-        json values = json::object();
-        for (std::size_t c = 0; c < defined.channels.size(); ++c) {
-            auto column = defined.branches[b].channel(c);
-            column.resize(reference.a.size(), compare::nan);
-            values[defined.channels[c].name] = column;
-        }
-        branches.push_back(std::move(values));
-    }
-    scene_document["defined"] = {{"channels", channels}, {"branches", branches}};
+    json document = {{"file", measurement.file},
+                     {"hash", measurement.hash},
+                     {"points", table.lines.size()},
+                     {"left_out", json::array()},
+                     {"columns", columns},
+                     {"branch", branches},
+                     {"branch_given", !measured.branch.empty()},
+                     {"readings", readings},
+                     {"loops", loops},
+                     {"findings", found.explanations}};
+    if (!measured.a.empty()) document["parameter"] = measured.a;
+    if (measured.abscissa) document["abscissa"] = all.channels[*measured.abscissa].name;
+    keep_rows(table, [&](std::size_t k) {
+        return found.used[k] ? "" : why_not(found.places[k], measured, k, all);
+    });
+    document["left_out"] = table.left_out;
+    scene_document["measured"] = std::move(document);
 }
 
 int compared_with_measurement(const json& scene_document) {

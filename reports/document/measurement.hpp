@@ -1,10 +1,12 @@
-// Reader of measured curves in CSV.
+// Measured curves in CSV, beside the calculated ones.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "compare/candidate/measured.hpp"
 #include "elastocheck/compare.hpp"
 #include "elastocheck/model.hpp"
 #include "reports/document/candidate_file.hpp"
@@ -14,11 +16,14 @@ namespace elastocheck::reports {
 
 using MeasurementError = SheetError;
 
-// Adds "measured" to the document of a solved scene: the points, and the deviation of every leg from
-// them.
-//
-// The first line names the columns, every further line is a point; an empty cell was not measured.
-// Columns:
+struct Measurement {
+    std::string file, hash;  // of its text
+    PointTable table;        // its channels are positions in `channels`
+    std::vector<compare::Channel> channels;
+};
+
+// Reads a measurement; the first line names the columns, every further line is a point, an empty
+// cell was not measured. Columns:
 //   travel_mm (NAME.travel_mm), load_N, load_Nm, parameter_mm, parameter_deg
 //                                  place of the point: travel from the design position, parameter
 //                                  of its branch, or both; with several load cases one column for
@@ -26,17 +31,17 @@ using MeasurementError = SheetError;
 //   OUTPUT_UNIT                    toe_deg, camber_deg, wheel_centre_y_mm, ...: absolute values
 //   OUTPUT_change_UNIT             ...: relative to the design position
 //   branch                         its branch; needed only where several branches have the same parameter
-// The map gives the names of columns and branches in the file. Unknown columns, and outputs
-// that are neither positions nor angles, are left out and listed. A point is compared only with
-// the branch on which it was measured. Throws MeasurementError, and ResultError for a document
-// without curves.
-void add_measurement(nlohmann::ordered_json& scene_document, std::string_view csv,
-                     const std::string& file, const ColumnMap& map = {});
+// or as a rig names them (rig.hpp), or as the map says. Unknown columns, and the points of branches
+// that are not among `only` (empty: all), are left out and listed. Throws MeasurementError.
+Measurement read_measurement(std::string_view csv, const std::string& file, const Model& model,
+                             const ColumnMap& map = {}, const std::vector<std::string>& only = {});
 
-// Adds "defined" to the document of a solved scene: curves of its figures by other definitions, which
-// add_measurement() tries on columns that deviate.
-void add_defined_curves(nlohmann::ordered_json& scene_document, const Model& model,
-                        const compare::Comparison& comparison);
+// Adds "measured" to the document of a solved scene: the points, and the deviation of every leg from
+// them. A point is compared only with the branch on which it was measured. Columns that deviate are
+// tried by the other definitions `defined` too.
+void add_measurement(nlohmann::ordered_json& scene_document, const Model& model,
+                     const compare::Comparison& comparison, const compare::DefinedCurves& defined,
+                     Measurement measurement);
 
 // Number of compared values over all readings and outputs.
 int compared_with_measurement(const nlohmann::ordered_json& scene_document);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "reports/document/wheels.hpp"
+
 namespace elastocheck::reports {
 namespace {
 
@@ -77,6 +79,11 @@ constexpr std::array headings{Heading{"toe", "toe"},
                               Heading{"track change", "track_change"},
                               Heading{"half track change", "track_change"},
                               Heading{"wheelbase change", "wheelbase_change"},
+                              Heading{"wheel load", "wheel_load"},
+                              Heading{"vertical load", "wheel_load"},
+                              Heading{"tyre load", "wheel_load"},
+                              Heading{"tire load", "wheel_load"},
+                              Heading{"wheel vertical force", "wheel_load"},
                               Heading{"lateral force", "parameter", "lateral force"},
                               Heading{"longitudinal force", "parameter", "longitudinal force"},
                               Heading{"vertical force", "parameter", "heave"},
@@ -92,6 +99,14 @@ constexpr std::array headings{Heading{"toe", "toe"},
                               Heading{"load case", "branch"}};
 
 }  // namespace
+
+std::vector<TestBranch> tests_of(const Model& model) {
+    std::vector<TestBranch> tests;
+    for (const Branch& branch : model.branches)
+        tests.push_back({branch.name, load_case(model, branch),
+                         compare::unit_of(branch.unit) == compare::Unit::mm});
+    return tests;
+}
 
 std::vector<std::string> branches_of_test(std::string_view test,
                                           const std::vector<TestBranch>& branches) {
@@ -123,7 +138,8 @@ std::vector<std::string> branches_of_test(std::string_view test,
 }
 
 std::optional<RigHeading> heading_of_rig(std::string_view heading,
-                                         const compare::Comparison& comparison) {
+                                         const compare::Comparison& comparison,
+                                         const std::vector<TestBranch>& tests) {
     // the unit in brackets, or after the last _
     std::string_view rest = heading, unit;
     for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}})
@@ -143,6 +159,11 @@ std::optional<RigHeading> heading_of_rig(std::string_view heading,
     const auto known = std::ranges::find(headings, joined, &Heading::words);
     if (known == headings.end()) return std::nullopt;
     std::string name(known->output);
+    std::string_view moves = known->moves;
+    if (moves == "heave" && std::ranges::none_of(tests, [&](const TestBranch& test) {
+            return test.moves == moves && !test.by_travel;
+        }))
+        name = "wheel_load", moves = "";
     if (name != "branch" && name != "parameter" && !side.empty()) {
         const auto is = [&](const std::string& output) {
             return compare::find_channel(comparison.channels, output) >= 0;
@@ -164,8 +185,7 @@ std::optional<RigHeading> heading_of_rig(std::string_view heading,
          {"N.m", "Nm"}}};
     for (const auto& [theirs, ours] : written)
         if (unit == theirs) unit = ours;
-    return RigHeading{unit.empty() ? name : fmt::format("{} [{}]", name, unit),
-                      std::string(known->moves)};
+    return RigHeading{unit.empty() ? name : fmt::format("{} [{}]", name, unit), std::string(moves)};
 }
 
 }  // namespace elastocheck::reports

@@ -16,6 +16,7 @@ struct TestBranch {
     std::string branch, moves;
     bool by_travel = false;  // its parameter is a length
 };
+std::vector<TestBranch> tests_of(const Model& model);
 
 // The branches that the name of a rig test may mean, in any case and with - or _ for blanks:
 //   bounce, ride, heave, parallel travel | roll | steer, steering | lateral (force), also opposed or
@@ -26,7 +27,8 @@ std::vector<std::string> branches_of_test(std::string_view test,
                                           const std::vector<TestBranch>& branches);
 
 // "Left Toe Angle (arcmin)" as "left.toe [arcmin]", "Wheel Travel RH [mm]" as "right.travel [mm]",
-// "Lateral Force [kN]" as "parameter [kN]", "Test" as "branch"; of a scene with one wheel without a
+// "Lateral Force [kN]" as "parameter [kN]", "Vertical Force LH [N]" as "left.wheel_load [N]" where no
+// branch has that parameter, "Test" as "branch"; of a scene with one wheel without a
 // name "toe [arcmin]". Empty where the heading is not known, or names another side than that of the
 // only wheel.
 struct RigHeading {
@@ -36,6 +38,7 @@ struct RigHeading {
     std::string moves;
 };
 std::optional<RigHeading> heading_of_rig(std::string_view heading,
-                                         const compare::Comparison& comparison);
+                                         const compare::Comparison& comparison,
+                                         const std::vector<TestBranch>& tests);
 
 }  // namespace elastocheck::reports

@@ -1,5 +1,6 @@
 #include "reports/document/measurement.hpp"
 
+#include "compare/candidate/candidate.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "reports/json/json_cursor.hpp"
@@ -11,39 +12,36 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+struct Suspension {
+    Model model;
+    compare::Comparison comparison;
+};
+
 // Curves as legs would have them: something that rises, from one end of each branch to the other.
-json suspension() {
-    const Model model = compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml"));
-    const auto channels = compare::channels(model);
-    const auto drawn = evaluate(model, channels, compare::design_state(model));
-    json scene;
-    for (std::size_t c = 0; c < channels.size(); ++c)
-        scene["channels"].push_back({{"name", channels[c].name},
-                                     {"unit", symbol(channels[c].unit)},
-                                     {"kinematic", channels[c].kinematic()},
-                                     {"drawn", drawn[c]}});
-    for (const auto& branch : model.branches) {
-        const auto unit = compare::unit_of(branch.unit);
-        json curve;
+Suspension suspension() {
+    Suspension of{compile(read_scene(ELASTOCHECK_SCENES "/trailing_arm.yaml")), {}};
+    of.comparison = compare::outline(of.model);
+    const auto drawn = evaluate(of.model, of.comparison.channels, compare::design_state(of.model));
+    for (std::size_t b = 0; b < of.model.branches.size(); ++b) {
+        const Branch& branch = of.model.branches[b];
+        compare::Curve curve{.unit = compare::unit_of(branch.unit), .a = {}, .values = {}};
         for (int k = 0; k <= 5; ++k) {
-            curve["a"].push_back(in_unit(unit) * (branch.from + (branch.to - branch.from) * k / 5));
-            for (std::size_t c = 0; c < channels.size(); ++c)
-                curve["values"][channels[c].name].push_back(drawn[c] + 10.0 * k);
+            curve.a.push_back(in_unit(curve.unit) *
+                              (branch.from + (branch.to - branch.from) * k / 5));
+            curve.values.push_back(drawn);
+            for (double& value : curve.values.back()) value += 10.0 * k;
         }
-        scene["branches"].push_back({{"name", branch.name},
-                                     {"from", curve["a"].front()},
-                                     {"to", curve["a"].back()},
-                                     {"unit", symbol(unit)},
-                                     {"legs", json(3, {{"curve", curve}})}});
+        for (std::size_t leg = 0; leg < compare::legs.size(); ++leg)
+            of.comparison.branches[b].runs.emplace_back().curve = curve;
     }
-    return scene;
+    return of;
 }
 
 }  // namespace
 
 // The file's names of branches are those of a map, as a rig has them.
 void measurement(std::string_view input) {
-    static const json suspension = fuzz::suspension();
+    static const Suspension suspension = fuzz::suspension();
     static const reports::ColumnMap cases = [] {
         reports::ColumnMap map;
         map.columns = {{.theirs = "case", .output = "branch", .unit = {}}};
@@ -51,8 +49,9 @@ void measurement(std::string_view input) {
         return map;
     }();
     for (const auto& how : {reports::ColumnMap{}, cases}) try {
-            json scene = suspension;
-            add_measurement(scene, input, "fuzz.csv", how);
+            json scene;
+            add_measurement(scene, suspension.model, suspension.comparison, {},
+                            reports::read_measurement(input, "fuzz.csv", suspension.model, how));
             expect_plain("the document", scene["measured"].dump());
             if (reports::compared_with_measurement(scene) < 0)
                 throw Fault("fewer than none compared");

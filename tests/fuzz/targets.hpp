@@ -34,7 +34,7 @@ void table(std::string_view input);
 void adm(std::string_view input);
 void chrono(std::string_view input);
 void subsystem(std::string_view input);  // .sub
-void points(std::string_view input);     // .csv, .shk
+void points(std::string_view input);     // .csv
 void property(std::string_view input);   // .bus, .spr, .bum, .reb
 
 inline constexpr std::array targets{Target{"scene", scene},
@@ -44,7 +44,7 @@ inline constexpr std::array targets{Target{"scene", scene},
                                     Target{"adm", adm, false, ".adm"},
                                     Target{"chrono", chrono, true, ".json"},
                                     Target{"subsystem", subsystem, false, ".sub"},
-                                    Target{"points", points, false, ".csv .shk"},
+                                    Target{"points", points, false, ".csv"},
                                     Target{"property", property, false, ".bus .spr .bum .reb"}};
 
 // Throws Fault where the text, but for its ends of lines, holds what no name may hold.

@@ -292,6 +292,33 @@ TEST(FitCommand, ReadsPointsOverTravel) {
     EXPECT_NEAR(json::parse(said.out)["numbers"]["rows"][0][3].get<double>(), -0.013, 1e-6);
 }
 
+// A file of a rig: names of tests, points by parameter and by travel; rows without use are counted.
+TEST(FitCommand, ReadsTheWordsOfARigAndCountsTheRowsThatItLeavesOut) {
+    const Folder folder;
+    const std::string wishbone = scenes + "/double_wishbone.yaml";
+    std::string rig =
+        "Test,parameter_mm,Rack Travel [mm],Wheel Travel [mm],Left Toe Angle (arcmin)\n";
+    for (const auto& row : cells_of(expect_says("solve " + wishbone +
+                                                    " --steps 8 --set points.tie_rod_inner.z=0.003 "
+                                                    "--channels toe",
+                                                0)
+                                        .out)) {
+        if (row[0] != "travel" && row[0] != "steering") continue;
+        const bool steers = row[0] == "steering";
+        rig += (steers ? "Steer,," : "Bounce,") + row[2] + (steers ? ",," : ",,,") +
+               std::to_string(60 * std::stod(row[4])) + "\n";
+    }
+    rig += "Bounce,500,,,1\nBounce,,,500,1\nBounce,,,,2\n";
+    const json result =
+        json::parse(expect_says("fit " + wishbone + " --measured " + folder.write("rig.csv", rig) +
+                                    " --vary points.tie_rod_inner.z --json",
+                                0)
+                        .out);
+    EXPECT_NEAR(result["numbers"]["rows"][0][3].get<double>(), 0.003, 1e-6);
+    expect_parts(result["left_out"].dump(), {"2 rows beyond the range of branch 'travel'",
+                                             "1 row without a parameter or travel"});
+}
+
 TEST(FitCommand, NamesWhatTheDataDoNotDetermineWithExitCodeThree) {
     const Folder folder;
     const std::string csv = (folder.path / "rig.csv").string();

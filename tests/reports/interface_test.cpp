@@ -310,13 +310,15 @@ TEST(ReportCommand, EndsWithTheVerdictAndThePage) {
 
 TEST(ReportCommand, LaysMeasuredPointsOverTheCurves) {
     const Report report;
+    const std::string command = "report " + scenes + "/single_bushing.yaml --quick -o " +
+                                (report.folder.path / "out").string() + " ";
     report.folder.write("rig.csv", "Fz [kN],X,time\n1,-99.5,0\n-2,-101,1\n");
     report.folder.write("map.yaml",
                         "columns:\n  \"Fz [kN]\": {output: parameter, unit: kN}\n"
                         "  X: {output: centre_x, sign: -1, offset: 0.5}\n");
     const std::string measured = "--measured " + (report.folder.path / "rig.csv").string(),
                       map = " --map " + (report.folder.path / "map.yaml").string();
-    expect_said(report.draws(measured + map), 0, {.err = {"rig.csv: column left out: time"}});
+    expect_says(command + measured + map, 0, {.err = {"rig.csv: left out: time"}});
     const json result = json::parse(text_of(report.folder.path / "out/result.json"));
     const json& points = result["scenes"][0]["measured"];
     EXPECT_EQ(points["columns"]["centre_x"], (json{100.0, 101.5}));
@@ -326,9 +328,10 @@ TEST(ReportCommand, LaysMeasuredPointsOverTheCurves) {
                  {"Comparison with the measurement"});
     // nothing within range: could not be judged
     report.folder.write("rig.csv", "Fz [kN],X\n1e6,0\n");
-    expect_said(report.draws(measured + map), 3, {.err = {"is within the range of the legs"}});
-    EXPECT_EQ(report.draws(map).code, 2) << "a map of nothing";
-    EXPECT_EQ(report.draws(measured + map + " --candidate x.csv").code, 2) << "a map of two";
+    expect_says(command + measured + map, 3, {.err = {"is within the range of the legs"}});
+    expect_says(command + map, 2);                                    // a map of nothing
+    expect_says(command + measured + map + " --candidate x.csv", 2);  // a map of two
+    EXPECT_EQ(report.draws(measured).code, 2) << "of a result that is not solved";
 }
 
 TEST(ReportCommand, OpensThePageByWhatBrowserSays) {

@@ -18,6 +18,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+constexpr double least_mass = 1e-9;    // [kg] ADAMS solves no part without mass
+constexpr double at_hardpoint = 1e-9;  // [m]
+
 std::string real(double x) { return fmt::format("{:.17g}", x == 0 ? 0.0 : x); }
 std::string list(const Vector3d& v) {
     return fmt::format("{}, {}, {}", real(v.x()), real(v.y()), real(v.z()));
@@ -48,9 +51,29 @@ Matrix3d with_x(const Vector3d& u, const Vector3d& v) {
     return A;
 }
 
+// The weight of a body; null if it has none.
+const DeadForce* weight_of(const Scene& scene, const std::string& body) {
+    const auto load = std::ranges::find(scene.static_loads, "gravity." + body, &Load::name);
+    return load == scene.static_loads.end() ? nullptr : std::get_if<DeadForce>(&load->kind);
+}
+
+// A scene has weights m g. Of g the file has the size; without one it is the standard's, so that only
+// the masses depend on it.
+Vector3d gravity_of(const Scene& scene) {
+    Vector3d given = Vector3d::Zero(), g = Vector3d::Zero();
+    for (const Number& number : scene.numbers)
+        for (int k = 0; k < 3; ++k)
+            if (number.path == fmt::format("gravity.{}", "xyz"[k])) given[k] = number.value;
+    for (const Body& body : scene.bodies)
+        if (const DeadForce* weight = weight_of(scene, body.name); weight && !weight->f.isZero(0))
+            g = weight->f.normalized() * (given.isZero(0) ? 9.80665 : given.norm());
+    return g;
+}
+
 class AdmWriter {
   public:
-    AdmWriter(const Scene& scene, Exported& result) : scene_(scene), result_(result) {}
+    AdmWriter(const Scene& scene, Exported& result)
+        : scene_(scene), result_(result), gravity_(gravity_of(scene)) {}
 
     void whole() {
         std::string& t = result_.text;
@@ -63,25 +86,23 @@ class AdmWriter {
             "METER\n, "
             "TIME = SECOND\n!\n",
             title);
+        if (!gravity_.isZero(0))
+            t += fmt::format("ACCGRAV/\n, IGRAV = {}\n, JGRAV = {}\n, KGRAV = {}\n!\n",
+                             real(gravity_.x()), real(gravity_.y()), real(gravity_.z()));
         called("ground");
         t += "PART/1\n, GROUND\n!\n";
-        for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-            called(scene_.bodies[b].name);
-            const int cm = next_marker_++;
-            t += fmt::format("PART/{}\n, CM = {}\n, QG = {}\n", b + 2, cm,
-                             list(scene_.bodies[b].design.r));
-            called(scene_.bodies[b].name + ".origin");
-            t += fmt::format("MARKER/{}\n, PART = {}\n!\n", cm, b + 2);
-        }
+        for (std::size_t b = 0; b < scene_.bodies.size(); ++b) part(static_cast<BodyId>(b));
         for (const Joint& joint : scene_.joints) write(joint);
         for (const Elastic& elastic : scene_.elastics) write(elastic);
-        for (const Load& load : scene_.static_loads) write(load);
+        for (const Load& load : scene_.static_loads)
+            if (!is_weight(load)) write(load);
         for (const Wheel& wheel : scene_.wheels) {
-            called(wheel.name.empty() ? "wheel_centre" : "wheel_centre_" + wheel.name);
-            marker(wheel.body, wheel.centre_local, along(wheel.spin_axis_local));
+            const std::string axis = wheel.name.empty() ? "wheel_axis" : "wheel_axis_" + wheel.name;
+            marker(wheel.body, wheel.centre_local, along(wheel.spin_axis_local), axis);
             result_.notes.leave_out(
                 "without a statement",
-                {0, "wheel " + wheel.name + " (its centre is a marker: import --wheel)"});
+                {0, fmt::format("wheel {} (import --wheel {}, the marker at its centre)",
+                                wheel.name, axis)});
         }
         for (const Branch& branch : scene_.branches)
             result_.notes.leave_out("without a statement", {0, "branch '" + branch.name + "'"});
@@ -95,20 +116,48 @@ class AdmWriter {
     void called(const std::string& name) {
         result_.text += fmt::format("! adams_view_name='{}'\n", name);
     }
-    static int part(BodyId body) { return body + 2; }  // ground is 1
+    static int id_of(BodyId body) { return body + 2; }  // ground is 1
     void miss(const std::string& what, const std::string& why) {
         result_.notes.miss({0, what}, why);
     }
 
-    int marker(BodyId body, const Vector3d& s, const Matrix3d& A = Matrix3d::Identity()) {
+    // Weights are written as ACCGRAV and masses of the parts.
+    bool is_weight(const Load& load) const {
+        return std::ranges::any_of(
+            scene_.bodies, [&](const Body& body) { return load.name == "gravity." + body.name; });
+    }
+    void part(BodyId body) {
+        const auto& [name, pose] = scene_.bodies[static_cast<std::size_t>(body)];
+        const DeadForce* weight = weight_of(scene_, name);
+        const double mass = weight && !weight->f.isZero(0) ? weight->f.norm() / gravity_.norm() : 0;
+        const Vector3d cm = weight ? Vector3d(weight->at.s_local) : Vector3d(Vector3d::Zero());
+        called(name);
+        result_.text += fmt::format("PART/{}\n, MASS = {}\n, CM = {}\n, QG = {}\n", id_of(body),
+                                    real(std::max(mass, least_mass)), next_marker_, list(pose.r));
+        marker(body, cm, Matrix3d::Identity(), name + ".cm");
+    }
+
+    // With the name of the hardpoint at its place, else the given one.
+    int marker(BodyId body, const Vector3d& s, const Matrix3d& A = Matrix3d::Identity(),
+               std::string name = {}) {
         const int id = next_marker_++;
-        result_.text += fmt::format("MARKER/{}\n, PART = {}\n, QP = {}\n", id, part(body), list(s));
+        const Vector3d at =
+            s + (body == ground ? Vector3d(Vector3d::Zero())
+                                : Vector3d(scene_.bodies[static_cast<std::size_t>(body)].design.r));
+        const auto hardpoint = std::ranges::find_if(scene_.hardpoints, [&](const Hardpoint& point) {
+            return (point.position - at).norm() < at_hardpoint;
+        });
+        if (hardpoint != scene_.hardpoints.end() && !name.starts_with("wheel_axis"))
+            name = hardpoint->name;
+        if (!name.empty()) called(name);
+        result_.text +=
+            fmt::format("MARKER/{}\n, PART = {}\n, QP = {}\n", id, id_of(body), list(s));
         if (!A.isIdentity(0)) result_.text += fmt::format(", REULER = {}\n", list(euler_313(A)));
         return id;
     }
     int floating(BodyId body) {
         const int id = next_marker_++;
-        result_.text += fmt::format("MARKER/{}\n, PART = {}\n, FLOATING\n", id, part(body));
+        result_.text += fmt::format("MARKER/{}\n, PART = {}\n, FLOATING\n", id, id_of(body));
         return id;
     }
 
@@ -435,6 +484,7 @@ class AdmWriter {
 
     const Scene& scene_;
     Exported& result_;
+    Vector3d gravity_;  // [m/s²]
     std::map<std::string, int> joints_;
     int next_marker_ = 1, next_joint_ = 1, next_primitive_ = 1, next_gcon_ = 1, next_motion_ = 1,
         next_force_ = 1, next_sforce_ = 1, next_gforce_ = 1, next_spline_ = 1;

@@ -122,8 +122,9 @@ const SheetRow* likely_head(const Sheet& sheet) {
 std::string with_letters(const SheetRow& head) {
     std::vector<std::string> words;
     for (std::size_t c = 0; c < head.cells.size(); ++c)
-        if (!head.cells[c].empty())
-            words.push_back(fmt::format("{} ({})", reader::quote(head.cells[c]), letters_of(c)));
+        words.push_back(head.cells[c].empty()
+                            ? fmt::format("none ({})", letters_of(c))
+                            : fmt::format("{} ({})", reader::quote(head.cells[c]), letters_of(c)));
     return reader::listed(words);
 }
 
@@ -147,16 +148,16 @@ std::string proposal(const Sheet& sheet, const SheetRow& head) {
         const bool name = key == std::string_view("name");
         std::size_t c = 0;
         for (; c < head.cells.size(); ++c)
-            if (!head.cells[c].empty() &&
-                (name ? data < sheet.rows.size() && !sheet.rows[data].at(c).empty() &&
-                            !is_number(sheet.rows[data].at(c))
-                      : has_word(head.cells[c], key)))
+            if (name ? data < sheet.rows.size() && !sheet.rows[data].at(c).empty() &&
+                           !is_number(sheet.rows[data].at(c))
+                     : has_word(head.cells[c], key))
                 break;
         std::string column = "HEADING";
         if (c < head.cells.size()) {
             const std::string& word = head.cells[c];
-            const bool plain = std::ranges::all_of(
-                word, [](char ch) { return reader::is_word(ch) || ch == '-' || ch == '.'; });
+            const bool plain = !word.empty() && std::ranges::all_of(word, [](char ch) {
+                return reader::is_word(ch) || ch == '-' || ch == '.';
+            });
             column = plain && headed(head, word).size() == 1 ? word : letters_of(c);
         }
         map += fmt::format("{}{}={}", map.empty() ? "" : ",", key, column);

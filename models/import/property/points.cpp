@@ -1,6 +1,5 @@
-// Imports a list of named points as kinematics programs print and export them: a CSV table with
-// columns of the name and of x, y, z, or a listing with a name and three numbers in a line. Bodies and
-// joints are not in it, so the result is an incomplete scene.
+// Imports a table of named points (CSV) as kinematics programs and spreadsheets export it: columns of
+// the name and of x, y, z. Bodies and joints are not in it, so the result is an incomplete scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
-#include "models/reader/tables/csv.hpp"
 
 namespace elastocheck::importer {
 namespace {
@@ -26,8 +24,6 @@ struct NamedPoint {
     std::string name;
     Coordinates at{};  // as in the file
 };
-
-// ---- Tables.
 
 constexpr std::size_t narrowest = 4;  // columns: the name and three coordinates
 
@@ -121,51 +117,7 @@ std::vector<NamedPoint> points_of_table(std::string_view text, const std::string
     return points;
 }
 
-// ---- Listings.
-
-// The words of a line; the last three are the coordinates, a number before the name is that of the
-// line.
-std::vector<NamedPoint> points_of_listing(std::string_view text, const Options& options,
-                                          Draft& draft) {
-    const std::string unit = options.unit.empty() ? "mm" : options.unit;
-    draft.remarks.push_back(fmt::format(
-        "Coordinates of the file in {}, {}.", unit,
-        options.unit.empty() ? "as such listings have them (--unit says another)" : "by --unit"));
-    const auto number = [](std::string_view word) { return coordinate(word, false); };
-    std::vector<NamedPoint> points;
-    reader::CsvLines lines(text);
-    while (lines.next()) {
-        std::vector<std::string_view> words;
-        for (std::string_view rest = lines.whole(); !rest.empty();) {
-            const auto begin = rest.find_first_not_of(" \t,;:");
-            if (begin == rest.npos) break;
-            rest.remove_prefix(begin);
-            const auto end = std::min(rest.find_first_of(" \t,;:"), rest.size());
-            words.push_back(rest.substr(0, end));
-            rest.remove_prefix(end);
-        }
-        const std::size_t n = words.size();
-        NamedPoint point{lines.number(), "", {}};
-        const bool is_point =
-            n >= 4 && number(words[n - 1]) && number(words[n - 2]) && number(words[n - 3]);
-        if (is_point) {
-            for (std::size_t k = 0; k < 3; ++k)
-                point.at[k] = millimetres(unit) * *number(words[n - 3 + k]);
-            for (std::size_t k = n > 4 && number(words[0]) ? 1 : 0; k + 3 < n; ++k)
-                point.name += (point.name.empty() ? "" : " ") + std::string(words[k]);
-        }
-        if (is_point && !number(point.name))
-            points.push_back(std::move(point));
-        else
-            draft.notes.leave_out("no name with three numbers",
-                                  {lines.number(), std::string(lines.whole())});
-    }
-    return points;
-}
-
-// ---- Both.
-
-// A name that occurs twice gets a number; a listing of both sides often has them so.
+// A name that occurs twice gets a number; a table of both sides often has them so.
 void warn_of_equal_names(const std::vector<NamedPoint>& points, Notes& notes) {
     std::map<std::string, int> line_of;
     for (const auto& point : points) {
@@ -173,8 +125,8 @@ void warn_of_equal_names(const std::vector<NamedPoint>& points, Notes& notes) {
         if (!is_new)
             notes.warn({point.line, point.name},
                        fmt::format("a point of this name is in line {} too; this one has a number "
-                                   "after its name (in a table, --columns side=COLUMN or left.x= "
-                                   "... right.z= tells sides)",
+                                   "after its name (--columns side=COLUMN or left.x= ... right.z= "
+                                   "tells sides)",
                                    at->second));
     }
 }
@@ -199,42 +151,82 @@ void warn_of_equal_sides(const std::vector<NamedPoint>& points, Notes& notes) {
                         same, pairs));
 }
 
+// Pairs of words in names of points that say a side, or an end, of the vehicle.
+struct Opposites {
+    std::array<std::string_view, 2> word;
+    int axis;  // along which the first has the larger coordinate in the axes of a scene
+};
+constexpr std::array opposites{
+    Opposites{{"lf", "rf"}, 1},      Opposites{{"lr", "rr"}, 1},     Opposites{{"fl", "fr"}, 1},
+    Opposites{{"rl", "rr"}, 1},      Opposites{{"lh", "rh"}, 1},     Opposites{{"l", "r"}, 1},
+    Opposites{{"left", "right"}, 1}, Opposites{{"lf", "lr"}, 0},     Opposites{{"rf", "rr"}, 0},
+    Opposites{{"fl", "rl"}, 0},      Opposites{{"front", "rear"}, 0}};
+
+// The name with each of its words in small letters, one of them replaced.
+std::vector<std::string> words_in(std::string_view name) {
+    std::vector<std::string> words(1);
+    for (const char c : reader::small_letters(name))
+        if (reader::is_letter(c) || reader::is_digit(c))
+            words.back() += c;
+        else if (!words.back().empty())
+            words.emplace_back();
+    return words;
+}
+
+// Two points whose names differ in a pair of opposites lie as these words say; else the axes are
+// wrong. With y as the distance from the middle both are on one side, which is a warning.
+void check_opposites(const std::vector<NamedPoint>& points, const std::array<double, 3>& along,
+                     const std::string& file) {
+    std::map<std::vector<std::string>, const NamedPoint*> by_words;
+    for (const auto& point : points) by_words[words_in(point.name)] = &point;
+    for (const auto& [words, first] : by_words)
+        for (std::size_t k = 0; k < words.size(); ++k)
+            for (const auto& [word, axis] : opposites) {
+                if (words[k] != word[0]) continue;
+                auto other = words;
+                other[k] = word[1];
+                const auto second = by_words.find(other);
+                if (second == by_words.end()) continue;
+                const auto at = static_cast<std::size_t>(axis);
+                const double a = along[at] * first->at[at], b = along[at] * second->second->at[at];
+                if (axis == 1 ? a < 0 && b > 0 : a < b)
+                    reader::fail(file, first->line, first->name,
+                                 fmt::format("lies {} {} (line {}) in the axes of --axes; choose "
+                                             "the axes in which it does not, or rename the points",
+                                             axis == 1 ? "to the right of" : "behind",
+                                             second->second->name, second->second->line));
+            }
+}
+
 }  // namespace
 
 Draft import_points(std::string_view text, const std::string& name, const Options& options) {
-    const bool table =
-        reader::small_letters(std::filesystem::path(name).extension().string()) == ".csv";
     if (options.axes.empty())
         reader::fail(name, 0, "--axes",
-                     fmt::format("a list of points does not say its axes; give them; allowed: {}",
+                     fmt::format("a table of points does not say its axes; give them; allowed: {}",
                                  fmt::join(axes_of_tables, " ")));
     if (!options.unit.empty() &&
         std::ranges::find(length_units, options.unit) == std::end(length_units))
         reader::fail(name, 0, "--unit",
                      fmt::format("{} is no unit of a coordinate; allowed: {}",
                                  reader::quote(options.unit), fmt::join(length_units, ", ")));
-    if (!options.columns.empty() && !table)
-        reader::fail(name, 0, "--columns", "only for tables (.csv); a listing has no columns");
-    const auto [along_x, along_y] = directions(options.axes, name);
-    const double along_z = along_x * along_y;
+    const auto along = directions(options.axes, name);
     Draft draft;
     draft.title = std::filesystem::path(name).stem().string();
     draft.source = name;
-    draft.format = table ? "table of points" : "listing of points";
+    draft.format = "table of points";
     draft.units = "{length: mm, angle: deg, force: N}";
-    draft.remarks = {
-        fmt::format("Axes rotated from {}, z {} to x forward, y left, z up (ISO 8855).",
-                    options.axes, along_z > 0 ? "up" : "down")};
+    draft.remarks = {remark_on_axes(options.axes, along)};
     draft.points = Hardpoints(1);
-    const auto points = table ? points_of_table(text, name, options, draft)
-                              : points_of_listing(text, options, draft);
+    const auto points = points_of_table(text, name, options, draft);
     draft.remarks.emplace_back(
         "Points only: bodies and joints are not in this file. Add yours below.");
     if (points.empty()) reader::fail(name, 0, "", "no point in this file");
     warn_of_equal_names(points, draft.notes);
     warn_of_equal_sides(points, draft.notes);
+    check_opposites(points, along, name);
     for (const auto& point : points) {
-        draft.points.add({along_x * point.at[0], along_y * point.at[1], along_z * point.at[2]},
+        draft.points.add({along[0] * point.at[0], along[1] * point.at[1], along[2] * point.at[2]},
                          point.name, {point.line, point.name});
         draft.notes.count("point");
     }

@@ -18,20 +18,32 @@ double real(const reader::PropertyFile& file, int line, std::string_view text) {
 
 }  // namespace
 
-std::pair<double, double> directions(const std::string& axes, const std::string& file) {
+std::array<double, 3> directions(const std::string& axes, const std::string& file) {
+    if (axes == "x-forward,y-right" || axes == "x-rearward,y-left")
+        reader::fail(file, 0, "--axes",
+                     fmt::format("{0} needs its z: {0},z-down is right-handed, {0},z-up is "
+                                 "left-handed",
+                                 axes));
     if (std::ranges::find(axes_of_tables, axes) == std::end(axes_of_tables))
         reader::fail(file, 0, "--axes",
                      fmt::format("{} is not a set of axes; allowed: {}", reader::quote(axes),
                                  fmt::join(axes_of_tables, " ")));
-    return {axes.starts_with("x-forward") ? 1 : -1, axes.ends_with("y-left") ? 1 : -1};
+    return {axes.starts_with("x-forward") ? 1. : -1., axes.find("y-left") != axes.npos ? 1. : -1.,
+            axes.ends_with("z-down") ? -1. : 1.};
+}
+
+std::string remark_on_axes(const std::string& axes, const std::array<double, 3>& along) {
+    return fmt::format(
+        "Axes turned from {}{} to x forward, y left, z up (ISO 8855){}.", axes,
+        axes.find("z-") == axes.npos ? ", z up" : "",
+        along[0] * along[1] * along[2] > 0 ? "" : "; those of the file are left-handed");
 }
 
 // The file has x rearward, y right, z up unless options.axes is set; the scene has x forward, y
 // left, z up. A 'left/right' hardpoint is a pair, of which the left one is written.
 Draft import_subsystem(std::string_view text, const std::string& name, const Options& options) {
     const std::string axes = options.axes.empty() ? "x-rearward,y-right" : options.axes;
-    const auto [along_x, along_y] = directions(axes, name);
-    const double along_z = along_x * along_y;  // a rotation: the frame stays right-handed
+    const auto along = directions(axes, name);
     const reader::PropertyFile file = reader::parse_property_file(text, name);
     Draft draft;
     draft.title = std::filesystem::path(name).stem().string();
@@ -39,8 +51,7 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
     draft.format = "hardpoints of an Adams/Car subsystem";
     draft.units = "{length: mm, angle: deg, force: N}";
     draft.remarks = {
-        fmt::format("Axes rotated from {}, z {} to x forward, y left, z up (ISO 8855).", axes,
-                    along_z > 0 ? "up" : "down"),
+        remark_on_axes(axes, along),
         "Hardpoints only: joints and bodies are in the subsystem's template, which is another "
         "file. Add yours below."};
     draft.points = Hardpoints(1);
@@ -78,9 +89,9 @@ Draft import_subsystem(std::string_view text, const std::string& name, const Opt
             const auto& row = block.table.rows[n];
             const int line = block.table.lines[n];
             const double mm = 1000 * file.length;
-            const Eigen::Vector3d p(along_x * mm * real(file, line, row[x]),
-                                    along_y * mm * real(file, line, row[y]),
-                                    along_z * mm * real(file, line, row[z]));
+            const Eigen::Vector3d p(along[0] * mm * real(file, line, row[x]),
+                                    along[1] * mm * real(file, line, row[y]),
+                                    along[2] * mm * real(file, line, row[z]));
             const std::string& side = row[of_side];
             const bool pair = side == "left/right" || side == "left" || side == "right";
             any_pair |= side == "left/right";

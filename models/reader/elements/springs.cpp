@@ -2,6 +2,7 @@
 
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
+#include "models/reader/tables/table.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -19,12 +20,17 @@ Real deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& 
 }
 
 // ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.
-Real free_length(const Cursor& spring, Real length, const ScalarLaw& law, const Units& units) {
+Real free_length(const Cursor& spring, Real length, const ScalarLaw& law, const Definitions& defs) {
+    const Units& units = defs.units;
     const auto given = spring.optional("free_length");
     const auto preload = spring.optional("preload");
     if (given && preload) preload->fail("given together with free_length; allowed: one of the two");
     if (given) return above_zero(*given, "not a length", units.length);
-    if (!preload) return length;
+    if (!preload) {
+        const auto curve = spring.optional("curve");
+        const auto of_file = curve ? free_length_of_file(*curve, defs) : std::nullopt;
+        return of_file ? Real(*of_file) : length;
+    }
     const Real l0 = length - deflection_under(*preload, law, units);
     if (!(l0 > 0))
         preload->fail(
@@ -53,7 +59,7 @@ std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
     const AxialSpring ends = read_ends(at, defs);
     AxialSpring spring = ends;
     spring.law = read_law(at, of_springs(defs.units), defs);
-    spring.free_length = free_length(at, ends.free_length, spring.law, defs.units);
+    spring.free_length = free_length(at, ends.free_length, spring.law, defs);
     std::vector<Elastic> result{{name, spring}};
     add_stops(name, at, ends, "bump_stop", "rebound_stop", defs, result);
     return result;

@@ -156,6 +156,25 @@ std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at,
     return curves;
 }
 
+std::optional<double> free_length_of_file(const Cursor& curve, const Definitions& defs) {
+    const auto named = curve.optional("file");
+    if (!named || !named->text("the name of a file").ends_with(".spr")) return std::nullopt;
+    const auto [file_name, text] = read_beside(*named, defs);
+    const PropertyFile file = parse_property_file(text, file_name);
+    for (const auto& block : file.blocks)
+        for (std::size_t k = 0; k < block.values.size(); ++k) {
+            const auto& [key, value] = block.values[k];
+            if (key != "FREE_LENGTH") continue;
+            const double length =
+                file.length * real(file, block.lines[k], block.name + ".FREE_LENGTH", value);
+            if (!(length > 0))
+                fail(file_name, block.lines[k], block.name + ".FREE_LENGTH",
+                     fmt::format("{} is not a length; allowed: more than zero", value));
+            return length;
+        }
+    return std::nullopt;
+}
+
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
                                    const Definitions& defs) {
     const auto table = curve.optional("table"), file = curve.optional("file");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "models/reader/definitions/definitions.hpp"
@@ -24,6 +25,10 @@ LawUnits of_angles(const Units& units);   // angle, moment, moment/angle
 // non-decreasing.
 std::vector<TablePoint> read_table(const Cursor& curve, const LawUnits& units,
                                    const Definitions& defs);
+
+// FREE_LENGTH of the spring's property file (.spr) that a curve names [m]; none if it names another
+// file, or the file has none.
+std::optional<double> free_length_of_file(const Cursor& curve, const Definitions& defs);
 
 // The six curves of a bushing's property file (.bus), x y z rx ry rz [SI].
 std::array<std::vector<TablePoint>, 6> read_bushing_file(const Cursor& at, const Definitions& defs);

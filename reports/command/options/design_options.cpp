@@ -16,6 +16,7 @@
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
+#include "reports/document/measurement.hpp"
 #include "reports/files/files.hpp"
 
 namespace elastocheck::reports {
@@ -264,47 +265,87 @@ Tolerances read_tolerances(std::string_view yaml, const std::string& file, const
     return all;
 }
 
+namespace {
+
+// The comparison with the range of each branch as the curve of the equilibrium leg; solved where a
+// point lies by its travel, or names no branch.
+void add_ranges(compare::Comparison& outline, const Model& model, const compare::Points& points) {
+    const auto is_given = [](double x) { return std::isfinite(x); };
+    const bool solved =
+        points.branch.empty() || points.a.empty() || !std::ranges::all_of(points.a, is_given);
+    for (std::size_t b = 0; b < model.branches.size(); ++b) {
+        const Branch& branch = model.branches[b];
+        compare::BranchComparison& of = outline.branches[b];
+        of.runs.resize(compare::legs.size());
+        compare::PathCurve& run = of.runs[static_cast<std::size_t>(compare::Leg::equilibrium)];
+        if (solved && (points.branch.empty() ||
+                       std::ranges::find(points.branch, branch.name) != points.branch.end()))
+            run =
+                compare::walk(model, compare::channels(model), branch,
+                              compare::sides_of(model, branch), {.leg = compare::Leg::equilibrium});
+        else
+            for (const double end :
+                 {std::min(branch.from, branch.to), std::max(branch.from, branch.to)})
+                run.curve.a.push_back(compare::in_unit(of.unit) * end),
+                    run.curve.values.emplace_back(outline.channels.size(), 0);
+    }
+}
+
+// Reason why a point has no figure; empty if it has one.
+std::string why_no_figure(const compare::Place& place, const Measurement& data,
+                          const compare::Comparison& outline, std::size_t k) {
+    const compare::Points& points = data.table.points;
+    const bool none = std::ranges::none_of(points.columns, [&](const auto& column) {
+        return !is_travel(data.channels[column.channel]) && std::isfinite(column.values[k]);
+    });
+    if (none) return "without a measured value";
+    if (!std::isfinite(place.x)) return "without a parameter or travel";
+    if (place.branch < 0) return "that no branch reaches";
+    const auto& branch = outline.branches[static_cast<std::size_t>(place.branch)];
+    const auto over = compare::placed_by(branch.run(compare::Leg::equilibrium).curve,
+                                         place.by_parameter ? std::nullopt : points.abscissa);
+    if (over.empty())
+        return fmt::format("whose travel does not place them on branch '{}'", branch.branch);
+    return compare::reaches(over, place.x)
+               ? ""
+               : fmt::format("beyond the range of branch '{}'", branch.branch);
+}
+
+}  // namespace
+
 MeasuredFigures read_measured(std::string_view csv, const std::string& file, const ColumnMap& map,
                               const Model& model) {
+    Measurement data = read_measurement(csv, file, model, map);
     compare::Comparison outline = compare::outline(model);
-    PointTable table = read_points(csv, file, outline, map, nullptr);
-    const compare::Points& points = table.points;
-    MeasuredFigures measured;
-    measured.left_out = table.left_out;
-    // A point without the name of its branch is on the one that reaches it.
-    if (points.branch.empty())
-        for (std::size_t b = 0; b < model.branches.size(); ++b) {
-            const auto ways = compare::sides_of(model, model.branches[b]);
-            outline.branches[b].runs.resize(compare::legs.size());
-            static_cast<compare::PathCurve&>(
-                outline.branches[b].runs[static_cast<std::size_t>(compare::Leg::equilibrium)]) =
-                compare::walk(model, compare::channels(model), model.branches[b], ways,
-                              {.leg = compare::Leg::equilibrium});
-        }
-    const bool by_parameter = !points.a.empty();
-    std::vector<int> branch;
+    compare::Points& points = data.table.points;
+    add_ranges(outline, model, points);
+    std::vector<compare::Place> places;
     try {
-        branch =
-            compare::branches_of(model, outline, points.branch, by_parameter ? points.a : points.at,
-                                 by_parameter ? std::nullopt : points.abscissa);
+        places = compare::places_of(model, outline, points);
     } catch (const std::invalid_argument& error) {
         fail_at(file, 1, error.what());
     }
+    std::vector<compare::Place> kept;
+    keep_rows(data.table, [&](std::size_t k) {
+        std::string why = why_no_figure(places[k], data, outline, k);
+        if (why.empty()) kept.push_back(places[k]);
+        return why;
+    });
+    MeasuredFigures measured;
     std::vector<double> values;
     for (const auto& column : points.columns) {
-        const compare::Channel& channel = outline.channels[column.channel];
+        const compare::Channel& channel = data.channels[column.channel];
         if (is_travel(channel)) continue;
         bool is_used = false;
-        for (std::size_t k = 0; k < column.values.size(); ++k) {
-            if (branch[k] < 0 || !std::isfinite(column.values[k])) continue;
-            const Branch& of = model.branches[static_cast<std::size_t>(branch[k])];
-            const double place = by_parameter ? points.a[k] : points.at[k];
-            if (!std::isfinite(place)) continue;
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+            if (!std::isfinite(column.values[k])) continue;
+            const auto& [b, by_parameter, x] = kept[k];
+            const Branch& of = model.branches[static_cast<std::size_t>(b)];
             measured.figures.push_back(
                 {.name = channel.name,
                  .branch = of.name,
-                 .at = by_parameter ? place / compare::in_unit(compare::unit_of(of.unit)) : place,
-                 .over = by_parameter ? "" : outline.channels[*points.abscissa].name,
+                 .at = by_parameter ? x / compare::in_unit(compare::unit_of(of.unit)) : x,
+                 .over = by_parameter ? "" : data.channels[*points.abscissa].name,
                  .change = column.change});
             measured.column.push_back(static_cast<int>(measured.columns.size()));
             values.push_back(column.values[k]);
@@ -312,7 +353,10 @@ MeasuredFigures read_measured(std::string_view csv, const std::string& file, con
         }
         if (is_used) measured.columns.push_back(channel);
     }
-    if (values.empty()) fail_at(file, 0, "no point lies on a branch of the scene");
+    measured.left_out = data.table.left_out;
+    if (values.empty())
+        fail_at(file, 0,
+                "no point lies on a branch of the scene: " + reader::listed(measured.left_out));
     measured.value = Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
     return measured;
 }

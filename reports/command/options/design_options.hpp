@@ -70,9 +70,10 @@ struct MeasuredFigures {
     Eigen::VectorXd value;
     std::vector<int> column;                // per figure
     std::vector<compare::Channel> columns;  // their outputs
-    std::vector<std::string> left_out;      // columns of the file that are not used
+    std::vector<std::string> left_out;      // columns and rows of the file that are not used
 };
-// As --measured of `report` reads it. Throws SheetError.
+// As --measured of `report` reads it; a point is at its parameter, without one at its travel. Throws
+// SheetError.
 MeasuredFigures read_measured(std::string_view csv, const std::string& file, const ColumnMap& map,
                               const Model& model);
 

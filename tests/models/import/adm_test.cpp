@@ -1,5 +1,6 @@
 // Import of ADAMS datasets: lexical rules, conversion of statements, and hand-calculated statics.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -17,6 +18,7 @@
 #include "models/import/adm/expression.hpp"
 #include "models/import/export/export_adm.hpp"
 #include "models/import/import.hpp"
+#include "models/kinds.hpp"
 #include "models/laws.hpp"
 #include "tests/models/import/imports.hpp"
 
@@ -687,6 +689,20 @@ ACCGRAV/, KGRAV = -9806.65
     }
     // The part has moved, so the agreement is significant.
     EXPECT_GT((a.poses[0].r - first.bodies[0].design.r).norm(), 1e-4);
+
+    // weights are masses and gravity, no forces
+    EXPECT_TRUE(says(exported.text, "ACCGRAV/\n, IGRAV = 0\n, JGRAV = 0\n, KGRAV = -9.8066"));
+    EXPECT_EQ(exported.text.find("GFORCE"), exported.text.npos);
+    ASSERT_EQ(first.static_loads.size(), 2u);
+    ASSERT_EQ(second.static_loads.size(), 2u);
+    for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_EQ(second.static_loads[k].name, first.static_loads[k].name);
+        EXPECT_LE(
+            (load_vector(second.static_loads[k].kind) - load_vector(first.static_loads[k].kind))
+                .norm(),
+            1e-9);
+    }
+    EXPECT_EQ(exported.text.find("MASS = 0"), exported.text.npos);
 }
 
 TEST(Adm, WhatADatasetCannotSayIsRefusedOnExport) {
@@ -777,6 +793,14 @@ TEST(Adm, EveryBuiltInSceneIsExportedAndImportedAgainWithTheElementsItHad) {
                                                importer::adams_bushing)
                                 .scene;
         const Scene second = imported_scene(importer::export_adm(first, false).text);
+        for (const Hardpoint& point : second.hardpoints) {
+            std::vector<std::string> names;
+            for (const Hardpoint& of_first : first.hardpoints)
+                if ((of_first.position - point.position).norm() < 1e-9)
+                    names.push_back(of_first.name);
+            EXPECT_TRUE(names.empty() || std::ranges::find(names, point.name) != names.end())
+                << point.name << " was " << fmt::format("{}", fmt::join(names, ", "));
+        }
         for (const Elastic& elastic : first.elastics) {
             if (elastic.active_only_where_driven) continue;
             if (const auto* spring = std::get_if<AxialSpring>(&elastic.kind)) {

@@ -404,6 +404,16 @@ TEST(PropertyFile, SpringsAndStopsTakeTheirCurves) {
     EXPECT_NEAR(stop.pieces[1][0], -2500, 1e-9);
 }
 
+TEST(PropertyFile, ASpringHasTheFreeLengthOfItsFileUnlessTheSceneGivesOne) {
+    for (const auto& [given, length] : {std::pair{"", 10 * 0.0254}, {", free_length: 0.6", 0.6}}) {
+        const Scene scene = beside_fixtures(
+            fmt::format("springs: {{coil: {{bodies: [block, ground], from: o, to: top, curve: "
+                        "{{file: coil.spr}}{}}}}}\n",
+                        given));
+        EXPECT_NEAR(std::get<AxialSpring>(scene.elastics.at(0).kind).free_length, length, 1e-15);
+    }
+}
+
 // In a spring file compression and pushing force are positive: 3000 N at 100 mm of jounce.
 TEST(PropertyFile, ASpringPushesBackByTheSideOfItsCurveThatIsCompression) {
     const Scene scene = beside_fixtures(
@@ -469,9 +479,9 @@ TEST(PropertyFile, HardpointsAreTurnedFromTheAxesThatAreNamed) {
     };
     EXPECT_EQ(front("x-rearward,y-right"), front(""));
     EXPECT_TRUE(says(front("x-forward,y-left"), "lca_front_left: [-200, -400, 150]"));
-    EXPECT_TRUE(says(front("x-forward,y-right"), "lca_front_left: [-200, 400, -150]"));
+    EXPECT_TRUE(says(front("x-forward,y-right,z-down"), "lca_front_left: [-200, 400, -150]"));
     EXPECT_TRUE(says(front("x-rearward,y-right"),
-                     "# Axes rotated from x-rearward,y-right, z up to x forward, y left, z up "
+                     "# Axes turned from x-rearward,y-right, z up to x forward, y left, z up "
                      "(ISO 8855)."));
     EXPECT_THROW(front("x-up,y-left"), SceneError);
     Options options;

@@ -19,25 +19,19 @@ importer::Options with_axes(const std::string& axes) {
     return options;
 }
 
-// A table and a listing of the same points, as kinematics programs export them, give the same scene.
-TEST(Points, OfATableAndOfAListingAreTurnedToTheAxesOfAScene) {
+TEST(Points, AreTurnedToTheAxesOfAScene) {
     const std::string table =
         "Point Name,X [m],Y [m],Z [m],remark\nlower ball,-0.0125,0.5625,-0.0625,a\n"
         "tie rod inner,+0.075,0.25,0.125,b\n";
-    const std::string listing =
-        "Double wishbone\n  1  lower ball      -12.5  562.50  -62.50\n"
-        "  2  tie rod inner    75.00  250.00  125.0\n  end of file\n";
-    // x turned, y kept: z turned too
-    for (const auto& [text, file] : {std::pair{table, "p.csv"}, {listing, "p.shk"}}) {
-        const std::string yaml =
-            importer::import_text(text, file, with_axes("x-rearward,y-left")).yaml;
-        for (const char* part : {"lower_ball: [12.5, 562.5, 62.5]",
-                                 "tie_rod_inner: [-75, 250, -125]", "x-rearward,y-left"})
-            EXPECT_TRUE(says(yaml, part));
+    for (const auto& [axes, part] :
+         {std::pair{"x-rearward,y-left,z-down", "tie_rod_inner: [-75, 250, -125]"},
+          {"x-rearward,y-left,z-up", "tie_rod_inner: [-75, 250, 125]"},
+          {"x-rearward,y-right", "lower_ball: [12.5, -562.5, -62.5]"}}) {
+        const std::string yaml = importer::import_text(table, "p.csv", with_axes(axes)).yaml;
+        EXPECT_TRUE(says(yaml, part));
+        EXPECT_TRUE(says(yaml, axes));
+        EXPECT_EQ(yaml.find("left-handed") != yaml.npos, std::string_view(axes).ends_with("z-up"));
     }
-    EXPECT_TRUE(says(importer::import_text(listing, "p.shk", with_axes("x-forward,y-left")).yaml,
-                     "end of file"))
-        << "what is left out is listed";
 }
 
 TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
@@ -51,7 +45,7 @@ TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
         return "read";
     };
     EXPECT_TRUE(
-        says(refused("name,x_mm,y_mm,z_mm\na,1,2,3\n", "p.csv", ""), "--axes: a list of points"));
+        says(refused("name,x_mm,y_mm,z_mm\na,1,2,3\n", "p.csv", ""), "--axes: a table of points"));
     EXPECT_TRUE(says(refused("name,x,y,z\na,1,2,3\n", "p.csv", "x-up"), "is not a set of axes"));
     EXPECT_TRUE(says(refused("name,x,y\na,1,2\n", "p.csv"), "p.csv:1: no column z; headings"));
     EXPECT_TRUE(
@@ -64,7 +58,29 @@ TEST(Points, ThatCannotBeReadAreRefusedWithTheirLine) {
         says(refused("name,x [km],y,z\na,1,2,3\n", "p.csv"), "p.csv:1: x: 'km' is no unit"));
     EXPECT_TRUE(says(refused("name,x [mm],y [m],z\na,1,2,3\n", "p.csv"), "different units"));
     EXPECT_TRUE(says(refused("", "p.csv"), "no point in this file"));
-    EXPECT_TRUE(says(refused("nothing here\n1 2 3\n", "p.shk"), "no point in this file"));
+    // z of a frame that may be left-handed is not guessed
+    for (const char* axes : {"x-rearward,y-left", "x-forward,y-right"})
+        EXPECT_TRUE(says(refused("name,x_mm,y_mm,z_mm\na,1,2,3\n", "p.csv", axes), "needs its z"));
+    EXPECT_TRUE(says(refused("LOWER WISHBONE 1 2 3\n", "p.shk"), "p.shk:1: files of SHARK"));
+}
+
+// A front wheel behind the rear one, a left one to the right: the axes are wrong.
+TEST(Points, WhoseNamesContradictTheAxesAreRefused) {
+    const std::string table =
+        "Point Name,X (mm),Y (mm),Z (mm)\nWheel Center LF,774.7,584.2,223.5\n"
+        "Wheel Center RF,774.7,-584.2,223.5\nWheel Center LR,-774.7,571.5,223.5\n";
+    for (const auto& [axes, said] :
+         {std::pair{"x-rearward,y-left,z-up",
+                    "p.csv:2: Wheel Center LF: lies behind Wheel Center LR (line 4)"},
+          {"x-forward,y-right,z-up",
+           "p.csv:2: Wheel Center LF: lies to the right of Wheel Center RF (line 3)"}})
+        try {
+            (void)importer::import_text(table, "p.csv", with_axes(axes));
+            ADD_FAILURE() << axes;
+        } catch (const SceneError& error) {
+            EXPECT_TRUE(says(error.what(), said));
+        }
+    EXPECT_NO_THROW((void)importer::import_text(table, "p.csv", with_axes("x-forward,y-left")));
 }
 
 std::string file_of_points(const std::string& name) {
@@ -119,6 +135,11 @@ TEST(PointsTable, WithUnknownHeadingsIsRefusedWithTheOptionToType) {
     columns.resize(columns.find(' '));
     EXPECT_EQ(columns, "name=Punkt,x=C,y=Y-Wert,z=Z-Wert");
     EXPECT_EQ(refused_table(text, columns), "read");
+    // a column of names without a heading
+    const std::string unnamed = "X,Y,Z,\n(mm),(mm),(mm),\n110,215,150,LBJ\n160,600,248,WC\n";
+    EXPECT_TRUE(
+        says(refused_table(unnamed, ""), "none (D); choose with --columns name=D,x=X,y=Y,"));
+    EXPECT_EQ(refused_table(unnamed, "name=D,x=X,y=Y,z=Z"), "read");
 }
 
 TEST(PointsTable, SaysWhatIsWrongInAMap) {
@@ -182,13 +203,6 @@ TEST(PointsTable, HasTheUnitThatIsSaid) {
               "says m"},
              {"name,x,y,z", "ft", "'ft' is no unit of a coordinate"}})
         EXPECT_TRUE(says(x_of(head, unit), expected)) << head << " " << unit;
-    // a listing is in mm, as its head says, or in what the option says
-    importer::Options options = with_axes("x-forward,y-left");
-    EXPECT_TRUE(says(importer::import_text("a 1 2 3\n", "p.shk", options).yaml,
-                     "Coordinates of the file in mm, as such listings have them"));
-    options.unit = "in";
-    EXPECT_TRUE(
-        says(importer::import_text("a 1 2 3\n", "p.shk", options).yaml, "a: [25.4, 50.8, 76.2]"));
 }
 
 // Both sides in one table: two triples of columns, or a column that says the side.
@@ -236,10 +250,9 @@ TEST(PointsTable, WithAmbiguousNumbersIsRefused) {
                      "p.csv:2: the quote in this line does not end"));
     EXPECT_TRUE(says(refused_table("\xFF\xFEn", ""), "p.csv:1: UTF-16"));
     EXPECT_TRUE(says(refused_table("a,1,2,3\n", ""), "name=A,x=B,y=C,z=D"));
-    importer::Options listing = with_axes("x-forward,y-left");
-    listing.columns = "name=A,x=B,y=C,z=D";
-    EXPECT_THROW((void)importer::import_text("a 1 2 3\n", "p.shk", listing), SceneError);
-    EXPECT_THROW((void)importer::import_text("x", "p.sub", listing), SceneError);
+    importer::Options mapped = with_axes("x-forward,y-left");
+    mapped.columns = "name=A,x=B,y=C,z=D";
+    EXPECT_THROW((void)importer::import_text("x", "p.sub", mapped), SceneError);
 }
 
 TEST(PointsTable, SplitsAsItsSeparatorSays) {

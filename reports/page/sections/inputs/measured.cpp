@@ -66,25 +66,32 @@ std::optional<Section> measured_section(const JsonCursor& scene) {
     for (const auto& reading : (*measured)["readings"].items()) {
         Table table{
             .caption = fmt::format("Deviation from the measurement, {}", reading["reading"].text()),
-            .columns = {{"output", true},
+            .columns = {{"test", true},
+                        {"output", true},
                         {"points"},
-                        {"published recursion, max"},
-                        {"rms"},
+                        {"gradient measured"},
+                        {"of the model"},
+                        {"unit", true},
                         {"full solution, max"},
                         {"rms"},
-                        {"its check by energy, max"},
+                        {"published recursion, max"},
                         {"rms"}}};
         for (const auto& row : reading["channels"].items()) {
+            const JsonCursor gradient = row["gradient"];
             std::vector<std::string> cells{
+                row["branch"].text(),
                 fmt::format("{} [{}]", row["channel"].text(), row["unit"].text()),
-                whole_number(row["compared"].whole())};
-            for (const char* leg : {"recursive", "equilibrium", "energy"}) {
+                whole_number(row["compared"].whole()),
+                signed_number(gradient["measured"].number()),
+                signed_number(gradient["model"].number()),
+                gradient["unit"].text()};
+            for (const char* leg : {"equilibrium", "recursive"}) {
                 cells.push_back(signed_number(row[leg]["signed_max"].number()));
                 cells.push_back(number(row[leg]["rms"].number(), 2));
             }
             table.rows.push_back(cells);
         }
-        section.tables.push_back(std::move(table));
+        if (!table.rows.empty()) section.tables.push_back(std::move(table));
     }
     if (const auto loops = measured->find("loops"); loops && !loops->items().empty()) {
         Table table{
