@@ -13,19 +13,19 @@ AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
 }
 
 // The deflection x with f(x) = -p: a preload is positive in compression.
-Real deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
-    const Real p = units.force.si(preload.number(units.force.name));
+double deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
+    const double p = units.force.si(preload.number(units.force.name));
     return deflection_at(preload, law, 0 - p, units.force);  // 0, not -0
 }
 
 // ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.
-Real free_length(const Cursor& spring, Real length, const ScalarLaw& law, const Units& units) {
+double free_length(const Cursor& spring, double length, const ScalarLaw& law, const Units& units) {
     const auto given = spring.optional("free_length");
     const auto preload = spring.optional("preload");
     if (given && preload) preload->fail("given together with free_length; allowed: one of the two");
     if (given) return above_zero(*given, "not a length", units.length);
     if (!preload) return length;
-    const Real l0 = length - deflection_under(*preload, law, units);
+    const double l0 = length - deflection_under(*preload, law, units);
     if (!(l0 > 0))
         preload->fail(
             fmt::format("needs a free length of {:g} {}; a free length must be above zero",

@@ -32,9 +32,6 @@ Varied parse_varied(const std::vector<std::string>& words, const Scene& scene);
 // The scene of a file with these values of the numbers; `settings` apply to all others.
 compare::SceneAt scene_at(const std::string& file, const Settings& settings,
                           const std::vector<Number>& numbers);
-// The derivatives of its model by these numbers.
-compare::RatesAt rates_at(const std::string& file, const Settings& settings,
-                          const std::vector<Number>& numbers);
 
 // ---- Figures.
 
@@ -70,7 +67,7 @@ struct MeasuredFigures {
     Eigen::VectorXd value;
     std::vector<int> column;                // per figure
     std::vector<compare::Channel> columns;  // their outputs
-    std::vector<std::string> left_out;      // columns of the file that are not used
+    std::vector<std::string> left_out;      // columns and rows of the file that are not used
 };
 // As --measured of `report` reads it. Throws SheetError.
 MeasuredFigures read_measured(std::string_view csv, const std::string& file, const ColumnMap& map,
