@@ -11,10 +11,10 @@ namespace {
 
 using std::pow;
 
-using Cubic = std::array<Real, 4>;  // c_0 + c_1 x + c_2 x² + c_3 x³
+using Cubic = std::array<double, 4>;  // c_0 + c_1 x + c_2 x² + c_3 x³
 
 // The cubic c about a, re-expanded about a + h.
-Cubic shifted(const Cubic& c, Real h) {
+Cubic shifted(const Cubic& c, double h) {
     return {c[0] + h * (c[1] + h * (c[2] + h * c[3])), c[1] + h * (2 * c[2] + h * 3 * c[3]),
             c[2] + 3 * h * c[3], c[3]};
 }
@@ -23,11 +23,11 @@ Cubic reversed(const Cubic& c) { return {-c[0], c[1], -c[2], c[3]}; }
 
 }  // namespace
 
-Real force(const ScalarLaw& law, Real x) {
+double force(const ScalarLaw& law, double x) {
     const auto at = [&](const Curve& curve) {
         const auto piece = std::ranges::upper_bound(curve.knots, x) - curve.knots.begin();
         const Cubic& c = curve.pieces[static_cast<std::size_t>(piece)];
-        const Real t =
+        const double t =
             x - curve.knots[static_cast<std::size_t>(std::max<std::ptrdiff_t>(piece - 1, 0))];
         return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
     };
@@ -37,7 +37,7 @@ Real force(const ScalarLaw& law, Real x) {
 Curve reversed(const Curve& curve) {
     const std::size_t n = curve.knots.size();
     Curve result = curve;
-    std::ranges::transform(curve.knots, result.knots.rbegin(), [](Real x) { return -x; });
+    std::ranges::transform(curve.knots, result.knots.rbegin(), [](double x) { return -x; });
     result.pieces.front() = reversed(curve.pieces.back());
     result.pieces.back() = reversed(curve.pieces.front());
     // A piece between two knots refers to its left knot, which was the right one before the
@@ -56,7 +56,7 @@ ScalarLaw reversed(const ScalarLaw& law) {
 
 bool is_zero(const ScalarLaw& law) {
     const auto nothing = [](const Cubic& c) {
-        return std::ranges::all_of(c, [](Real c_n) { return c_n == 0; });
+        return std::ranges::all_of(c, [](double c_n) { return c_n == 0; });
     };
     return std::visit(
         overloaded{[](const LinearRate& u) { return u.k == 0; },
@@ -90,13 +90,13 @@ SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs) {
                       law);
 }
 
-ScalarLaw scaled(const ScalarLaw& law, Real stretch, Real force) {
+ScalarLaw scaled(const ScalarLaw& law, double stretch, double force) {
     return std::visit(overloaded{[&](LinearRate rate) -> ScalarLaw {
                                      rate.k *= force / stretch;
                                      return rate;
                                  },
                                  [&](Curve curve) -> ScalarLaw {
-                                     for (Real& knot : curve.knots) knot *= stretch;
+                                     for (double& knot : curve.knots) knot *= stretch;
                                      for (auto& piece : curve.pieces)
                                          for (int n = 0; n < 4; ++n)
                                              piece[static_cast<std::size_t>(n)] *=

@@ -6,7 +6,6 @@
 
 #include "elastocheck/recursive.hpp"
 #include "models/response.hpp"
-#include "models/state_rate.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/response_system.hpp"
 
@@ -42,12 +41,5 @@ Response linear_response(const Model& model, const Branch& branch, const Equilib
                          ResponseAnalysis& analysis);
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances, const Method& method = {});
-
-// The responses with the consistent tangent, and their derivatives by numbers of the model, each of
-// `rates` with its branch first. The matrix of (24) and number_rates.hpp are differentiated by dual
-// numbers. Throws as above.
-ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,
-                             std::span<const Disturbance> disturbances,
-                             std::span<const Model> rates, ResponseAnalysis& analysis);
 
 }  // namespace elastocheck::recursive

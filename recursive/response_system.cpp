@@ -24,9 +24,9 @@ double taken_by_border(const SaddlePoint<double>& system, int c) {
 
 // A held direction does not respond, so its border must carry no load. μ detects a force on an idle
 // mode, and a mode that is idle in K but not in the tangent.
-Outcome check_border(SteppingState& s, Judged which) {
+Outcome check_border(SteppingState& s, Judged which, double rounding) {
     const Held<double>& held = s.system.held;
-    if (held.size() == 0) return Outcome::converged;
+    if (held.size() == 0 || which == Judged::nothing) return Outcome::converged;
     constraint_force(s.system.M, s.x.tail(s.m()), s.force);
     const double force = size_of_force(s, s.upper) + size_of_force(s, s.force);
     const double opening =
@@ -36,7 +36,8 @@ Outcome check_border(SteppingState& s, Judged which) {
     const int judged = which == Judged::all ? held.size() : held.idle;
     for (int c = 0; c < judged; ++c) {
         const bool idle = c < held.idle;
-        if (!(taken_by_border(s.system, c) <= limit * (idle ? force : opening)))
+        if (!(taken_by_border(s.system, c) <=
+              limit * (idle ? force : opening) + (idle ? rounding : 0)))
             return idle ? Outcome::loaded_idle_mode : Outcome::inconsistent_constraints;
     }
     return Outcome::converged;
@@ -84,10 +85,10 @@ Outcome factorise_response(SteppingState& s, bool consistent, ResponseOrders& or
     return factorise_in(s, orders.with_tangent);
 }
 
-Outcome answer_response(SteppingState& s, Judged judged) {
+Outcome answer_response(SteppingState& s, Judged judged, double rounding) {
     back_substitute(s);
     if (!s.x.allFinite()) return Outcome::not_finite;
-    const Outcome outcome = check_border(s, judged);
+    const Outcome outcome = check_border(s, judged, rounding);
     if (outcome == Outcome::converged) leave_out_idle_motion(s);
     return outcome;
 }

@@ -36,7 +36,7 @@ const std::array table{
           "amount; positive outwards in jounce",
           never,
           [](const auto& x, std::size_t w) {
-              return in(x, x.side(w)) * x.moved_by(raised(x, w), x.patch(w)).y();
+              return x.side(w) * x.moved_by(raised(x, w), x.patch(w)).y();
           }},
     Entry{Owner::every_wheel, "recession_gradient", Unit::mm_per_100mm,
           "longitudinal displacement of the wheel centre over travel, all wheels rising by the "
@@ -50,7 +50,7 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               const auto by = raised(x, w);
               const auto v = x.moved_by(by, x.centre(w));
-              return ratio(in(x, x.side(w)) * v.z(), x.turned_by(by, x[w].body).x(), nowhere);
+              return ratio(x.side(w) * v.z(), x.turned_by(by, x[w].body).x(), nowhere);
           },
           true},
     Entry{Owner::every_wheel, "side_view_swing_arm", Unit::mm,
@@ -118,13 +118,13 @@ const std::array table{
           "height; positive towards toe-in",
           never,
           [](const auto& x, std::size_t w) {
-              return in(x, -x.side(w)) * x.toe(w, held(x, w, moment_on + 2));
+              return -x.side(w) * x.toe(w, held(x, w, moment_on + 2));
           }},
     Entry{Owner::every_wheel, "aligning_torque_camber", Unit::deg_per_100Nm,
           "change of camber over the same moment, likewise; positive where the top leans out",
           never,
           [](const auto& x, std::size_t w) {
-              return in(x, -x.side(w)) * x.camber(w, held(x, w, moment_on + 2));
+              return -x.side(w) * x.camber(w, held(x, w, moment_on + 2));
           }},
     Entry{Owner::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
           "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
@@ -148,7 +148,7 @@ const std::array table{
         [](const auto& x, std::size_t w) {
             const auto axis = steering_axis(x, w);
             using std::atan2;
-            return axis ? atan2(-axis->n.x(), axis->n.z()) : in(x, undefined);
+            return axis ? atan2(-axis->n.x(), axis->n.z()) : undefined;
         }},
     Entry{Owner::steered_wheel, "kingpin_inclination_steered", Unit::deg,
           "angle to the vertical seen from the front of the same axis; positive where its top "
@@ -157,7 +157,7 @@ const std::array table{
           [](const auto& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
               using std::atan2;
-              return axis ? atan2(in(x, -x.side(w)) * axis->n.y(), axis->n.z()) : in(x, undefined);
+              return axis ? atan2(-x.side(w) * axis->n.y(), axis->n.z()) : undefined;
           }},
     Entry{Owner::steered_wheel, "scrub_radius_steered", Unit::mm,
           "distance across the wheel from the contact patch to the intersection of the same axis "
@@ -165,7 +165,7 @@ const std::array table{
           does_not_steer,
           [](const auto& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
+              return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
     Entry{Owner::steered_wheel, "mechanical_trail_steered", Unit::mm,
           "distance along the wheel from the contact patch to the intersection of the same axis "
@@ -173,7 +173,7 @@ const std::array table{
           does_not_steer,
           [](const auto& x, std::size_t w) {
               const auto axis = steering_axis(x, w);
-              return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
+              return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : undefined;
           }},
     Entry{
         Owner::front_wheel, "anti_dive", Unit::percent,
@@ -221,7 +221,7 @@ const std::array table{
           "towards toe-in",
           does_not_roll,
           [](const auto& x, std::size_t w) {
-              return x.response.tied ? in(x, undefined) : x.toe(w, rolled_towards(x, w));
+              return x.response.tied ? undefined : x.toe(w, rolled_towards(x, w));
           }},
     Entry{Owner::wheel_of_axle, "roll_camber", Unit::deg_per_deg,
           "change of camber against the car body over its roll towards this wheel; positive where "
@@ -229,7 +229,7 @@ const std::array table{
           "leans out",
           does_not_roll,
           [](const auto& x, std::size_t w) {
-              return x.response.tied ? in(x, undefined) : x.camber(w, rolled_towards(x, w));
+              return x.response.tied ? undefined : x.camber(w, rolled_towards(x, w));
           }},
     Entry{Owner::wheel_of_axle, "wheel_rate_in_roll", Unit::newton_per_mm,
           "vertical force at the contact patch over vertical displacement of the wheel centre, "
@@ -242,16 +242,15 @@ const std::array table{
         never,
         [](const auto& x, std::size_t k) {
             const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
-            const auto& d = std::get<AxialSpring>(x.changing().elastics[k].kind);
-            return shortening(x, x.point(spring.i, d.i), x.point(spring.j, d.j));
+            return shortening(x, x.point(spring.i), x.point(spring.j));
         }},
     Entry{
         Owner::damper, "motion_ratio", Unit::none,
         "shortening of the damper over travel of the wheel centres, all rising by the same amount",
         never,
         [](const auto& x, std::size_t k) {
-            const auto &damper = x.model.dampers[k], &d = x.changing().dampers[k];
-            return shortening(x, x.point(damper.i, d.i), x.point(damper.j, d.j));
+            const auto& damper = x.model.dampers[k];
+            return shortening(x, x.point(damper.i), x.point(damper.j));
         }},
 };
 
@@ -340,49 +339,8 @@ std::vector<Channel> characteristics_otherwise(const Model& model) {
 
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
                 const WheelResponse& response) {
-    return response.why_not.empty()
-               ? entry(what.entry).formula.value({model, state, response}, what.of)
-               : nan;
-}
-
-namespace {
-
-std::vector<MotionOf<Dual>> with_rate(const Motions& at, const Motions& rate) {
-    std::vector<MotionOf<Dual>> both(at.size());
-    for (std::size_t b = 0; b < at.size() && b < rate.size(); ++b)
-        both[b] = {with(at[b].dr, rate[b].dr, Dual()), with(at[b].dpi, rate[b].dpi, Dual())};
-    return both;
-}
-std::vector<std::array<std::vector<MotionOf<Dual>>, causes>> with_rate(
-    const std::vector<std::array<Motions, causes>>& at,
-    const std::vector<std::array<Motions, causes>>& rate) {
-    std::vector<std::array<std::vector<MotionOf<Dual>>, causes>> both(rate.size());
-    for (std::size_t w = 0; w < rate.size(); ++w)
-        for (std::size_t k = 0; k < causes; ++k) both[w][k] = with_rate(at[w][k], rate[w][k]);
-    return both;
-}
-
-}  // namespace
-
-std::vector<double> rates_of(const Model& model, std::span<const Characteristic> which,
-                             const Equilibrium& state, const Model& rate,
-                             const StateRate& state_rate, const WheelResponse& at,
-                             const WheelResponseRate& by) {
-    std::vector<double> rates(which.size(), nan);
-    if (!by.why_not.empty()) return rates;
-    ResponseOf<Dual> response;
-    response.tied = at.tied, response.nothing_resists = at.nothing_resists;
-    for (std::size_t w = 0; w < at.travel.size(); ++w)
-        response.travel.push_back(with_rate(at.travel[w], by.travel[w]));
-    response.steering = with_rate(at.steering, by.steering);
-    response.held = with_rate(at.held, by.held);
-    response.free = with_rate(at.free, by.free);
-    const Wheels<Dual> wheels{model, state, response, &rate, &state_rate};
-    for (std::size_t k = 0; k < which.size(); ++k) {
-        const Dual value = entry(which[k].entry).formula.with_rate(wheels, which[k].of);
-        if (std::isfinite(value.x)) rates[k] = value.dx;
-    }
-    return rates;
+    return response.why_not.empty() ? entry(what.entry).formula({model, state, response}, what.of)
+                                    : nan;
 }
 
 bool needs_free(const Characteristic& what) {
@@ -395,7 +353,7 @@ bool is_swing_arm(const Characteristic& what) { return entry(what.entry).swing_a
 Eigen::MatrixXd compliance(const Model& model, WheelPoint point, const Equilibrium& state,
                            const WheelResponse& response) {
     const auto n = static_cast<Eigen::Index>(response.free.size());
-    const Wheels<double> wheels{model, state, response};
+    const Wheels wheels{model, state, response};
     const int force = point == WheelPoint::centre ? at_centre : at_patch;
     Eigen::MatrixXd C(6 * n, 6 * n);
     for (Eigen::Index j = 0; j < n; ++j)

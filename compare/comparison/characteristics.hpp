@@ -24,12 +24,6 @@ std::vector<Channel> characteristics_otherwise(const Model& model);
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
                 const WheelResponse& response);
 
-// Derivatives of characteristics by one number, SI: the model changes by `rate`, the state by
-// `state_rate`, the response by `by` (wheel_response_rates()). NaN where there is none, or no value.
-std::vector<double> rates_of(const Model& model, std::span<const Characteristic> which,
-                             const Equilibrium& state, const Model& rate,
-                             const StateRate& state_rate, const WheelResponse& at,
-                             const WheelResponseRate& by);
 // Whether it reads WheelResponse::free.
 bool needs_free(const Characteristic& what);
 

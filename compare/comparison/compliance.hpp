@@ -21,7 +21,6 @@
 
 #include "compare/comparison/legs.hpp"
 #include "models/response.hpp"
-#include "models/state_rate.hpp"
 #include "recursive/linear_response.hpp"
 
 namespace elastocheck::compare {
@@ -61,33 +60,15 @@ int steering_joint(const Model& model);
 // Computes the response with the tangent of the leg at `state`; for the recursion, with the matrix
 // that its method factorises. `steering`: position in Model::joints, or -1. `analyses` belong to
 // the branch side and are reused over its states: the two models differ between states only in
-// loads and jack heights, which an analysis does not use.
+// loads and jack heights, which an analysis does not use. Without `with_free` the wheels are not
+// freed, and WheelResponse::free is empty.
 WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver, int steering,
-                             const Equilibrium& state, Analyses& analyses);
+                             const Equilibrium& state, Analyses& analyses, bool with_free = true);
 inline WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solver,
                                     int steering, const Equilibrium& state) {
     Analyses analyses;
     return wheel_response(side, solver, steering, state, analyses);
 }
-
-// The derivatives of a WheelResponse by one number, entry by entry. Where a reason is given the
-// entries are missing.
-struct WheelResponseRate {
-    std::vector<Motions> travel;
-    Motions steering;
-    std::vector<std::array<Motions, causes>> held, free;
-    std::string why_not, why_not_free;
-};
-struct WheelResponseRates {
-    WheelResponse at;                   // each force at a patch from that at its centre
-    std::vector<WheelResponseRate> by;  // per number
-};
-// By the consistent tangent of a leg at `state`. `rates`: of side.model, each with its branch first;
-// `state_rates`: those of the state, all converged. The wheels stay `free` only if `with_free`.
-WheelResponseRates wheel_response_rates(const BranchSide& side, Leg leg, int steering,
-                                        const Equilibrium& state, std::span<const Model> rates,
-                                        std::span<const StateRate> state_rates, bool with_free,
-                                        Analyses& analyses);
 
 // Response by one leg. `analysis` is that of the recursion, computed here if empty.
 Response linear_response(const SolverSettings& solver, const Model& model, const Branch& branch,

@@ -210,8 +210,14 @@ Row row_of(const Model& model, std::span<const Channel> channels, const BranchSi
                 continue;
             }
         }
-        if (!response)
-            response = wheel_response(side, solver, steering_joint(model), state, analyses);
+        if (!response) {
+            const bool with_free = std::ranges::any_of(channels, [](const Channel& channel) {
+                const auto* which = std::get_if<Characteristic>(&channel.reads);
+                return which != nullptr && needs_free(*which);
+            });
+            response =
+                wheel_response(side, solver, steering_joint(model), state, analyses, with_free);
+        }
         row.values[c] =
             in_unit(channels[c].unit) * value_of(side.model, *characteristic, state, *response);
     }

@@ -1,4 +1,4 @@
-// Parts of a trim that its derivative needs (compare/sensitivity/trim_rates.hpp).
+// Parts of a trim that its derivative needs (compare/sensitivity/), and trims by other means.
 #pragma once
 
 #include <Eigen/Core>

@@ -9,32 +9,27 @@ namespace {
 constexpr double pneumatic_trail = 0.03;  // [m]
 
 // A unit cause on this wheel, and `other` times as much on the other wheel of its axle.
-template <class S>
-MotionsOf<S> of_axle(const std::vector<std::array<MotionsOf<S>, causes>>& by, std::size_t w,
-                     int cause, double other) {
-    std::vector<MotionsOf<S>> all;
-    std::vector<S> weights;
+Motions of_axle(const std::vector<std::array<Motions, causes>>& by, std::size_t w, int cause,
+                double other) {
+    std::vector<Motions> all;
+    std::vector<double> weights;
     for (std::size_t k = 0; k < by.size(); ++k) {
         all.push_back(by[k][static_cast<std::size_t>(cause)]);
-        weights.push_back(S(k == w ? 1 : other));
+        weights.push_back(double(k == w ? 1 : other));
     }
-    return sum<S>(all, weights);
+    return sum(all, weights);
 }
-template <class S>
-MotionsOf<S> held_axle(const Wheels<S>& x, std::size_t w, int cause, double other) {
-    return of_axle<S>(x.response.held, w, cause, other);
+Motions held_axle(const Wheels& x, std::size_t w, int cause, double other) {
+    return of_axle(x.response.held, w, cause, other);
 }
 
 // A lateral force at the height of the road, `pneumatic_trail` behind the patch.
-template <class S>
-MotionsOf<S> behind(const Wheels<S>& x, std::size_t w) {
-    return sum<S>({held(x, w, at_patch + 1), held(x, w, moment_on + 2)},
-                  {S(1), S(-pneumatic_trail)});
+Motions behind(const Wheels& x, std::size_t w) {
+    return sum({held(x, w, at_patch + 1), held(x, w, moment_on + 2)}, {1, -pneumatic_trail});
 }
 
 // The wheel loads stay: jacks and tyres give no more force. Empty where the wheel moves freely.
-template <class S>
-const MotionsOf<S>* unheld(const Wheels<S>& x, std::size_t w, int cause) {
+const Motions* unheld(const Wheels& x, std::size_t w, int cause) {
     return x.response.free.empty() ? nullptr : &x.response.free[w][static_cast<std::size_t>(cause)];
 }
 
@@ -42,86 +37,73 @@ const MotionsOf<S>* unheld(const Wheels<S>& x, std::size_t w, int cause) {
 // tyres and C that by forces f on them:
 //
 //   f = -k (z + C f)      (1 + k C) f = -k z
-template <class S>
-std::optional<MotionsOf<S>> on_tyres(const Wheels<S>& x, std::size_t w, int cause) {
-    const MotionsOf<S>* by = unheld(x, w, cause);
+std::optional<Motions> on_tyres(const Wheels& x, std::size_t w, int cause) {
+    const Motions* by = unheld(x, w, cause);
     if (by == nullptr) return std::nullopt;
     const std::size_t n = x.response.free.size();
-    const auto rise = [&](const MotionsOf<S>& motions, std::size_t k) {
+    const auto rise = [&](const Motions& motions, std::size_t k) {
         return x.moved_by(motions, x.patch(k)).z();
     };
-    std::vector<MotionsOf<S>> all{*by};
-    std::vector<S> weights{S(1)};
-    std::vector<S> k(n), z(n);
+    std::vector<Motions> all{*by};
+    std::vector<double> weights{1};
+    std::vector<double> k(n), z(n);
     for (std::size_t i = 0; i < n; ++i) {
-        k[i] = x.number(x[i].tyre_rate, x.rate_of(i).tyre_rate);
+        k[i] = x[i].tyre_rate;
         z[i] = rise(*by, i);
         all.push_back(x.response.free[i][at_patch + 2]);
     }
     const auto entry = [&](std::size_t i, std::size_t j) {
-        return S(i == j ? 1 : 0) + k[i] * rise(all[1 + j], i);
+        return double(i == j ? 1 : 0) + k[i] * rise(all[1 + j], i);
     };
     if (n == 1) {
         weights.push_back(-k[0] * z[0] / entry(0, 0));
     } else if (n == 2) {
-        const S determinant = entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0);
+        const double determinant = entry(0, 0) * entry(1, 1) - entry(0, 1) * entry(1, 0);
         weights.push_back((-k[0] * z[0] * entry(1, 1) + k[1] * z[1] * entry(0, 1)) / determinant);
         weights.push_back((-k[1] * z[1] * entry(0, 0) + k[0] * z[0] * entry(1, 0)) / determinant);
     } else {
         return std::nullopt;
     }
-    return sum<S>(all, weights);
+    return sum(all, weights);
 }
 
-template <class S>
-S nothing(const Wheels<S>& x) {
-    return x.response.nothing_resists ? S(undefined) : S(nan);
-}
+double nothing(const Wheels& x) { return x.response.nothing_resists ? undefined : nan; }
 
 // Vertical force on all wheels alike over the rise of a point.
-template <class S>
-S vertical_rate(const Wheels<S>& x, std::size_t w, int force, const Placed<S>& at) {
+double vertical_rate(const Wheels& x, std::size_t w, int force, const Placed& at) {
     if (x.response.free.empty()) return nothing(x);
-    return ratio<S>(S(1), x.moved_by(of_axle<S>(x.response.free, w, force, 1), at).z(), rigid);
+    return ratio(1, x.moved_by(of_axle(x.response.free, w, force, 1), at).z(), rigid);
 }
 
 // Milliken's figure for all of the braking or driving force at this axle.
-template <class S>
-S anti_of_whole(const Wheels<S>& x, const Placed<S>& at, double sign) {
-    const Vehicle &vehicle = *x.model.vehicle, &d = *x.changing().vehicle;
-    return S(sign) * forward_per_travel(x, at) * x.number(vehicle.wheelbase, d.wheelbase) /
-           x.number(vehicle.cg_height, d.cg_height);
+double anti_of_whole(const Wheels& x, const Placed& at, double sign) {
+    const Vehicle& vehicle = *x.model.vehicle;
+    return sign * forward_per_travel(x, at) * vehicle.wheelbase / vehicle.cg_height;
 }
 
-template <class S>
-S mean_rise_of_patches(const Wheels<S>& x) {
-    const MotionsOf<S> motions = raised(x, 0);
-    S rise = S(0);
+double mean_rise_of_patches(const Wheels& x) {
+    const Motions motions = raised(x, 0);
+    double rise = 0;
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        rise += x.moved_by(motions, x.patch(w)).z() / S(double(x.model.wheels.size()));
+        rise += x.moved_by(motions, x.patch(w)).z() / double(x.model.wheels.size());
     return rise;
 }
 // Length of the path of the patches per travel of the wheel centres, their mean.
-template <class S>
-S mean_path_of_patches(const Wheels<S>& x) {
+double mean_path_of_patches(const Wheels& x) {
     using std::sqrt;
-    const MotionsOf<S> motions = raised(x, 0);
-    S path = S(0);
+    const Motions motions = raised(x, 0);
+    double path = 0;
     for (std::size_t w = 0; w < x.model.wheels.size(); ++w)
-        path +=
-            sqrt(x.moved_by(motions, x.patch(w)).squaredNorm()) / S(double(x.model.wheels.size()));
+        path += sqrt(x.moved_by(motions, x.patch(w)).squaredNorm()) / double(x.model.wheels.size());
     return path;
 }
-template <class S>
-S spring_ratio(const Wheels<S>& x, std::size_t k) {
+double spring_ratio(const Wheels& x, std::size_t k) {
     const auto& spring = std::get<AxialSpring>(x.model.elastics[k].kind);
-    const auto& d = std::get<AxialSpring>(x.changing().elastics[k].kind);
-    return shortening(x, x.point(spring.i, d.i), x.point(spring.j, d.j));
+    return shortening(x, x.point(spring.i), x.point(spring.j));
 }
-template <class S>
-S damper_ratio(const Wheels<S>& x, std::size_t k) {
-    const auto &damper = x.model.dampers[k], &d = x.changing().dampers[k];
-    return shortening(x, x.point(damper.i, d.i), x.point(damper.j, d.j));
+double damper_ratio(const Wheels& x, std::size_t k) {
+    const auto& damper = x.model.dampers[k];
+    return shortening(x, x.point(damper.i), x.point(damper.j));
 }
 
 // Lateral forces on all patches in one direction, with vertical ones that keep the wheel centres at
@@ -129,33 +111,31 @@ S damper_ratio(const Wheels<S>& x, std::size_t k) {
 // rise of the centres, of an axle that of the left less that of the right one:
 //
 //   f_z = -f_y C_y / C_z      h = -(t/2) f_z / f_y      t/2 = y of the patch of one wheel
-template <class S>
-S roll_centre_by_forces(const Wheels<S>& x) {
+double roll_centre_by_forces(const Wheels& x) {
     if (x.response.free.empty()) return nothing(x);
     if (!is_axle(x.model)) {
         const auto& free = x.response.free[0];
-        const Placed<S> centre = x.centre(0);
-        return ratio<S>(x.patch(0).at.y() * x.moved_by(free[at_patch + 1], centre).z(),
-                        x.moved_by(free[at_patch + 2], centre).z(), nowhere);
+        const Placed centre = x.centre(0);
+        return ratio(x.patch(0).at.y() * x.moved_by(free[at_patch + 1], centre).z(),
+                     x.moved_by(free[at_patch + 2], centre).z(), nowhere);
     }
     if (x.response.tied) return undefined;
     const std::size_t left = x.model.wheels[0].side > 0 ? 0 : 1, right = 1 - left;
-    const MotionsOf<S> sideways = of_axle<S>(x.response.free, left, at_patch + 1, 1),
-                       couple = of_axle<S>(x.response.free, left, at_patch + 2, -1);
-    const auto roll = [&](const MotionsOf<S>& motions) -> S {
+    const Motions sideways = of_axle(x.response.free, left, at_patch + 1, 1),
+                  couple = of_axle(x.response.free, left, at_patch + 2, -1);
+    const auto roll = [&](const Motions& motions) -> double {
         return x.moved_by(motions, x.centre(left)).z() - x.moved_by(motions, x.centre(right)).z();
     };
-    return ratio<S>((x.patch(left).at.y() - x.patch(right).at.y()) / S(2) * roll(sideways),
-                    roll(couple), nowhere);
+    return ratio((x.patch(left).at.y() - x.patch(right).at.y()) / 2 * roll(sideways), roll(couple),
+                 nowhere);
 }
 
-template <class S>
-S tilt(const Wheels<S>& x, std::size_t w, bool from_the_side) {
+double tilt(const Wheels& x, std::size_t w, bool from_the_side) {
     using std::atan2;
     const auto axis = steering_axis(x, w);
-    if (!axis) return S(undefined);
-    return from_the_side ? S(atan2(-axis->n.x(), axis->n.z()))
-                         : S(atan2(S(-x.side(w)) * axis->n.y(), axis->n.z()));
+    if (!axis) return undefined;
+    return from_the_side ? double(atan2(-axis->n.x(), axis->n.z()))
+                         : double(atan2(-x.side(w) * axis->n.y(), axis->n.z()));
 }
 
 constexpr auto rigs = "suspension test rigs";
@@ -174,7 +154,7 @@ const Entry list[] = {
      "change of toe over travel of this wheel centre, the other one held at its height",
      does_not_roll,
      [](const auto& x, std::size_t w) {
-         return x.response.tied ? in(x, undefined) : x.toe(w, x.response.travel[w]);
+         return x.response.tied ? undefined : x.toe(w, x.response.travel[w]);
      },
      false, false, "single wheel travel"},
     {Owner::every_wheel, "front_view_swing_arm@patch", Unit::mm,
@@ -183,9 +163,9 @@ const Entry list[] = {
      "the carrier does not rotate as seen from the front: the arm is infinite",
      [](const auto& x, std::size_t w) {
          const auto by = raised(x, w);
-         return ratio(in(x, x.side(w)) * x.moved_by(by, x.centre(w)).z(),
+         return ratio(x.side(w) * x.moved_by(by, x.centre(w)).z(),
                       x.turned_by(by, x[w].body).x(), nowhere) +
-                in(x, x.side(w)) * (x.patch(w).at.y() - x.centre(w).at.y());
+                x.side(w) * (x.patch(w).at.y() - x.centre(w).at.y());
      },
      true, false, "SAE J670e: swing arm radius, from the centre of tire contact"},
     {Owner::every_wheel, "front_view_swing_arm@camber", Unit::mm,
@@ -193,7 +173,7 @@ const Entry list[] = {
      "leans the top in",
      "camber does not change: the arm is infinite",
      [](const auto& x, std::size_t w) {
-         return ratio(in(x, -1), x.camber(w, raised(x, w)), nowhere);
+         return ratio(-1, x.camber(w, raised(x, w)), nowhere);
      },
      true, false, "rigs, which measure camber over travel"},
     {Owner::every_wheel, "side_view_swing_arm@patch", Unit::mm,
@@ -224,7 +204,7 @@ const Entry list[] = {
      no_rate,
      [](const auto& x, std::size_t w) {
          if (x.response.free.empty()) return nothing(x);
-         return ratio(in(x, 1), x.moved_by(x.response.free[w][at_patch + 2], x.centre(w)).z(),
+         return ratio(1, x.moved_by(x.response.free[w][at_patch + 2], x.centre(w)).z(),
                       rigid);
      },
      false, true, "single wheel bump"},
@@ -237,7 +217,7 @@ const Entry list[] = {
     {Owner::spring, "motion_ratio@inverse", Unit::none,
      "travel of the wheel centres over shortening of the spring",
      "the spring does not move with the wheel",
-     [](const auto& x, std::size_t k) { return ratio(in(x, 1), spring_ratio(x, k), nowhere); },
+     [](const auto& x, std::size_t k) { return ratio(1, spring_ratio(x, k), nowhere); },
      false, false, "wheel travel over spring travel; a manufacturer's table (tests/outside/README.md)"},
     {Owner::spring, "motion_ratio@patch", Unit::none,
      "shortening of the spring over the vertical displacement of the contact patches, their mean",
@@ -263,7 +243,7 @@ const Entry list[] = {
     {Owner::damper, "motion_ratio@inverse", Unit::none,
      "travel of the wheel centres over shortening of the damper",
      "the damper does not move with the wheel",
-     [](const auto& x, std::size_t k) { return ratio(in(x, 1), damper_ratio(x, k), nowhere); },
+     [](const auto& x, std::size_t k) { return ratio(1, damper_ratio(x, k), nowhere); },
      false, false, "wheel travel over damper travel"},
     {Owner::damper, "motion_ratio@patch", Unit::none,
      "shortening of the damper over the vertical displacement of the contact patches, their mean",
@@ -414,7 +394,7 @@ const Entry list[] = {
      "wheel towards toe-in, wheel centres held at their height",
      never,
      [](const auto& x, std::size_t w) {
-         return in(x, -x.side(w)) * x.toe(w, held_axle(x, w, moment_on + 2, 1));
+         return -x.side(w) * x.toe(w, held_axle(x, w, moment_on + 2, 1));
      },
      false, false, "rigs: aligning torque, parallel"},
     {Owner::wheel_of_axle, "aligning_torque_steer@opposed", Unit::deg_per_100Nm,
@@ -422,7 +402,7 @@ const Entry list[] = {
      "centres held at their height",
      never,
      [](const auto& x, std::size_t w) {
-         return in(x, -x.side(w)) * x.toe(w, held_axle(x, w, moment_on + 2, -1));
+         return -x.side(w) * x.toe(w, held_axle(x, w, moment_on + 2, -1));
      },
      false, false, "rigs: aligning torque, opposed"},
     {Owner::steered_wheel, "caster@instant_axis", Unit::deg,
@@ -441,7 +421,7 @@ const Entry list[] = {
      does_not_steer,
      [](const auto& x, std::size_t w) {
          const auto axis = steering_axis(x, w);
-         return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
+         return axis ? -across(x, w).dot(on_the_road(x, w, *axis)) : undefined;
      },
      false, false, instant_axis},
     {Owner::steered_wheel, "mechanical_trail@instant_axis", Unit::mm,
@@ -450,7 +430,7 @@ const Entry list[] = {
      does_not_steer,
      [](const auto& x, std::size_t w) {
          const auto axis = steering_axis(x, w);
-         return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : in(x, undefined);
+         return axis ? along(x, w).dot(on_the_road(x, w, *axis)) : undefined;
      },
      false, false, instant_axis},
     {Owner::wheels, "roll_centre_height@centre", Unit::mm,
@@ -473,8 +453,8 @@ const Entry list[] = {
      "where the top leans out",
      does_not_roll,
      [](const auto& x, std::size_t w) {
-         return x.response.tied ? in(x, undefined)
-                                : x.camber(w, rolled_towards(x, w)) + in(x, 1);
+         return x.response.tied ? undefined
+                                : x.camber(w, rolled_towards(x, w)) + 1;
      },
      false, false, "inclination to the ground"},
 };

@@ -17,11 +17,9 @@
 #include "compare/deviation/deviation.hpp"
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
-#include "compare/outputs/rates.hpp"
 #include "compare/sensitivity/sensitivity.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
-#include "models/rates/fields.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -123,7 +121,8 @@ struct Solver {
             if (reaches(x, figures[k].at)) {
                 set(k, interpolate(x, path.curve.channel(c), figures[k].at, 6), channels[c]);
                 if (places != nullptr)
-                    (*places)[k] = interpolate(x, path.curve.a, figures[k].at, 6);
+                    (*places)[k] = interpolate(x, path.curve.a, figures[k].at, 6) /
+                                   in_unit(unit_of(branch.unit));
             } else
                 miss(x.empty()
                          ? fmt::format("branch '{}': {} is not monotonic", branch.name,
@@ -167,41 +166,16 @@ FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, 
 
 namespace {
 
-// The derivative by the parameter of a branch, as if it were a number of the scene: all its drivers
-// start later.
-ModelRate by_parameter(const Model& model, const std::string& branch_name) {
-    ModelRate rate;
-    rate.path = "(parameter)";
-    rate.rate = elastocheck::rates::without_numbers(model);
-    for (std::size_t b = 0; b < model.branches.size(); ++b)
-        if (model.branches[b].name == branch_name)
-            for (std::size_t d = 0; d < model.branches[b].drivers.size(); ++d)
-                rate.rate.branches[b].drivers[d].start = model.branches[b].drivers[d].rate;
-    return rate;
-}
-
-// Rates of what a channel reads in the design position, in its unit.
-double drawn_rate(const Model& model, const Channel& channel, std::size_t place,
-                  const ModelRate& rate) {
-    if (!rate.undefined.empty()) return nan;
-    StateRate design;
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-        const Pose &at = model.bodies[b].design, &change = rate.rate.bodies[b].design;
-        design.increments.push_back({change.r, 2 * (change.p * at.p.conjugate()).vec()});
-    }
-    design.reactions.resize(model.joints.size());
-    return in_unit(channel.unit) * rate_of(model, channel.reads, design_state(model), rate.rate,
-                                           read_rates(model, rate.rate)[place], design);
-}
-
 // One branch of figure_gradient(): its rows.
 struct BranchGradient {
+    const Scene& scene;
+    const Trimmed& trimmed;
     const Model& model;
-    std::span<const ModelRate> rates;  // of the model, by the numbers
-    const TrimRates* trim;
+    const VaryingScene& varying;
     std::span<const Figure> figures;
     FigureGradient& result;
 
+    // `why`: of the first rate that is missing, with its figure and number.
     void add(const Branch& branch, const std::vector<std::size_t>& which, std::string& why) const {
         FigureValues unused;
         unused.value = VectorXd::Constant(static_cast<Index>(figures.size()), nan);
@@ -218,77 +192,63 @@ struct BranchGradient {
         why = unused.why_not;
         if (places.empty()) return;
 
-        const auto outputs = solver.outputs(which);
-        GradientOptions options{.branches = {branch.name}, .legs = {Leg::equilibrium}};
+        // each output as it stands and, where a figure asks for it, counted from the design position
+        auto outputs = solver.outputs(which);
+        const std::size_t plain = outputs.size();
+        for (const std::size_t k : which)
+            if (figures[k].change) outputs.push_back(solver.output(figures[k].name));
+        GradientOptions options{
+            .branches = {branch.name}, .legs = {Leg::equilibrium}, .by_parameter = !over.empty()};
+        for (std::size_t c = 0; c < outputs.size(); ++c) options.changes.push_back(c >= plain);
         for (const auto& [k, a] : places) options.stations[branch.name].push_back(a);
-        std::vector<ModelRate> all(rates.begin(), rates.end());
-        std::optional<TrimRates> with_parameter;
-        if (!over.empty()) all.push_back(by_parameter(model, branch.name));
-        if (trim != nullptr) {
-            with_parameter = *trim;
-            if (!over.empty()) {
-                with_parameter->numbers.push_back(all.back());
-                with_parameter->scenes.push_back(
-                    elastocheck::rates::without_numbers(trim->scenes.front()));
-            }
-            options.trim = &*with_parameter;
-        }
-        std::vector<VariedNumber> numbers;
-        for (const ModelRate& rate : all) numbers.push_back({.path = rate.path});
-        const Gradients found = gradients(model, outputs, numbers, all, options);
+        const Gradients found = gradients(scene, trimmed, model, varying, outputs, options);
         for (const SideGradients& side : found.sides) {
             const LegGradients& leg = side.legs.front();
             if (why.empty()) why = leg.failure;
             for (const auto& [k, a] : places)
                 for (std::size_t s = 0; s < leg.at.size(); ++s)
-                    if (side.a[s] == a) row(k, outputs, leg.at[s]);
-            for (const auto& at_station : side.why_number)
-                for (const std::string& reason : at_station)
-                    if (why.empty()) why = reason;
+                    if (side.a[s] == a) row(k, outputs, plain, leg.at[s], side.why_number[s], why);
         }
     }
 
   private:
-    void row(std::size_t k, const std::vector<Channel>& outputs, const MatrixXd& at) const {
-        const auto n = static_cast<Index>(rates.size());
-        const int y = find_channel(outputs, figures[k].name);
+    void row(std::size_t k, const std::vector<Channel>& outputs, std::size_t plain,
+             const MatrixXd& at, const std::vector<std::string>& reasons, std::string& why) const {
+        const Figure& figure = figures[k];
+        const auto n = std::ssize(varying.numbers);
+        const auto counted = std::span(outputs).subspan(figure.change ? plain : 0);
+        const Index y =
+            find_channel(counted, figure.name) + static_cast<Index>(figure.change ? plain : 0);
         Eigen::RowVectorXd rate = at.row(y).head(n);
-        if (!figures[k].over.empty()) {
-            const int x = find_channel(outputs, figures[k].over);
+        if (!figure.over.empty()) {
+            const int x = find_channel(outputs, figure.over);
+            // a branch that drives x has the same x at the same parameter, whatever the number
             rate -= at(y, n) / at(x, n) * at.row(x).head(n);
         }
-        if (figures[k].change) {
-            const auto every = channels(model);
-            const int place = find_channel(every, figures[k].name);
-            for (Index p = 0; p < n; ++p)
-                rate[p] -= place < 0 ? nan
-                                     : drawn_rate(model, every[static_cast<std::size_t>(place)],
-                                                  static_cast<std::size_t>(place),
-                                                  rates[static_cast<std::size_t>(p)]);
-        }
         result.rate.row(static_cast<Index>(k)) = rate;
+        for (Index p = 0; p < n && why.empty(); ++p)
+            if (!std::isfinite(rate[p])) {
+                const auto& reason = reasons[static_cast<std::size_t>(p)];
+                why = fmt::format("{} on branch '{}' by {}: {}", figure.name, figure.branch,
+                                  varying.numbers[static_cast<std::size_t>(p)].path,
+                                  reason.empty() ? "it is not defined there" : reason);
+            }
     }
 };
 
 }  // namespace
 
-FigureGradient figure_gradient(const Scene& scene, std::span<const ModelRate> rates,
+FigureGradient figure_gradient(const Scene& scene, const VaryingScene& varying,
                                std::span<const Figure> figures, int threads) {
-    const auto rows = static_cast<Index>(figures.size()),
-               columns = static_cast<Index>(rates.size());
-    FigureGradient result{MatrixXd::Constant(rows, columns, nan), {}};
+    FigureGradient result{MatrixXd::Constant(std::ssize(figures), std::ssize(varying.numbers), nan),
+                          {}};
     const Trimmed trimmed = trim(scene);
     if (trimmed.record && !trimmed.record->reached()) {
         result.why_not = "trim: " + trimmed.record->detail;
         return result;
     }
     const Model model = compile(trimmed.scene);
-    std::optional<TrimRates> trim_of;
-    if (trimmed.record) {
-        trim_of = trim_rates(scene, trimmed, rates);
-        rates = trim_of->numbers;
-    }
-    const BranchGradient gradient{model, rates, trim_of ? &*trim_of : nullptr, figures, result};
+    const BranchGradient gradient{scene, trimmed, model, varying, figures, result};
     std::vector<std::string> why(model.branches.size());
     std::vector<Job> jobs;
     for (std::size_t b = 0; b < model.branches.size(); ++b) {
@@ -306,8 +266,8 @@ FigureGradient figure_gradient(const Scene& scene, std::span<const ModelRate> ra
     return result;
 }
 
-Figures exact_figures(SceneAt scene_at, RatesAt rates_at, std::vector<Figure> figures,
-                      int threads) {
+Figures solved_figures(SceneAt scene_at, std::vector<Number> numbers, std::vector<Figure> figures,
+                       int threads) {
     const auto value = [scene_at, figures](const VectorXd& p) -> VectorXd {
         try {
             return figure_values(scene_at(p), figures, Leg::equilibrium).value;
@@ -315,23 +275,26 @@ Figures exact_figures(SceneAt scene_at, RatesAt rates_at, std::vector<Figure> fi
             return VectorXd::Constant(static_cast<Index>(figures.size()), nan);
         }
     };
-    const auto gradient = [scene_at, rates_at, figures, threads](const VectorXd& p) {
+    const auto gradient = [scene_at, numbers, figures, threads](const VectorXd& p) {
         try {
-            return figure_gradient(scene_at(p), rates_at(p), figures, threads);
+            VaryingScene varying{{}, [&](std::size_t k, double by) {
+                                     const auto at = static_cast<Index>(k);
+                                     return scene_at(p + by * VectorXd::Unit(p.size(), at));
+                                 }};
+            for (Index k = 0; k < p.size(); ++k) {
+                Number number = numbers[static_cast<std::size_t>(k)];
+                number.value = p[k];
+                varying.numbers.push_back(varied_number(number));
+            }
+            return figure_gradient(scene_at(p), varying, figures, threads);
         } catch (const std::runtime_error& error) {
-            const auto rows = static_cast<Index>(figures.size());
-            return FigureGradient{MatrixXd::Constant(rows, p.size(), nan), error.what()};
+            return FigureGradient{MatrixXd::Constant(std::ssize(figures), p.size(), nan),
+                                  error.what()};
         }
     };
     return {value, gradient};
 }
 
-double step_of(const Number& number) {
-    static const std::map<std::string, double> millimetre{
-        {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};
-    if (const auto unit = millimetre.find(number.unit); unit != millimetre.end())
-        return unit->second;
-    return number.value != 0 ? 0.01 * std::abs(number.value) : 1;
-}
+double step_of(const Number& number) { return varied_number(number).step; }
 
 }  // namespace elastocheck::compare

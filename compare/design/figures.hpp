@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "compare/sensitivity/varying.hpp"
 #include "elastocheck/channels.hpp"
 #include "elastocheck/legs.hpp"
 #include "elastocheck/scene.hpp"
-#include "models/rates/model_rates.hpp"
 
 namespace elastocheck::compare {
 
@@ -34,7 +34,7 @@ struct Figure {
 // number in the file.
 struct FigureGradient {
     Eigen::MatrixXd rate;
-    std::string why_not = {};  // reason of the first rate that is NaN
+    std::string why_not = {};  // figure, number and reason of the first rate that is NaN
 };
 
 struct Figures {
@@ -43,10 +43,8 @@ struct Figures {
     std::function<FigureGradient(const Eigen::VectorXd& p)> gradient;
 };
 
-// The scene with these values of the varied numbers, and its model's derivatives by them. May throw
-// std::runtime_error: no such scene.
+// The scene with these values of the varied numbers. May throw std::runtime_error: no such scene.
 using SceneAt = std::function<Scene(const Eigen::VectorXd& p)>;
-using RatesAt = std::function<std::vector<ModelRate>(const Eigen::VectorXd& p)>;
 
 // All outputs of a model that a figure can be: channels, characteristics, forces of elements.
 std::vector<Channel> figure_outputs(const Model& model);
@@ -60,17 +58,17 @@ struct FigureValues {
 };
 FigureValues figure_values(const Scene& scene, std::span<const Figure> figures, Leg leg);
 
-// Rates of the figures by the equilibrium leg; `rates`: of the scene, one per number. NaN where there
-// is none: a figure without value, a kink. Branches on several threads.
-FigureGradient figure_gradient(const Scene& scene, std::span<const ModelRate> rates,
+// Rates of the figures by the equilibrium leg; `scene` is `varying` at its values. NaN where there is
+// none: a figure without value, a kink. Branches on several threads.
+FigureGradient figure_gradient(const Scene& scene, const VaryingScene& varying,
                                std::span<const Figure> figures, int threads = 1);
 
 // The step in which the effect of a number is shown: 1 mm of a length, else 1 % of the value; one
 // unit where that is zero.
 double step_of(const Number& number);
 
-// By the equilibrium leg.
-Figures exact_figures(SceneAt scene_at, RatesAt rates_at, std::vector<Figure> figures,
-                      int threads = 1);
+// By the equilibrium leg; `numbers`: those of p, by their paths and units.
+Figures solved_figures(SceneAt scene_at, std::vector<Number> numbers, std::vector<Figure> figures,
+                       int threads = 1);
 
 }  // namespace elastocheck::compare

@@ -184,7 +184,7 @@ Fitted fit(const Figures& figures, const Measured& measured) {
         found.at_limit.push_back(x[i] <= box.low[i] || x[i] >= box.high[i]);
     if (!nearest.jacobian.allFinite()) {
         found.converged = false;
-        found.why_not = "a measured output has no rate at the result";
+        found.why_not = "no rate at the result: " + figures.gradient(found.p).why_not;
         return found;
     }
 

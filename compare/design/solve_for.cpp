@@ -32,9 +32,8 @@ MatrixXd stacked(const MatrixXd& J, double mu) {
 
 }  // namespace
 
-std::vector<std::string> why_still(const SceneAt& scene_at, const RatesAt& rates_at,
-                                   const Figure& figure, const std::vector<Number>& numbers,
-                                   const VectorXd& p) {
+std::vector<std::string> why_still(const SceneAt& scene_at, const Figure& figure,
+                                   const std::vector<Number>& numbers, const VectorXd& p) {
     const Scene scene = scene_at(p);
     // All outputs of the state at the same station.
     std::vector<Figure> all;
@@ -43,7 +42,7 @@ std::vector<std::string> why_still(const SceneAt& scene_at, const RatesAt& rates
         all.push_back(figure);
         all.back().name = channel.name;
     }
-    const Figures outputs = exact_figures(scene_at, rates_at, all);
+    const Figures outputs = solved_figures(scene_at, numbers, all);
     const VectorXd values = outputs.value(p);
     const FigureGradient gradient = outputs.gradient(p);
     std::vector<std::string> reasons;

@@ -45,9 +45,8 @@ inline constexpr double met_within = 1e-7;
 
 // Reasons why none of the numbers moves a figure, one for each number: "springs.coil.rate: no output
 // moves with it".
-std::vector<std::string> why_still(const SceneAt& scene_at, const RatesAt& rates_at,
-                                   const Figure& figure, const std::vector<Number>& numbers,
-                                   const Eigen::VectorXd& p);
+std::vector<std::string> why_still(const SceneAt& scene_at, const Figure& figure,
+                                   const std::vector<Number>& numbers, const Eigen::VectorXd& p);
 
 // The figures have values at the start (NaN in `before` if not, and nothing else is set).
 Solution solve_for(const Figures& figures, const Wishes& wishes);

@@ -10,9 +10,7 @@
 #include <numbers>
 #include <set>
 
-#include "compare/outputs/dual.hpp"
 #include "compare/outputs/positions.hpp"
-#include "compare/outputs/rates.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
@@ -27,100 +25,36 @@ const ModelJoint& joint_of(const Model& model, int joint) {
     return model.joints[static_cast<std::size_t>(joint)];
 }
 
-template <class S>
-using Vector = Eigen::Matrix<S, 3, 1>;
-
-// A force and a moment, for S = Dual with their derivatives.
-template <class S>
-struct ForceMoment {
-    Vector<S> force, moment;
-};
-
-// A state, for S = Dual with a motion of its bodies, d(r + A s) = dr + dπ × A s + A ds, and with
-// the change of the model by one of its numbers: `rate`, a Model of the same shape. The features
-// that a channel reads come in pairs: in the model, and their rates in their bodies.
-template <class S>
+// The features of a model in a state.
 struct Configuration {
     const Model& model;
     const Equilibrium& state;
-    std::span<const Increment> motion = {};  // one per body, for S = Dual
-    const Model* rate = nullptr;             // none: the model is constant
-    std::span<const Wrench> wrench_rates = {};
 
     const Wheel& wheel(std::size_t w) const { return model.wheels[w]; }
-    const Wheel& wheel_rate(std::size_t w) const { return changing().wheels[w]; }
-    // Where the model is constant, its own parts stand in the place of rates and are not read.
-    const Model& changing() const { return rate != nullptr ? *rate : model; }
-
-    S number(double value, double derivative) const {
-        if constexpr (std::is_same_v<S, Dual>)
-            if (rate != nullptr) return S(value, derivative);
-        return S(value);
+    Vector3d direction(const Direction& u) const { return pose(state.poses, u.body).p * u.u_local; }
+    Vector3d position(const Point& point) const { return compare::position(state.poses, point); }
+    Vector3d spin_axis(std::size_t w) const {
+        return direction({wheel(w).body, wheel(w).spin_axis_local});
     }
-    Vector<S> direction(const Direction& u, const Direction& d) const {
-        const Vector3d fixed = pose(state.poses, u.body).p * u.u_local;
-        return carried(u.body, Vector3d::Zero(), fixed, d.u_local, false);
+    Vector3d patch(std::size_t w) const {
+        return position({wheel(w).body, wheel(w).contact_local});
     }
-    Vector<S> position(const Point& point, const Point& d) const {
-        const Vector3d lever = pose(state.poses, point.body).p * point.s_local;
-        return carried(point.body, pose(state.poses, point.body).r, lever, d.s_local, true);
-    }
-    Vector<S> spin_axis(std::size_t w) const {
-        return direction({wheel(w).body, wheel(w).spin_axis_local},
-                         {wheel(w).body, wheel_rate(w).spin_axis_local});
-    }
-    Vector<S> patch(std::size_t w) const {
-        return position({wheel(w).body, wheel(w).contact_local},
-                        {wheel(w).body, wheel_rate(w).contact_local});
-    }
-    ForceMoment<S> wrench(int joint) const {
-        const auto k = static_cast<std::size_t>(joint);
-        const Wrench &value = state.reactions[k],
-                     derivative = wrench_rates.empty() ? Wrench{} : wrench_rates[k];
-        return {with(value.force, derivative.force), with(value.moment, derivative.moment)};
-    }
-
-  private:
-    // The sum of a body's origin r, or zero for a direction, and of its vector u, which changes by
-    // its rotation and by du' in its axes.
-    Vector<S> carried(BodyId body, const Vector3d& r, const Vector3d& u, const Vector3d& du_local,
-                      bool with_origin) const {
-        Vector3d derivative = Vector3d::Zero();
-        if constexpr (std::is_same_v<S, Dual>) {
-            if (body != ground && !motion.empty()) {
-                const auto& [dr, dpi] = motion[static_cast<std::size_t>(body)];
-                derivative = dpi.cross(u);
-                if (with_origin) derivative += dr;
-            }
-            if (rate != nullptr) derivative += pose(state.poses, body).p * du_local;
-        }
-        return with(r + u, derivative);
-    }
-    static Vector<S> with(const Vector3d& value, const Vector3d& derivative) {
-        if constexpr (std::is_same_v<S, Dual>)
-            return {S(value.x(), derivative.x()), S(value.y(), derivative.y()),
-                    S(value.z(), derivative.z())};
-        else
-            return value;
+    const Wrench& wrench(int joint) const {
+        return state.reactions[static_cast<std::size_t>(joint)];
     }
 };
 
-// ---- Formulas: values in SI, one function per type that a channel reads; `d` holds the rates of
-// its own points and numbers.
+// ---- Formulas: values in SI, one function per type that a channel reads.
 
-template <class S>
-S read(const Configuration<S>& at, const Coordinate& c, const Coordinate& d) {
-    return S(c.sign) *
-           (at.position(c.at, d.at)[c.axis] - at.number(c.counted_from, d.counted_from));
+double read(const Configuration& at, const Coordinate& c) {
+    return c.sign * (at.position(c.at)[c.axis] - c.counted_from);
 }
-template <class S>
-S read(const Configuration<S>& at, const Toe& c, const Toe&) {
+double read(const Configuration& at, const Toe& c) {
     using std::atan2;
-    const Vector<S> e = at.spin_axis(c.wheel);
-    return atan2(e.x(), S(at.wheel(c.wheel).side) * e.y());
+    const Vector3d e = at.spin_axis(c.wheel);
+    return atan2(e.x(), at.wheel(c.wheel).side * e.y());
 }
-template <class S>
-S read(const Configuration<S>& at, const Camber& c, const Camber&) {
+double read(const Configuration& at, const Camber& c) {
     using std::asin;
     return -asin(at.spin_axis(c.wheel).z());
 }
@@ -132,27 +66,22 @@ const double least_steering = 2 * std::numbers::pi / 180;
 
 // Vector from the contact patch to the intersection of the steering axis with the road; undefined
 // for a flat axis.
-template <class S>
-Vector<S> pivot(const Configuration<S>& at, std::size_t wheel) {
+Vector3d pivot(const Configuration& at, std::size_t wheel) {
     const auto& [lower, upper] = *at.wheel(wheel).steering_axis;
-    const auto& [dlower, dupper] = *at.wheel_rate(wheel).steering_axis;
-    const Vector<S> l = at.position(lower, dlower), u = at.position(upper, dupper) - l,
-                    c = at.patch(wheel);
-    if (!(abs(u.z()) > S(std::sin(flattest)) * u.norm())) return Vector<S>::Constant(S(undefined));
+    const Vector3d l = at.position(lower), u = at.position(upper) - l, c = at.patch(wheel);
+    if (!(std::abs(u.z()) > std::sin(flattest) * u.norm())) return Vector3d::Constant(undefined);
     return l + u * ((c.z() - l.z()) / u.z()) - c;
 }
 
-template <class S>
-S read(const Configuration<S>& at, const Steering& c, const Steering&) {
+double read(const Configuration& at, const Steering& c) {
     using std::atan;
     const auto& [lower, upper] = *at.wheel(c.wheel).steering_axis;
-    const auto& [dlower, dupper] = *at.wheel_rate(c.wheel).steering_axis;
-    const Vector<S> u = at.position(upper, dupper) - at.position(lower, dlower),
-                    off = pivot(at, c.wheel), e = at.spin_axis(c.wheel);
-    if (std::isinf(value_of(off.x()))) return undefined;
-    const S side = at.wheel(c.wheel).side;
-    const Vector<S> n = Vector<S>(e.x(), e.y(), S(0)).normalized(),
-                    h = side * n.cross(Vector<S>(S(0), S(0), S(1)));
+    const Vector3d u = at.position(upper) - at.position(lower), off = pivot(at, c.wheel),
+                   e = at.spin_axis(c.wheel);
+    if (std::isinf(off.x())) return undefined;
+    const double side = at.wheel(c.wheel).side;
+    const Vector3d n = Vector3d(e.x(), e.y(), 0).normalized(),
+                   h = side * n.cross(Vector3d::UnitZ());
     switch (c.figure) {
         case Steering::Figure::caster: return atan(-u.x() / u.z());
         case Steering::Figure::kingpin_inclination: return atan(-side * u.y() / u.z());
@@ -161,91 +90,63 @@ S read(const Configuration<S>& at, const Steering& c, const Steering&) {
     }
     return undefined;
 }
-template <class S>
-S read(const Configuration<S>& at, const Track& c, const Track&) {
+double read(const Configuration& at, const Track& c) {
     return at.patch(c.left).y() - at.patch(c.right).y();
 }
-template <class S>
-S read(const Configuration<S>& at, const Ackermann& c, const Ackermann& d) {
+double read(const Configuration& at, const Ackermann& c) {
     using std::abs, std::tan;
-    const S left = -read(at, Toe{c.left}, {}), right = read(at, Toe{c.right}, {});
-    if (!(left * right > S(0) && std::min(abs(left), abs(right)) >= S(least_steering)))
-        return undefined;
-    return (S(1) / tan(right) - S(1) / tan(left)) *
-           at.number(c.wheelbase_by_pivots, d.wheelbase_by_pivots);
+    const double left = -read(at, Toe{c.left}), right = read(at, Toe{c.right});
+    if (!(left * right > 0 && std::min(abs(left), abs(right)) >= least_steering)) return undefined;
+    return (1 / tan(right) - 1 / tan(left)) * c.wheelbase_by_pivots;
 }
-template <class S>
-S read(const Configuration<S>& at, const Compression& c, const Compression& d) {
-    return at.number(c.drawn, d.drawn) - (at.position(c.j, d.j) - at.position(c.i, d.i)).norm();
+double read(const Configuration& at, const Compression& c) {
+    return c.drawn - (at.position(c.j) - at.position(c.i)).norm();
 }
-template <class S>
-S read(const Configuration<S>& at, const Effort& c, const Effort&) {
+double read(const Configuration& at, const Effort& c) {
     const int driven = joint_of(at.model, c.joint).driven;
-    if (driven < 0) return S(0);  // inactive on this branch
+    if (driven < 0) return 0;  // inactive on this branch
     const auto k = static_cast<std::size_t>(driven);
-    const ForceMoment<S> on_i = at.wrench(c.joint);
-    const ConstraintKind& changing = at.changing().constraints[k].kind;
+    const Wrench on_i = at.wrench(c.joint);
     return std::visit(
-        overloaded{
-            [&](const DistanceBetween& b) -> S {
-                const auto& d = std::get<DistanceBetween>(changing);
-                return on_i.force.dot((at.position(b.i, d.i) - at.position(b.j, d.j)).normalized());
-            },
-            [&](const PointInPlane& p) -> S {
-                const auto& d = std::get<PointInPlane>(changing);
-                return on_i.force.dot(at.direction(p.normal_j, d.normal_j));
-            },
-            [&](const DirectionAtAngle& a) -> S {
-                const auto& d = std::get<DirectionAtAngle>(changing);
-                return on_i.moment.dot(at.direction(a.j, d.j).cross(at.direction(a.y_j, d.y_j)));
-            },
-            // No offset to drive: lowering never drives these.
-            [](const CoincidentPoints&) -> S { return std::nan(""); },
-            [](const PerpendicularDirections&) -> S { return std::nan(""); }},
+        overloaded{[&](const DistanceBetween& b) {
+                       return on_i.force.dot((at.position(b.i) - at.position(b.j)).normalized());
+                   },
+                   [&](const PointInPlane& p) { return on_i.force.dot(at.direction(p.normal_j)); },
+                   [&](const DirectionAtAngle& a) {
+                       return on_i.moment.dot(at.direction(a.j).cross(at.direction(a.y_j)));
+                   },
+                   // No offset to drive: lowering never drives these.
+                   [](const CoincidentPoints&) { return std::nan(""); },
+                   [](const PerpendicularDirections&) { return std::nan(""); }},
         at.model.constraints[k].kind);
 }
-template <class S>
-S read(const Configuration<S>& at, const AxialForce& c, const AxialForce&) {
+double read(const Configuration& at, const AxialForce& c) {
     const auto k = static_cast<std::size_t>(c.constraint);
     const auto& rod = std::get<DistanceBetween>(at.model.constraints[k].kind);
-    const auto& d = std::get<DistanceBetween>(at.changing().constraints[k].kind);
-    return at.wrench(c.joint).force.dot(
-        (at.position(rod.j, d.j) - at.position(rod.i, d.i)).normalized());
+    return at.wrench(c.joint).force.dot((at.position(rod.j) - at.position(rod.i)).normalized());
 }
-template <class S>
-S read(const Configuration<S>& at, const Reaction& c, const Reaction&) {
-    const ForceMoment<S> on_i = at.wrench(c.joint);
+double read(const Configuration& at, const Reaction& c) {
+    const Wrench on_i = at.wrench(c.joint);
     return c.component < 3 ? on_i.force[c.component] : on_i.moment[c.component - 3];
 }
-template <class S>
-S read(const Configuration<S>& at, const Total& c, const Total&) {
-    const auto point = [&](int joint) {
-        return at.position(joint_of(at.model, joint).at, joint_of(at.changing(), joint).at);
-    };
-    const Vector<S> about = point(c.joints.front());
-    S sum = 0;
+double read(const Configuration& at, const Total& c) {
+    const auto point = [&](int joint) { return at.position(joint_of(at.model, joint).at); };
+    const Vector3d about = point(c.joints.front());
+    double sum = 0;
     for (const int k : c.joints) {
         const ModelJoint& joint = joint_of(at.model, k);
-        const S sign = joint.i == c.on ? 1 : -1;
-        const ForceMoment<S> w = at.wrench(k);
-        const Vector<S> moment = w.moment + (point(k) - about).cross(w.force);
+        const double sign = joint.i == c.on ? 1 : -1;
+        const Wrench w = at.wrench(k);
+        const Vector3d moment = w.moment + (point(k) - about).cross(w.force);
         sum += sign * (c.component < 3 ? w.force[c.component] : moment[c.component - 3]);
     }
     return sum;
 }
 // Need more than the state.
-template <class S>
-S read(const Configuration<S>&, const OfElement&, const OfElement&) {
-    return std::nan("");
-}
-template <class S>
-S read(const Configuration<S>&, const Characteristic&, const Characteristic&) {
-    return std::nan("");
-}
-template <class S>
-S read(const Configuration<S>& at, const Defined& c, const Defined&) {
-    if constexpr (std::is_same_v<S, double>) return c.value(at.model, c.wheel, at.state);
-    return std::nan("");
+double read(const Configuration&, const OfElement&) { return std::nan(""); }
+double read(const Configuration&, const Characteristic&) { return std::nan(""); }
+double read(const Configuration& at, const Defined& c) {
+    return c.value(at.model, c.wheel, at.state);
 }
 
 // ---- Units, in the order of Unit.
@@ -273,28 +174,12 @@ constexpr std::array<UnitEntry, static_cast<std::size_t>(Unit::percent) + 1> uni
 
 // ---- The list
 
-// The model as drawn. With a rate of the model, the channels read the rates of their points and
-// numbers in place of these.
+// The model as drawn.
 struct Drawing {
     const Model& model;
-    const Model* rate = nullptr;
+    Equilibrium state = design_state(model);
 
-    const Model& read() const { return rate != nullptr ? *rate : model; }
-    // A number of the design position, `formula` of its configuration; its rate, with a rate.
-    template <class Formula>
-    double number(const Formula& formula) const {
-        const Equilibrium drawn = design_state(model);
-        if (rate == nullptr) return formula(Configuration<double>{model, drawn});
-        std::vector<Increment> motion;
-        for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-            const Pose &at = model.bodies[b].design, &by = rate->bodies[b].design;
-            motion.push_back({by.r, 2 * (by.p * at.p.conjugate()).vec()});
-        }
-        return formula(Configuration<Dual>{model, drawn, motion, rate}).dx;
-    }
-    double coordinate(const Point& at, const Point& d, int axis) const {
-        return number([&](const auto& design) { return design.position(at, d)[axis]; });
-    }
+    Configuration drawn() const { return {model, state}; }
 };
 Point centre_of(const Wheel& wheel) { return {wheel.body, wheel.centre_local}; }
 Point patch_of(const Wheel& wheel) { return {wheel.body, wheel.contact_local}; }
@@ -319,8 +204,8 @@ void add_patch(std::vector<Channel>& list, const Drawing& design, std::size_t w,
                const std::string& prefix) {
     const Model& model = design.model;
     const Wheel& wheel = model.wheels[w];
-    const Point patch = patch_of(design.read().wheels[w]);
-    const auto drawn = [&](int axis) { return design.coordinate(patch_of(wheel), patch, axis); };
+    const Point patch = patch_of(wheel);
+    const Vector3d drawn = design.drawn().position(patch);
     const std::size_t first = list.size();
     add_position(list, prefix + "contact_patch",
                  "the point of the wheel's body that is the contact patch at the design position",
@@ -379,16 +264,14 @@ void add_axle(std::vector<Channel>& list, const Drawing& design) {
                     .definition = "lateral distance between the contact patches of the two wheels, "
                                   "positive where the left one is to the left"});
     if (!model.vehicle || model.vehicle->axle != Axle::front) return;
-    const double wheelbase_by_pivots = design.number([&]<class S>(const Configuration<S>& at) {
-        const auto y = [&](std::size_t w) -> S {
-            const S patch = at.patch(w).y();
-            if (!at.wheel(w).steering_axis) return patch;
-            const S to_pivot = pivot(at, w).y();
-            return std::isinf(value_of(to_pivot)) ? patch : patch + to_pivot;
-        };
-        const Vehicle &vehicle = *at.model.vehicle, &d = *at.changing().vehicle;
-        return at.number(vehicle.wheelbase, d.wheelbase) / (y(left) - y(right));
-    });
+    const Configuration drawn = design.drawn();
+    const auto y = [&](std::size_t w) {
+        const double patch = drawn.patch(w).y();
+        if (!drawn.wheel(w).steering_axis) return patch;
+        const double to_pivot = pivot(drawn, w).y();
+        return std::isinf(to_pivot) ? patch : patch + to_pivot;
+    };
+    const double wheelbase_by_pivots = model.vehicle->wheelbase / (y(left) - y(right));
     list.push_back(
         {.name = "ackermann",
          .unit = Unit::percent,
@@ -401,19 +284,13 @@ void add_axle(std::vector<Channel>& list, const Drawing& design) {
              "rear axle; undefined unless both are turned in the same direction by 2 deg or more"});
 }
 
-// i and j, and the same of design.read().
-struct Between {
-    Point i, j;
-};
 void add_compression(std::vector<Channel>& list, const Drawing& design, const std::string& name,
-                     const char* what, const Between& ends, const Between& read) {
-    const double drawn = design.number([&](const auto& at) {
-        return (at.position(ends.j, read.j) - at.position(ends.i, read.i)).norm();
-    });
+                     const char* what, const Point& i, const Point& j) {
+    const double drawn = (design.drawn().position(j) - design.drawn().position(i)).norm();
     list.push_back(
         {.name = name + ".compression",
          .main = false,
-         .reads = Compression{read.i, read.j, drawn},
+         .reads = Compression{i, j, drawn},
          .definition = fmt::format("design length less length of {} '{}', positive in compression",
                                    what, name)});
 }
@@ -421,7 +298,7 @@ void add_compression(std::vector<Channel>& list, const Drawing& design, const st
 void add_wheel(std::vector<Channel>& list, const Drawing& design, std::size_t w) {
     const Wheel& wheel = design.model.wheels[w];
     const std::string prefix = wheel.name.empty() ? "" : wheel.name + ".";
-    const Point centre = centre_of(design.read().wheels[w]);
+    const Point centre = centre_of(wheel);
     add_position(list, prefix + "wheel_centre", "the wheel centre", centre);
     list.push_back(
         {.name = prefix + "toe",
@@ -437,7 +314,7 @@ void add_wheel(std::vector<Channel>& list, const Drawing& design, std::size_t w)
                         "outwards"});
     list.push_back({.name = prefix + "travel",
                     .main = false,
-                    .reads = Coordinate{centre, 2, design.coordinate(centre_of(wheel), centre, 2)},
+                    .reads = Coordinate{centre, 2, design.drawn().position(centre).z()},
                     .definition =
                         "vertical displacement of the wheel centre from its design position, "
                         "positive in jounce (up)"});
@@ -539,28 +416,23 @@ std::vector<int> Channel::joints() const {
         reads);
 }
 
-namespace {
-
-std::vector<Channel> list_of(const Drawing& design) {
-    const Model &model = design.model, &read = design.read();
+std::vector<Channel> channels(const Model& model) {
+    const Drawing design{model};
     std::vector<Channel> list;
     for (std::size_t w = 0; w < model.wheels.size(); ++w) add_wheel(list, design, w);
     add_axle(list, design);
     for (std::size_t k = 0; k < model.probes.size(); ++k) {
         const std::string& name = model.probes[k].name;
-        add_position(list, name, "'" + name + "'", read.probes[k].at);
+        add_position(list, name, "'" + name + "'", model.probes[k].at);
     }
     for (std::size_t k = 0; k < model.elastics.size(); ++k)
         if (const auto ends = points_of(model.elastics[k].kind);
             ends.size() == 2 && model.elastics[k].written_as == WrittenAs::itself) {
-            const auto of_read = points_of(read.elastics[k].kind);
-            add_compression(list, design, model.elastics[k].name, "spring", {ends[0], ends[1]},
-                            {of_read[0], of_read[1]});
+            add_compression(list, design, model.elastics[k].name, "spring", ends[0], ends[1]);
         }
     for (std::size_t k = 0; k < model.dampers.size(); ++k)
-        add_compression(list, design, model.dampers[k].name, "damper",
-                        {model.dampers[k].i, model.dampers[k].j},
-                        {read.dampers[k].i, read.dampers[k].j});
+        add_compression(list, design, model.dampers[k].name, "damper", model.dampers[k].i,
+                        model.dampers[k].j);
     for (const int k : joints_moved(model)) add_effort(list, model, k);
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const ModelJoint& joint = model.joints[k];
@@ -571,15 +443,6 @@ std::vector<Channel> list_of(const Drawing& design) {
                    });
     }
     return list;
-}
-
-}  // namespace
-
-std::vector<Channel> channels(const Model& model) { return list_of({model}); }
-std::vector<Reads> read_rates(const Model& model, const Model& rate) {
-    std::vector<Reads> reads;
-    for (auto& channel : list_of({model, &rate})) reads.push_back(std::move(channel.reads));
-    return reads;
 }
 
 std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups) {
@@ -636,36 +499,10 @@ std::vector<double> evaluate(const Model& model, std::span<const Channel> channe
         values.push_back(in_unit(channel.unit) *
                          std::visit(
                              [&](const auto& c) {
-                                 return read(Configuration<double>{model, state}, c, c);
+                                 return read(Configuration{model, state}, c);
                              },
                              channel.reads));
     return values;
-}
-
-double rate_of(const Model& model, const Reads& reads, const Equilibrium& state,
-               std::span<const Increment> motion) {
-    const Configuration<Dual> at{model, state, motion};
-    return std::visit(
-        [&](const auto& c) {
-            if constexpr (std::decay_t<decltype(c)>::kind == ChannelKind::motion) {
-                const Dual value = read(at, c, c);
-                return std::isinf(value.x) ? std::nan("") : value.dx;
-            } else
-                return std::nan("");
-        },
-        reads);
-}
-
-double rate_of(const Model& model, const Reads& reads, const Equilibrium& state, const Model& rate,
-               const Reads& reads_rate, const StateRate& state_rate) {
-    if (state_rate.outcome != Outcome::converged) return std::nan("");
-    const Configuration<Dual> at{model, state, state_rate.increments, &rate, state_rate.reactions};
-    return std::visit(
-        [&]<class Kind>(const Kind& c) {
-            const Dual value = read(at, c, std::get<Kind>(reads_rate));
-            return std::isinf(value.x) ? std::nan("") : value.dx;
-        },
-        reads);
 }
 
 std::vector<double> evaluate(const Model& model, const Equilibrium& state) {

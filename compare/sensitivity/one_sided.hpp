@@ -12,7 +12,8 @@ namespace elastocheck::compare {
 // The piece on this side of the knot (-1: below, 1: above) continues across it, up to the next knot.
 Model one_sided(Model model, const Corner& corner, int side);
 
-// The rate of that model, from a rate of `model`.
-Model one_sided_rate(Model rate, const Model& model, const Corner& corner, int side);
+// Deformation beyond the knot of the corner [m, rad].
+double beyond_knot(const Model& model, const Branch& branch, const Equilibrium& state,
+                   const Corner& corner);
 
 }  // namespace elastocheck::compare

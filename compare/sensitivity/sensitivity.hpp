@@ -1,9 +1,16 @@
-// Derivatives of the outputs by the numbers of a scene along its branches, by every leg.
-// Outputs are channels, K&C characteristics, and forces and deformations of elements.
+// Derivatives of the outputs by the numbers of a scene along its branches, by differences in every
+// leg. Outputs are channels, K&C characteristics, and forces and deformations of elements.
 //
-// Each leg follows the branch and differentiates its own conditions at its own states:
-// recursive/sensitivity.hpp, reference/equilibrium/sensitivity.hpp, reference/energy/sensitivity.hpp.
-// A derivative is taken at a constant parameter of the branch; the settled start is part of it.
+// The scene with the number at p ± h, p ± 2h is read and compiled like any scene; each leg moves its
+// own state to these models to first order (models/neighbours.hpp); the outputs are read from them
+// by the ordinary code, and
+//
+//   dy/dp = (8 (y(h) - y(-h)) - (y(2h) - y(-2h))) / 12h
+//
+// Where the differences over h and 2h do not agree, h is shortened; where those to both sides do not
+// agree either, there is no derivative but a kink. A derivative is taken at a constant parameter of
+// the branch; settled start and trim are part of it: the adjustments x(p) of a trim solve
+// c(x, p) = 0, so dy/dp = ∂y/∂p + ∂y/∂x dx/dp, dx/dp = -(∂c/∂x)⁻¹ ∂c/∂p, all by the same differences.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,26 +21,13 @@
 #include <string>
 #include <vector>
 
-#include "compare/sensitivity/trim_rates.hpp"
+#include "compare/sensitivity/differences.hpp"
+#include "compare/sensitivity/varying.hpp"
 #include "elastocheck/channels.hpp"
 #include "elastocheck/legs.hpp"
-#include "models/rates/model_rates.hpp"
+#include "elastocheck/trim.hpp"
 
 namespace elastocheck::compare {
-
-// A number of the file, its unit there, and the step in which its effect is shown: 1 mm of a
-// length, else 1 % of the value; one unit where that is zero.
-struct VariedNumber {
-    std::string path = {};
-    double value = 0;
-    std::string unit = {};
-    double step = 1;  // in its unit
-    const char* step_name = "1 %";
-    int side = 0;  // 1, -1: at the end of its range; derivatives are those where it grows (falls)
-    std::string undefined = {};  // reason why the model has no derivative by it
-};
-// Of the first where the rate is that of several numbers together.
-VariedNumber varied_number(const ModelRate& rate, std::span<const Number> numbers);
 
 // Of one leg along one side of a branch.
 struct LegGradients {
@@ -41,34 +35,23 @@ struct LegGradients {
     // per station [outputs × numbers], unit of the output per unit of the number in the file; NaN
     // where there is none
     std::vector<Eigen::MatrixXd> at;
-    std::string failure;  // reason why stations are missing; empty if none is
+    std::vector<Eigen::MatrixXd> rounding;  // likewise, of `at`
+    std::string failure;                    // reason why stations are missing; empty if none is
     bool not_applicable = false;
 };
 
-// One-sided derivatives where there is no derivative [outputs × numbers], in the same units: where
-// the number grows, and where it falls. NaN where there are none; empty matrices where every entry
-// has a derivative.
-struct OneSided {
-    Eigen::MatrixXd growing, falling;
-    bool empty() const { return growing.size() == 0; }
-};
-
-// Legs agree where no entry differs by more than this, as a share of the largest entry of its row:
-// the output over all numbers and stations of the side, each number by its step. The largest entry
+// Legs agree where no entry differs by more than this and its rounding, as a share of the largest entry
+// of its row: the output over all numbers and stations of the side, each number by its step. The largest entry
 // counts as at least a millionth of the largest of all rows of motions (mm, deg), or of forces and
 // moments (N, N·m), and 1e-5 of its unit; that of a characteristic as at least a thousandth of its unit.
-inline constexpr double gradients_agree = 1e-8;
-// The same of characteristics by the energy leg, whose third derivatives are extrapolated
-// differences of its Hessian (reference/energy/linear_response.hpp).
-inline constexpr double differences_agree = 1e-6;
+inline constexpr double gradients_agree = 1e-7;
 
 // Difference of two legs that is the largest share of what is allowed.
 struct Disagreement {
-    double share = 0;  // of the largest entry of the output's row
-    double allowed = gradients_agree;
+    double share = 0;   // of the largest entry of the output's row
     std::string where;  // "toe by points.a.z at 100 N: equilibrium 1.2, energy 1.3"
     long compared = 0;
-    bool agrees() const { return share <= allowed; }
+    bool agrees() const { return share <= gradients_agree; }
 };
 
 struct SideGradients {
@@ -99,16 +82,21 @@ struct GradientOptions {
     // in place of them, per name of a branch: values of its parameter [SI]
     std::map<std::string, std::vector<double>> stations = {};
     std::vector<std::string> branches = {};  // names; empty: all
-    std::vector<Leg> legs = {Leg::equilibrium, Leg::energy, Leg::series};
-    // of a trimmed scene: `rates` are then TrimRates::numbers
-    const TrimRates* trim = nullptr;
+    // empty: equilibrium and series; the energy leg too where the scene is small, so that it costs
+    // less than both
+    std::vector<Leg> legs = {};
+    // per output: whether it counts from the design position; empty: none does
+    std::vector<bool> changes = {};
+    bool by_parameter = false;  // one more number, the parameter of the branch [SI]
+    int threads = 1;
     std::function<void(const std::string&)> progress = {};
 };
 
-// `outputs`: of channels(model), characteristics(model) or element_channels(model). `rates`: of
-// `model`, one per number.
-Gradients gradients(const Model& model, std::span<const Channel> outputs,
-                    std::span<const VariedNumber> numbers, std::span<const ModelRate> rates,
+// `scene` is `varying` at its values, `trimmed` the result of its trim (the scene itself without
+// one), `model` compiled of that. `outputs`: of channels(model), characteristics(model) or
+// element_channels(model).
+Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& model,
+                    const VaryingScene& varying, std::span<const Channel> outputs,
                     const GradientOptions& options = {});
 
 }  // namespace elastocheck::compare

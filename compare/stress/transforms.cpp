@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "models/kinds.hpp"
 #include "models/laws.hpp"
-#include "models/rates/fields.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -227,8 +227,78 @@ Scene scaled(const Scene& original, double length, double force) {
     return scene;
 }
 
+namespace {
+
+// The numbers of the members of kinds.
+struct Numbers {
+    const std::function<void(double&)>& visit;
+
+    void all(std::span<double> numbers) const {
+        for (double& x : numbers) visit(x);
+    }
+    void operator()(Vector3d& v) const { all({v.data(), 3}); }
+    void operator()(Point& p) const { (*this)(p.s_local); }
+    void operator()(Direction& u) const { (*this)(u.u_local); }
+    void operator()(Quaterniond& q) const { all({q.coeffs().data(), 4}); }
+    void operator()(Marker& m) const { (*this)(m.s_local), (*this)(m.A_local); }
+    void operator()(Length<double> x) const { visit(x.value); }
+    void operator()(PlaneAngle<double> x) const { visit(x.value); }
+    void operator()(ForceAndMoment<Vector6> x) const { all({x.value.data(), 6}); }
+    void operator()(Deformation<Vector6> x) const { all({x.value.data(), 6}); }
+    void operator()(LoadVector<Vector3d> x) const { (*this)(x.value); }
+    void operator()(ScalarLaw& law) const {
+        std::visit(overloaded{[&](LinearRate& u) { visit(u.k); },
+                              [&](elastocheck::Curve& u) {
+                                  all(u.knots);
+                                  for (auto& piece : u.pieces) all(piece);
+                              }},
+                   law);
+    }
+    void operator()(SpatialLaw& law) const {
+        std::visit(overloaded{[&](LinearStiffness& u) {
+                                  all({u.K.data(), 36});
+                              },
+                              [&](PerAxis& u) {
+                                  for (ScalarLaw& axis : u.axis) (*this)(axis);
+                              }},
+                   law);
+    }
+    void driven(Driven& what) const {
+        each_member(what, overloaded{[&](Load& load) { each_member(load.kind, *this); },
+                                     [&](ForceAndMoment<Vector6> x) { (*this)(x); }});
+    }
+};
+
+}  // namespace
+
 void for_each_number(Scene& scene, const std::function<void(double&)>& visit) {
-    rates::each_number(scene, visit);
+    const Numbers numbers{visit};
+    for (auto& point : scene.hardpoints) numbers(point.position);
+    for (auto& body : scene.bodies) numbers(body.design.r), numbers(body.design.p);
+    for (auto& joint : scene.joints) each_member(joint.kind, numbers);
+    for (auto& elastic : scene.elastics) each_member(elastic.kind, numbers);
+    for (auto& load : scene.static_loads) each_member(load.kind, numbers);
+    for (auto& branch : scene.branches) {
+        visit(branch.from), visit(branch.to);
+        for (auto& driver : branch.drivers)
+            numbers.driven(driver.what), visit(driver.start), visit(driver.rate);
+    }
+    for (auto& wheel : scene.wheels) {
+        numbers(wheel.centre_local), numbers(wheel.contact_local);
+        numbers(wheel.spin_axis_local), visit(wheel.tyre_rate);
+        if (auto& axis = wheel.steering_axis) numbers(axis->lower), numbers(axis->upper);
+    }
+    for (auto& probe : scene.probes) numbers(probe.at);
+    for (auto& damper : scene.dampers) numbers(damper.i), numbers(damper.j);
+    if (auto& car = scene.vehicle)
+        for (double* x : {&car->wheelbase, &car->cg_height, &car->brake_share, &car->drive_share})
+            visit(*x);
+    if (scene.trim) {
+        for (auto& adjustment : scene.trim->adjust)
+            numbers.driven(adjustment.what), visit(adjustment.per_unit);
+        for (auto& condition : scene.trim->until)
+            if (condition.value) visit(*condition.value);
+    }
     each_part(scene, [](SpatialLaw& law) {  // one number for both entries of a symmetric matrix
         std::visit(overloaded{[](LinearStiffness& u) {
                                   u.K = Matrix6(u.K.selfadjointView<Eigen::Lower>());

@@ -11,16 +11,16 @@
 #include <variant>
 #include <vector>
 
-// Real is the type of the numbers of a scene and of a model. models/rates/ compiles the reader and
-// compile() a second time, in another namespace and with dual numbers (models/rates/dual.hpp).
-#ifdef ELASTOCHECK_REAL
-#include ELASTOCHECK_REAL
-#else
+// Real is the type of the numbers of a scene and of a model.
+//
+// All are in SI units, m, N, rad and their products; the comment of a field says which. Counts,
+// positions in lists and kinds are int and enumerations, so that a number that may be varied shows in
+// its type.
 namespace elastocheck {
 using Real = double;
 }
-#endif
 
+// ---- Bodies and what is fixed in them.
 namespace elastocheck {
 
 using BodyId = int;  // position in Scene::bodies or Model::bodies

@@ -6,12 +6,12 @@
 #include "models/compile/parts.hpp"
 #include "models/compile/passes.hpp"
 #include "models/lowering.hpp"
-#include "models/real.hpp"
+#include "models/near.hpp"
 
 namespace elastocheck::reduce {
 namespace {
 
-bool same(Real a, Real b) { return are_near(a, b, as_drawn); }
+bool same(double a, double b) { return are_near(a, b, as_drawn); }
 bool same(const Point& a, const Point& b) {
     return a.body == b.body && are_near(a.s_local, b.s_local, as_drawn);
 }

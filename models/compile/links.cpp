@@ -69,7 +69,7 @@ void shorten_links(Scene& scene) {
         const auto first_ball = ball(joint, body), second_ball = ball(scene.joints[second], body);
         if (!first_ball || !second_ball || first_ball->on_other.body == second_ball->on_other.body)
             continue;
-        const Real length = (second_ball->on_link.s_local - first_ball->on_link.s_local).norm();
+        const double length = (second_ball->on_link.s_local - first_ball->on_link.s_local).norm();
         if (!(length > 1e-9)) continue;  // coincident balls have no direction
 
         names.erase(joint.name), names.erase(scene.joints[second].name);

@@ -5,7 +5,7 @@
 
 #include "models/laws.hpp"
 #include "models/lowering.hpp"
-#include "models/real.hpp"
+#include "models/near.hpp"
 
 namespace elastocheck::reduce {
 namespace {
@@ -13,11 +13,11 @@ namespace {
 using std::cos, std::sin;
 
 // Whether the law has zero force at x within the rounding of a position [m] or [rad].
-bool is_free(const ScalarLaw& law, Real x, Real rounding) {
-    const Real below = force(law, x - rounding), above = force(law, x + rounding);
+bool is_free(const ScalarLaw& law, double x, double rounding) {
+    const double below = force(law, x - rounding), above = force(law, x + rounding);
     return std::min(below, above) <= 0 && 0 <= std::max(below, above);
 }
-bool is_free(const SpatialLaw& law, const Vector6& e, Real rounding) {
+bool is_free(const SpatialLaw& law, const Vector6& e, double rounding) {
     return std::visit(
         overloaded{[&](const LinearStiffness& u) { return Vector6(u.K * e).isZero(0); },
                    [&](const PerAxis& u) {
@@ -86,8 +86,8 @@ bool is_strained_at_design(const JointKind& joint, const Scene& scene) {
                    },
                    [](const PerpendicularDirections&) { return false; },
                    [&](const DistanceBetween& c) {
-                       const Real drawn = (position(scene, c.j) - position(scene, c.i)).norm();
-                       return !are_near(drawn, c.length, as_drawn * value_of(c.length));
+                       const double drawn = (position(scene, c.j) - position(scene, c.i)).norm();
+                       return !are_near(drawn, c.length, as_drawn * c.length);
                    },
                    [&](const DirectionAtAngle& c) {
                        const Vector3 u = cos(c.angle) * direction(scene, c.y_j) -
@@ -101,9 +101,9 @@ bool is_loaded_at_design(const ElasticKind& elastic, const Scene& scene) {
     const auto axes = [&](const Marker& m) { return design(scene, m.body).p * m.A_local; };
     bool free = false;  // an element between other members counts as loaded
     const std::vector<Point> points = points_of(elastic);
-    const Real* free_length = driven_number(elastic);
+    const double* free_length = driven_number(elastic);
     if (points.size() == 2 && free_length != nullptr) {
-        const Real length = (position(scene, points[1]) - position(scene, points[0])).norm();
+        const double length = (position(scene, points[1]) - position(scene, points[0])).norm();
         const ScalarLaw* law = scalar_law(elastic, 0);
         free = law != nullptr && is_free(*law, length - *free_length, as_drawn * length);
     }

@@ -10,7 +10,7 @@
 
 #include "models/compile/parts.hpp"
 #include "models/compile/passes.hpp"
-#include "models/real.hpp"
+#include "models/near.hpp"
 
 namespace elastocheck::reduce {
 namespace {

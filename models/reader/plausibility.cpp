@@ -25,7 +25,7 @@ void check_size(const Cursor& scene, const Units& units, const Scene& read,
     Vector3 low = Vector3::Constant(INFINITY), high = -low;
     for (const auto& point : read.hardpoints)
         low = low.cwiseMin(point.position), high = high.cwiseMax(point.position);
-    const Real extent = (high - low).maxCoeff();
+    const double extent = (high - low).maxCoeff();
     const bool huge = extent > largest_car,
                tiny = !read.wheels.empty() && extent > 0 && extent < smallest_car;
     if (!huge && !tiny) return;
@@ -37,18 +37,18 @@ void check_size(const Cursor& scene, const Units& units, const Scene& read,
 }
 
 // df/dx at the design position [SI].
-Real rate_as_drawn(const ScalarLaw& law) {
+double rate_as_drawn(const ScalarLaw& law) {
     constexpr double small = 1e-5;  // [m], [rad]
     return (force(law, small) - force(law, -small)) / (2 * small);
 }
 
 struct Rates {
-    Real translational = 0, rotational = 0;  // the largest of each kind [N/m], [N·m/rad]
+    double translational = 0, rotational = 0;  // the largest of each kind [N/m], [N·m/rad]
 };
 Rates rates_of(const SpatialLaw& law) {
     Rates rates;
-    const auto see = [&](Eigen::Index k, Real rate) {
-        Real& largest = k < 3 ? rates.translational : rates.rotational;
+    const auto see = [&](Eigen::Index k, double rate) {
+        double& largest = k < 3 ? rates.translational : rates.rotational;
         largest = std::max(largest, rate);
     };
     std::visit(overloaded{[&](const LinearStiffness& u) {
@@ -74,7 +74,7 @@ void check_bushings(const Cursor& scene, const Units& units, const Scene& read,
         const auto* law = member<SpatialLaw>(element->kind);
         if (law == nullptr) continue;
         const Rates rates = rates_of(*law);
-        const Real radius = sqrt(rates.rotational / rates.translational);
+        const double radius = sqrt(rates.rotational / rates.translational);
         if (!(rates.rotational > 0 && radius < smallest_bushing)) continue;
         if (!first.empty()) {
             ++others;

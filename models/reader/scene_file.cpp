@@ -21,7 +21,6 @@
 #include "models/reader/parsed_scene.hpp"
 #include "models/reader/plausibility.hpp"
 #include "models/reader/settings.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck {
 namespace reader {
@@ -252,7 +251,6 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     check_all_held(scene, result);
     read_trim(scene, defs.units, by_name, drivable, result);
     read_branches(scene, defs.units, by_name, drivable, result);
-    [[maybe_unused]] const ByValue by_value;
     if (warnings) *warnings = implausible(scene, defs.units, result);
     return result;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recursive/batch/structure.hpp"
+#include "models/structure.hpp"
 #include "recursive/diagnosis/length.hpp"
 #include "recursive/formula/recentre.hpp"
 #include "recursive/series/path.hpp"

@@ -3,8 +3,8 @@
 
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
+#include "models/structure.hpp"
 #include "recursive/batch/pack.hpp"
-#include "recursive/batch/structure.hpp"
 
 namespace elastocheck::recursive {
 namespace {
@@ -32,7 +32,7 @@ void solve_batch(const Model& design, const Analysis& analysis, std::span<const 
             "a batch records at least one step, with the parameter of the branch");
     for (const auto& branch : design.branches) check(design, branch);
     std::vector<int> expected, structure;
-    batch::structure(design, expected);
+    elastocheck::structure(design, expected);
     std::optional<batch::Pack> pack;
     if (has_lanes(design, analysis)) pack.emplace(design, analysis, options);
     std::vector<std::size_t> together;
@@ -55,7 +55,7 @@ void solve_batch(const Model& design, const Analysis& analysis, std::span<const 
     };
     for (std::size_t v = 0; v < variants.size(); ++v) {
         for (const auto& branch : variants[v].branches) check(variants[v], branch);
-        batch::structure(variants[v], structure);
+        elastocheck::structure(variants[v], structure);
         if (!pack || structure != expected) {
             solve_alone(v, variants[v], options, visit);
             continue;

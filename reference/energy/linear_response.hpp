@@ -5,7 +5,6 @@
 
 #include "elastocheck/energy.hpp"
 #include "models/response.hpp"
-#include "models/state_rate.hpp"
 
 namespace elastocheck::reference::energy {
 
@@ -27,16 +26,5 @@ namespace elastocheck::reference::energy {
 // has one pose per body; std::invalid_argument otherwise.
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances);
-
-// The responses with their derivatives by numbers of the model, each of `rates` with its branch
-// first. The Hessian and the mixed derivatives of V + λᵀΦ are exact; their derivative along a
-// response, of third order, is an extrapolated central difference of them:
-//
-//   d/ds ≈ (8 (f(h) - f(-h)) - (f(2h) - f(-2h))) / 12h,   h a motion of 1e-4 m or rad, less near a knot
-//
-// Outcomes and throws as those above and as those of sensitivity().
-ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,
-                             std::span<const Disturbance> disturbances,
-                             std::span<const Model> rates);
 
 }  // namespace elastocheck::reference::energy

@@ -71,12 +71,13 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
 }
 
 Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_rate,
-              const VectorXd& rounding) {
+              double rounding) {
     VectorXd t = VectorXd::Zero(b_SI.size());
     if (Phi_rate.size() > 0) {
         const VectorXd driven_rate = -at.D.cwiseProduct(Phi_rate);
         t = shortest(at.state.at, driven_rate);
-        if (!((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
+        if (std::isfinite(rounding) &&
+            !((at.state.at.J_t.transpose() * t - driven_rate).norm() <= open * driven_rate.norm()))
             return {
                 Outcome::inconsistent_constraints, "redundant joints prevent this motion", {}, {}};
     }
@@ -97,8 +98,7 @@ Answer answer(const StateTangent& at, const VectorXd& b_SI, const VectorXd& Phi_
     // Where the stiffness in W is only rounding, the corrections do not converge to a solution.
     if (!(remains <= unanswered * size))
         return {Outcome::singular, "the stiffness of a motion vanishes", {}, {}};
-    const double noise = rounding.size() > 0 ? largest(at.S.cwiseProduct(rounding)) / energy : 0.0;
-    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size + noise))
+    if (!(largest(at.idle.transpose() * left) <= rest_on_idle * size + rounding))
         return {Outcome::loaded_idle_mode, "a motion that nothing resists is loaded", {}, {}};
     return {Outcome::converged, "", at.S.cwiseProduct(t), std::move(left)};
 }

@@ -1,5 +1,5 @@
 // Linearised conditions at a given state and their answers: common part of the response to
-// disturbances and of the sensitivity to numbers of the model.
+// disturbances and of the states of neighbouring models.
 #pragma once
 
 #include <Eigen/LU>
@@ -28,8 +28,8 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
 
 // The change dx, SI, of the stationary point where its conditions change by
 //   b   of ∂V/∂x + Φ_qᵀ λ [6nb],   Phi_rate   of Φ [m]; empty: none
-// Idle motions are held. `rounding` of b [6nb] where that is more than its own last digits: a
-// smaller load on an idle motion does not count.
+// Idle motions are held. `rounding` of b, in units of F·L per ξ, where that is more than its own last
+// digits: a smaller load on an idle motion does not count; infinite: neither that nor Φ is judged.
 struct Answer {
     Outcome outcome = Outcome::converged;
     std::string what;  // half a sentence on the failure
@@ -37,7 +37,7 @@ struct Answer {
     Eigen::VectorXd left;  // what the multipliers have to balance: of ∂V/∂ξ, units of F·L
 };
 Answer answer(const StateTangent& at, const Eigen::VectorXd& b, const Eigen::VectorXd& Phi_rate,
-              const Eigen::VectorXd& rounding = {});
+              double rounding = 0);
 // The change dλ, SI, that belongs to it.
 Eigen::VectorXd multiplier_rates(const StateTangent& at, const Answer& answer);
 

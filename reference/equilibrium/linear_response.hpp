@@ -5,7 +5,6 @@
 
 #include "elastocheck/equilibrium.hpp"
 #include "models/response.hpp"
-#include "models/state_rate.hpp"
 
 namespace elastocheck::reference::equilibrium {
 
@@ -26,12 +25,5 @@ namespace elastocheck::reference::equilibrium {
 // body.
 Response linear_response(const Model& model, const Branch& branch, const Equilibrium& state,
                          std::span<const Disturbance> disturbances);
-
-// The responses with their derivatives by numbers of the model (models/state_rate.hpp), each of
-// `rates` with its branch first. J and ∂E/∂s are differentiated by hyper-dual numbers through the
-// same equations. Outcomes and throws as those above and as those of sensitivity().
-ResponseRates response_rates(const Model& model, const Branch& branch, const Equilibrium& state,
-                             std::span<const Disturbance> disturbances,
-                             std::span<const Model> rates);
 
 }  // namespace elastocheck::reference::equilibrium

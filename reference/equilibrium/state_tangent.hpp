@@ -1,5 +1,5 @@
 // Linearised system at a given state and its answers: common part of the response to disturbances
-// and of the sensitivity to numbers of the model.
+// and of the states of neighbouring models.
 #pragma once
 
 #include <string>

@@ -193,7 +193,7 @@ KeyOutputs key_outputs(const Model& model) {
 // "sensitivity": effects of the numbers of the scene on the key figures along
 // the leading sweep.
 void add_sensitivity(json& document, const LoadedScene& loaded, const std::string& file,
-                     const Settings& settings, std::vector<std::string>& reasons) {
+                     const Settings& settings, int threads) {
     const std::string source;
     const auto sweep = leading_sweep({&document, "", &source});
     if (!sweep) return;
@@ -201,36 +201,37 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
     for (const auto& branch : sweep->branches) branches.push_back(branch["name"].text());
     const KeyOutputs key = key_outputs(loaded.model);
     // numbers of the suspension, not of what acts on it
-    auto rates = all_model_rates(file, settings);
-    std::erase_if(rates, [](const ModelRate& rate) {
-        return std::ranges::any_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
-                                   [&](const char* group) { return rate.path.starts_with(group); });
+    const auto varying = compare::varying(file, settings, [](const std::string& path) {
+        return std::ranges::none_of(std::array{"loads.", "branches.", "trim.", "vehicle."},
+                                    [&](const char* group) { return path.starts_with(group); });
     });
     std::vector<compare::EffectRow> rows;
-    double apart = 0;
-    long compared = 0;
+    compare::Disagreement worst;
     bool conclusive = true;
     // a characteristic costs several times an angle, and is shown at one station
     const auto add = [&](const std::vector<compare::Channel>& outputs, bool of_design) {
         if (outputs.empty()) return;
-        compare::GradientOptions options{.points = 1, .branches = branches};
+        compare::GradientOptions options{.points = 1, .branches = branches, .threads = threads};
         if (of_design) options.stations[branches.front()] = {0};
         if (of_design) options.branches = {branches.front()};
-        const auto all = gradients_of(file, settings, loaded, outputs, rates, options);
+        const auto all = gradients_of(file, settings, loaded, outputs, varying, options);
         for (auto& row : compare::effect_rows(all))
             if ((row.at == 0) == of_design) rows.push_back(std::move(row));
-        for (const auto& side : all.sides)
-            apart = std::max(apart, side.worst.share), compared += side.worst.compared;
+        for (const auto& side : all.sides) {
+            worst.compared += side.worst.compared;
+            if (side.worst.share <= worst.share) continue;
+            worst.share = side.worst.share, worst.where = side.worst.where;
+        }
         conclusive = conclusive && all.conclusive();
     };
     add(key.at_design, true);
     add(key.at_ends, false);
     if (rows.empty()) return;
     document["sensitivity"] = {{"conclusive", conclusive},
-                               {"compared", compared},
-                               {"apart", apart},
+                               {"compared", worst.compared},
+                               {"apart", worst.share},
+                               {"where", conclusive ? "" : worst.where},
                                {"effects", table_json(rows)}};
-    if (!conclusive) reasons.emplace_back("the derivatives of the legs do not agree");
 }
 
 json solve_scene(const std::string& file, const ReportRequest& request, int threads,
@@ -264,7 +265,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
             !why.empty())
             reasons.push_back(why);
     if (!request.quick && request.only != "evidence")
-        add_sensitivity(document, loaded, file, request.settings, reasons);
+        add_sensitivity(document, loaded, file, request.settings, threads);
     const auto tolerance =
         compare::parse_tolerance(request.tolerance, compare::ToleranceParts::with_shares);
     if (studies) {

@@ -7,6 +7,7 @@
 #include "reports/command/grammar/exit_code.hpp"
 #include "reports/command/options/gradients_of.hpp"
 #include "reports/command/options/load_scene.hpp"
+#include "reports/command/options/running.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
@@ -23,15 +24,17 @@ struct SensitivityRequest {
     std::string csv;  // file of all derivatives; empty: none
     int most = 5;
     bool as_json = false;
+    Running running;
 };
 
 // Exit code 0: every leg that applies follows every branch and they agree; else 3.
 int sensitivity(const SensitivityRequest& request, const Delivery& delivery) {
     if (!request.csv.empty()) check_may_write(request.csv, gradients_file);
     const LoadedScene loaded = load_scene(request.scene, request.settings);
-    const compare::Gradients all =
-        gradients_of(request.scene, request.settings, loaded, request.gradients,
-                     [](const std::string& what) { progress(what); });
+    GradientsRequest gradients = request.gradients;
+    gradients.threads = threads_of(request.running);
+    const compare::Gradients all = gradients_of(request.scene, request.settings, loaded, gradients,
+                                                [](const std::string& what) { progress(what); });
     progress("");
     if (!request.csv.empty()) write_whole(request.csv, csv(sensitivity_table(all)), gradients_file);
     delivery.print_text(sensitivity_text(all, request.most));
@@ -70,6 +73,8 @@ Command sensitivity_command() {
           "numbers shown per output, those with the largest effect (default: 5; 0: all)"},
          {"--csv", Text{&request->csv, a_file()}, "file of all derivatives at all stations"},
          set_option(request->settings),
+         jobs_option(request->running),
+         quiet_option(request->running),
          json_option(request->as_json)},
         [request](const std::string& line) {
             return sensitivity(*request, {.as_json = request->as_json, .command = line});

@@ -16,8 +16,8 @@
 #include "compare/variants/sampler.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/trim.hpp"
+#include "models/kinds.hpp"
 #include "models/overloaded.hpp"
-#include "models/rates/fields.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "reports/files/csv_table.hpp"
@@ -562,7 +562,13 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
             whole.require("figures").fail(error.what());
         }
     }();
-    const auto numbers = elastocheck::rates::archive_of(scene).values;
+    std::vector<double> numbers;  // of curves, whose tables may be in other files
+    for (const Elastic& elastic : design.elastics)
+        each_curve(elastic.kind, [&](std::size_t, const elastocheck::Curve& curve) {
+            std::ranges::copy(curve.knots, std::back_inserter(numbers));
+            for (const auto& piece : curve.pieces)
+                std::ranges::copy(piece, std::back_inserter(numbers));
+        });
     const Provenance made = provenance();
     StudyIdentity identity{
         .scene = input_hash(text + std::string(reinterpret_cast<const char*>(numbers.data()),

@@ -203,17 +203,9 @@ VectorXd values_of(const std::vector<Number>& numbers) {
     return p;
 }
 
-RatesAt rates_with(const std::string& name, const std::vector<std::string>& paths) {
-    return [name, paths](const VectorXd& p) {
-        std::vector<Setting> settings;
-        for (std::size_t k = 0; k < paths.size(); ++k)
-            settings.push_back(setting(paths[k], p[static_cast<Index>(k)]));
-        return model_rates(std::string(ELASTOCHECK_SCENES "/") + name + ".yaml", settings, paths);
-    };
-}
 Figures figures_of(const std::string& name, const std::vector<std::string>& paths,
                    std::vector<Figure> figures) {
-    return exact_figures(scene_with(name, paths), rates_with(name, paths), std::move(figures));
+    return solved_figures(scene_with(name, paths), numbers_of(name, paths), std::move(figures));
 }
 
 // Two upright springs: z = 400 + F / (k_1 + k_2) mm.
@@ -334,7 +326,6 @@ TEST(SolveFor, FindsTheTieRodWithoutBumpSteer) {
 TEST(SolveFor, SaysWhyANumberDoesNotMoveAFigure) {
     const auto reasons =
         why_still(scene_with("parallel_springs", {"points.foot_1.x", "springs.first.rate"}),
-                  rates_with("parallel_springs", {"points.foot_1.x", "springs.first.rate"}),
                   {.name = "centre_x", .branch = "up", .at = 3000},
                   numbers_of("parallel_springs", {"points.foot_1.x", "springs.first.rate"}),
                   vector({-200, 30}));

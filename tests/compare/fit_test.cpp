@@ -195,7 +195,6 @@ TEST(Fit, ProposesTheFigureThatMovesMostWithAnUndeterminedCombination) {
 
 struct Rig {
     SceneAt scene;
-    RatesAt rates;
     std::vector<Number> numbers;
     VectorXd start, step;
 };
@@ -209,9 +208,6 @@ Rig rig(const std::string& name, const std::vector<std::string>& paths) {
         return all;
     };
     made.scene = [file, settings](const VectorXd& p) { return read_scene(file, settings(p)); };
-    made.rates = [file, settings, paths](const VectorXd& p) {
-        return model_rates(file, settings(p), paths);
-    };
     for (const auto& path : paths)
         for (const auto& number : support::scene(name).numbers)
             if (number.path == path) made.numbers.push_back(number);
@@ -246,7 +242,7 @@ double coverage_of_a_bushing(int rigs) {
     Curves curves;
     add(curves, "pull", 4000, 5, {"centre_x", "centre_y", "centre_z"});
     add(curves, "push", -4000, 5, {"centre_x", "centre_y", "centre_z"});
-    return coverage(exact_figures(of.scene, of.rates, curves.figures), of.start, 1.1 * of.start,
+    return coverage(solved_figures(of.scene, of.numbers, curves.figures), of.start, 1.1 * of.start,
                     of.step, curves.column, {0.02, 0.02, 0.02}, rigs);
 }
 TEST(Fit, IntervalsOfTheRatesOfABushingContainTheTruth) {
@@ -269,7 +265,7 @@ TEST(Fit, FindsAHardpointThatIsTwoMillimetresAway) {
     Curves curves;
     add(curves, "jounce", 3000, 10, {"toe", "camber", "wheel_centre_y", "wheel_centre_z"});
     add(curves, "rebound", -3000, 10, {"toe", "camber", "wheel_centre_y", "wheel_centre_z"});
-    const Figures figures = exact_figures(of.scene, of.rates, curves.figures);
+    const Figures figures = solved_figures(of.scene, of.numbers, curves.figures);
     VectorXd truth = of.start;
     truth[2] += 2e-3;
     VectorXd y = figures.value(truth);
@@ -353,7 +349,7 @@ TEST(NightlyFit, FindsAHardpointThatIsTwoMillimetresAwayAmongTwentyFourCoordinat
         add(curves, "braking", sign * 3000, 4, outputs);
         add(curves, "aligning", sign * 150, 4, outputs);
     }
-    const Figures figures = exact_figures(of.scene, of.rates, curves.figures, 2);
+    const Figures figures = solved_figures(of.scene, of.numbers, curves.figures, 2);
     const auto wrong =
         static_cast<Index>(std::ranges::find(paths, "points.tie_rod_inner.z") - paths.begin());
     VectorXd truth = of.start;
@@ -384,7 +380,7 @@ TEST(Fit, NamesACombinationThatTheDataDoNotDetermine) {
     const Rig of = rig("parallel_springs", {"springs.first.rate", "springs.second.rate"});
     Curves curves;
     add(curves, "up", 3000, 8, {"centre_z"});
-    const Figures figures = exact_figures(of.scene, of.rates, curves.figures);
+    const Figures figures = solved_figures(of.scene, of.numbers, curves.figures);
     VectorXd truth(2);
     truth << 33, 47;
     const Fitted found =
@@ -401,7 +397,7 @@ TEST(Fit, WithoutMoreValuesThanNumbersHasNoInterval) {
     const Rig of = rig("parallel_springs", {"springs.first.rate"});
     Curves curves;
     add(curves, "up", 3000, 1, {"centre_z"});
-    const Figures figures = exact_figures(of.scene, of.rates, curves.figures);
+    const Figures figures = solved_figures(of.scene, of.numbers, curves.figures);
     VectorXd y(1);
     y << 437.5;
     const Fitted found = fit(figures, measured(y, curves.column, of.start, of.step));

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <map>
 #include <numbers>
-#include <optional>
+#include <set>
 
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
@@ -34,32 +35,43 @@ std::vector<Channel> outputs_of(const Model& model) {
 }
 
 struct Asked {
+    Scene scene;
+    Trimmed trimmed;
     Model model;
     std::vector<Channel> outputs;
-    std::vector<ModelRate> rates;
-    std::vector<VariedNumber> numbers;
-    std::optional<TrimRates> trim;
+    VaryingScene varying;
 };
 Asked asked(const std::string& file, const std::vector<Setting>& settings = {},
             const std::string& number = "") {
     Asked all;
-    const Scene scene = read_scene(file, settings);
-    const Trimmed trimmed = trim(scene);
-    all.model = compile(trimmed.scene);
+    all.scene = read_scene(file, settings);
+    all.trimmed = trim(all.scene);
+    all.model = compile(all.trimmed.scene);
     all.outputs = outputs_of(all.model);
-    all.rates = number.empty() ? all_model_rates(file, settings)
-                               : model_rates(file, settings, std::vector{number});
-    for (const auto& rate : all.rates) all.numbers.push_back(varied_number(rate, scene.numbers));
-    if (trimmed.record) {
-        all.trim = trim_rates(scene, trimmed, all.rates);
-        all.rates = all.trim->numbers;
-    }
+    all.varying = varying(
+        file, settings, [&](const std::string& path) { return number.empty() || path == number; });
     return all;
 }
+Gradients gradients_of(const Asked& all, GradientOptions options) {
+    return gradients(all.scene, all.trimmed, all.model, all.varying, all.outputs, options);
+}
 Gradients gradients_of(const Asked& all, int points, std::vector<Leg> legs) {
-    return gradients(
-        all.model, all.outputs, all.numbers, all.rates,
-        {.points = points, .legs = std::move(legs), .trim = all.trim ? &*all.trim : nullptr});
+    return gradients_of(all, {.points = points, .legs = std::move(legs)});
+}
+// Of a scene without a trim.
+Gradients gradients_of(const std::string& text, std::span<const Channel> outputs,
+                       const std::vector<std::string>& paths, const GradientOptions& options) {
+    const Scene scene = parse_scene(text, "scene.yaml", {});
+    VaryingScene varying;
+    for (const std::string& path : paths)
+        varying.numbers.push_back(
+            varied_number(*std::ranges::find(scene.numbers, path, &Number::path)));
+    varying.with = [&](std::size_t k, double by) {
+        const VariedNumber& number = varying.numbers[k];
+        return parse_scene(text, "scene.yaml",
+                           std::vector{setting(number.path, number.value + by)});
+    };
+    return gradients(scene, {scene, {}}, compile(scene), varying, outputs, options);
 }
 
 // The legs agree on every entry of a scene; returns the number of compared ones.
@@ -108,6 +120,81 @@ std::vector<double> outputs_with(const std::string& file, const Setting& set, do
         .values;
 }
 
+// ---- Recorded values.
+
+// Derivatives of 516 outputs by numbers that dual numbers through the reader, the model, the
+// equilibrium leg and the outputs gave: with trims, an axle, bushings, stops, beams; positions,
+// reactions, forces of elements, characteristics. `row`: the largest of the output's by its steps.
+struct Recorded {
+    std::string side, output, number;
+    double parameter = 0, derivative = 0, step = 0, row = 0;
+};
+std::map<std::string, std::vector<Recorded>> recorded() {
+    std::ifstream file(std::string(ELASTOCHECK_SCENES) +
+                       "/../../tests/compare/exact_derivatives.csv");
+    std::map<std::string, std::vector<Recorded>> all;
+    std::string line;
+    std::getline(file, line);
+    while (std::getline(file, line)) {
+        std::vector<std::string> words(1);
+        bool quoted = false;
+        for (const char c : line)
+            if (c == '"')
+                quoted = !quoted;
+            else if (c == ',' && !quoted)
+                words.emplace_back();
+            else
+                words.back() += c;
+        all[words.at(0)].push_back({words.at(1), words.at(3), words.at(4), std::stod(words.at(2)),
+                                    std::stod(words.at(5)), std::stod(words.at(6)),
+                                    std::stod(words.at(7))});
+    }
+    return all;
+}
+
+TEST(Gradients, AreTheRecordedExactOnes) {
+    int compared = 0;
+    std::map<Leg, double> worst;
+    for (const auto& [scene, entries] : recorded()) {
+        Asked all = asked(file_of(scene), {}, "none");
+        std::set<std::string> outputs, numbers, branches;
+        for (const Recorded& entry : entries) {
+            outputs.insert(entry.output);
+            for (const auto& path : paths_in(entry.number)) numbers.insert(path);
+            branches.insert(entry.side.substr(0, entry.side.find(" to ")));
+        }
+        std::erase_if(all.outputs, [&](const Channel& c) { return !outputs.contains(c.name); });
+        all.varying = varying(file_of(scene), {},
+                              [&](const std::string& path) { return numbers.contains(path); });
+        const Gradients by =
+            gradients_of(all, {.points = 1, .branches = {branches.begin(), branches.end()}});
+        EXPECT_TRUE(by.conclusive());
+        for (const Recorded& entry : entries) {
+            const auto side = std::ranges::find(by.sides, entry.side, &SideGradients::name);
+            const auto k = std::ranges::find(by.numbers, entry.number, &VariedNumber::path) -
+                           by.numbers.begin();
+            const int c = find_channel(by.outputs, entry.output);
+            ASSERT_TRUE(side != by.sides.end() && k < std::ssize(by.numbers) && c >= 0)
+                << scene << ": " << entry.output << " by " << entry.number;
+            for (const LegGradients& leg : side->legs)
+                for (std::size_t s = 0; s < leg.at.size(); ++s) {
+                    if (std::abs(in_unit(side->unit) * side->a[s] - entry.parameter) > 1e-9)
+                        continue;
+                    const double found = leg.at[s](c, k),
+                                 off = std::abs(found - entry.derivative) * entry.step / entry.row;
+                    EXPECT_LE(off, 1e-7)
+                        << scene << ", " << entry.side << " at " << entry.parameter << ": "
+                        << entry.output << " by " << entry.number << ", " << name(leg.leg) << ": "
+                        << found << ", exact " << entry.derivative;
+                    worst[leg.leg] = std::max(worst[leg.leg], off);
+                    ++compared;
+                }
+        }
+    }
+    EXPECT_GE(compared, 1032);  // by two legs at least
+    for (const auto& [leg, off] : worst) RecordProperty(name(leg), fmt::format("{:.1e}", off));
+}
+
 // Against extrapolated differences of whole solutions, trim included.
 TEST(Gradients, AreTheDifferencesOfScenesWithANumberSet) {
     struct Case {
@@ -123,8 +210,8 @@ TEST(Gradients, AreTheDifferencesOfScenesWithANumberSet) {
          }) {
         const std::string file = file_of(scene);
         const Asked all = asked(file, {}, number);
-        const auto found = all.numbers.begin();
-        const auto k = found - all.numbers.begin();
+        const auto found = all.varying.numbers.begin();
+        constexpr Eigen::Index k = 0;
         const Gradients by = gradients_of(all, 1, {Leg::equilibrium});
         const double a = by.sides.front().a.back();
         const double h = found->unit == "mm" ? 1e3 * step : step;
@@ -178,10 +265,9 @@ void each_derivative(const std::string& scene, const char* output, const char* n
     const Asked all = asked(file_of(scene));
     const Gradients by = gradients_of(all, 4, {Leg::equilibrium, Leg::energy, Leg::series});
     const auto c = find_channel(all.outputs, output);
-    const auto k =
-        std::ranges::find(all.numbers, number, &VariedNumber::path) - all.numbers.begin();
+    const auto k = std::ranges::find(by.numbers, number, &VariedNumber::path) - by.numbers.begin();
     ASSERT_GE(c, 0);
-    ASSERT_LT(k, std::ssize(all.numbers));
+    ASSERT_LT(k, std::ssize(by.numbers));
     int checked = 0;
     for (const auto& side : by.sides) {
         if (side.branch != branch) continue;
@@ -255,18 +341,14 @@ constexpr double in_deg = 180 / std::numbers::pi;
 template <class Check>
 void each_leg(const std::string& text, const std::vector<std::string>& names,
               const std::vector<std::string>& paths, double at, const Check& check) {
-    const Scene scene = parse_scene(text, "closed.yaml", {});
-    const Model model = compile(scene);
+    const Model model = compile(parse_scene(text, "closed.yaml", {}));
     const auto every = outputs_of(model);
     std::vector<Channel> outputs;
     for (const auto& output : names)
         outputs.push_back(every.at(static_cast<std::size_t>(find_channel(every, output))));
-    const auto rates = model_rates(text, "closed.yaml", {}, paths);
-    std::vector<VariedNumber> numbers;
-    for (const auto& rate : rates) numbers.push_back(varied_number(rate, scene.numbers));
-    const Gradients by = gradients(model, outputs, numbers, rates,
-                                   {.stations = {{model.branches.front().name, {at}}},
-                                    .legs = {Leg::equilibrium, Leg::energy, Leg::series}});
+    const Gradients by = gradients_of(text, outputs, paths,
+                                      {.stations = {{model.branches.front().name, {at}}},
+                                       .legs = {Leg::equilibrium, Leg::energy, Leg::series}});
     ASSERT_EQ(by.sides.size(), 1u);
     for (const auto& leg : by.sides.front().legs) {
         ASSERT_EQ(leg.at.size(), 1u) << leg.failure;
@@ -379,18 +461,12 @@ TEST(Gradients, AtACornerBothSidesAreThoseOfTheLawOnThisSide) {
         "loads: {up: {on: block, at: top, force: [0, 0, 1]}}\n"
         "branches: {up: {load: up, to: 400, steps: 2}}\n"
         "probes: {tip: {on: block, at: top}}\n";
-    const Scene scene = parse_scene(text, "stop.yaml", {});
-    const Model model = compile(scene);
-    const auto every = outputs_of(model);
+    const auto every = outputs_of(compile(parse_scene(text, "stop.yaml", {})));
     const int z = find_channel(every, "tip_z");
     ASSERT_GE(z, 0);
-    const auto rates = model_rates(
-        text, "stop.yaml", {},
-        std::vector<std::string>{"springs.coil.rate", "springs.coil.rebound_stop.clearance"});
-    std::vector<VariedNumber> numbers;
-    for (const auto& rate : rates) numbers.push_back(varied_number(rate, scene.numbers));
-    const Gradients by = gradients(model, {&every[static_cast<std::size_t>(z)], 1}, numbers, rates,
-                                   {.stations = {{"up", {200}}}, .legs = {Leg::equilibrium}});
+    const Gradients by = gradients_of(text, {&every[static_cast<std::size_t>(z)], 1},
+                                      {"springs.coil.rate", "springs.coil.rebound_stop.clearance"},
+                                      {.stations = {{"up", {200}}}, .legs = {Leg::equilibrium}});
     const SideGradients& side = by.sides.front();
     ASSERT_EQ(side.one_sided.size(), 1u);
     EXPECT_NE(side.why_number[0][0].find("corner of its law"), std::string::npos);

@@ -272,12 +272,8 @@ TEST(Optimise, KeepsToeOfAMcPhersonWithinABandOverItsTravel) {
                 .start = list_of({-0.015}),
                 .least = list_of({-0.05}),
                 .most = list_of({0.02})};
-    const RatesAt of_scene = [path](const VectorXd& p) {
-        return model_rates(ELASTOCHECK_SCENES "/mcpherson.yaml",
-                           std::vector<Setting>{setting(path, p[0])},
-                           std::vector<std::string>{path});
-    };
-    const Figures toe = exact_figures(scene, of_scene, figures);
+    const Number number{path, -0.015, "m"};
+    const Figures toe = solved_figures(scene, {number}, figures);
     const Optimum found = from(toe, goals);
     EXPECT_GT(found.before.cwiseAbs().maxCoeff(), 0.15);
     ASSERT_TRUE(found.met);

@@ -25,7 +25,6 @@ struct Part {
 const std::vector<Part> parts{
     {"models/reader", {"read_scene"}, {"models"}},  // before the part whose folder it is in
     {"models/import", {}, {"models/reader", "models"}},
-    {"models/rates", {"model_rates"}, {"models/reader", "models"}},
     {"models", {"mechanism", "scene", "model", "compile", "equilibrium_path"}, {}},
     {"recursive", {"recursive", "recursive_method"}, {"models"}},
     {"reference/equilibrium", {"equilibrium"}, {"models"}},
@@ -33,12 +32,12 @@ const std::vector<Part> parts{
     {"reference/certificate", {}, {"models"}},
     {"compare",
      {"*"},  // every other public header
-     {"models", "models/rates", "recursive", "reference/equilibrium", "reference/energy",
+     {"models", "models/reader", "recursive", "reference/equilibrium", "reference/energy",
       "reference/certificate"}},
     {"reports",
      {},
-     {"models/reader", "models/import", "models/rates", "models", "recursive",
-      "reference/equilibrium", "reference/energy", "reference/certificate", "compare"}},
+     {"models/reader", "models/import", "models", "recursive", "reference/equilibrium",
+      "reference/energy", "reference/certificate", "compare"}},
 };
 
 // A solver library belongs to one leg, and to its .cpp files. The numbers of a scene that

@@ -210,6 +210,34 @@ TEST(OptimiseCommand, AddsPointsWhereACurveLeavesItsBandBetweenItsPoints) {
     }
 }
 
+// An arm on a revolute joint, whose branch drives the travel over which a curve lies.
+const std::string arm =
+    "elastocheck: 1\nname: arm\nunits: {length: mm, angle: deg, force: N}\n"
+    "points: {in: [400, 500, 0], c: [0, 750, 0], p: [0, 750, -320]}\n"
+    "bodies: {arm: {origin: c}}\n"
+    "joints: {in: {type: revolute, bodies: [arm, ground], at: in, axis: [0.2, 1, 0.1]}}\n"
+    "branches: {travel: {drive: travel, from: -60, to: 60, steps: 24}}\n"
+    "wheel: {body: arm, centre: c, contact_patch: p, spin_axis: y, side: left}\n";
+
+TEST(OptimiseCommand, TakesACurveOverTheTravelThatItsBranchDrives) {
+    const Folder folder;
+    const std::string scene = folder.write("arm.yaml", arm);
+    for (const auto& [file, goals] :
+         {std::pair{scene, std::string("vary: {points.in.z: [-30, 30]}\n"
+                                       "goals: [{figure: camber, over: travel, from: -40, to: 40, "
+                                       "within: [-1, 1]}]\n")},
+          {scenes + "/double_wishbone.yaml",
+           "vary: {points.tie_rod_inner.z: [0.1, 0.3]}\n"
+           "goals: [{figure: toe, over: travel, from: -60, to: 60, points: 5, change: true, "
+           "within: [-0.2, 0.1]}]\n"}}) {
+        const Said said =
+            elastocheck_says("optimise " + file + " " + folder.write("goals.yaml", goals) +
+                             " --starts 1 --quiet --json");
+        ASSERT_LE(said.code, 1) << said.err;
+        EXPECT_TRUE(json::parse(said.out).contains("numbers"));
+    }
+}
+
 TEST(OptimiseCommand, RefusesAMistakeWithItsLine) {
     const Folder folder;
     const std::string vary = "vary: {springs.first.rate: [10, 60]}\n";
@@ -254,6 +282,23 @@ TEST(OptimiseCommand, RefusesAMistakeWithItsLine) {
 }
 
 // ---- fit
+
+TEST(FitCommand, TakesPointsOverTheTravelThatTheBranchDrives) {
+    const Folder folder;
+    const Said said = expect_says("fit " + folder.write("arm.yaml", arm) +
+                                      " --set points.in.z=3 --vary points.in.z" + " --measured " +
+                                      folder.write("rig.csv",
+                                                   "travel_mm,toe_deg,camber_deg\n"
+                                                   "-60,0.86907282346310277,1.4805067754802927\n"
+                                                   "0,0,0\n"
+                                                   "60,-0.66046268975544742,-1.5751502146793623\n"
+                                                   "90,-1,-2\n") +
+                                      " --json",
+                                  0);
+    const json fitted = json::parse(said.out);
+    EXPECT_NEAR(fitted["numbers"]["rows"][0][3].get<double>(), 0, 1e-6) << fitted["numbers"];
+    EXPECT_EQ(fitted["left_out"][0], "1 of 4 rows, which no branch reaches: row 4 at 90");
+}
 
 TEST(FitCommand, FindsTheNumberBehindCurvesOfTheReferences) {
     const Folder folder;

@@ -85,6 +85,18 @@ TEST(Running, AReportOfSomeBranchesHasTheseAlone) {
                 2, {.err = {"has no branch 'reboud', did you mean 'rebound'"}});
 }
 
+// Of a scene with a trim too, with the effects of its numbers.
+TEST(Running, AReportOfSomeBranchesOfATrimmedSceneHasTheEffectsOfItsNumbers) {
+    const Folder folder;
+    expect_says("report " + scenes + "/double_wishbone.yaml --only kc --branch travel -o " +
+                    (folder.path / "report").string(),
+                0);
+    const json scene = json::parse(text_of(folder.path / "report/result.json"))["scenes"][0];
+    ASSERT_EQ(scene["branches"].size(), 1u);
+    EXPECT_EQ(scene["sensitivity"]["conclusive"], true);
+    EXPECT_GT(scene["sensitivity"]["compared"], 100);
+}
+
 TEST(Running, ALineOfProgressSaysShareTimeAndWork) {
     EXPECT_EQ(progress_line("jounce", 0.5, 12, 80),
               "[##########----------]  50 %, 12 s left: jounce");

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/near.hpp"
 #include "models/reader/definitions/look_up.hpp"
 #include "models/reader/document/limits.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -31,7 +31,7 @@ struct Course {
 // Segments of each leg: one each, and further ones where segments are longest. Among equal legs the
 // first is served first, then the last, and so inwards, which keeps a symmetric beam symmetric
 // where possible.
-std::vector<int> shared_out(int segments, const std::vector<Real>& lengths) {
+std::vector<int> shared_out(int segments, const std::vector<double>& lengths) {
     const std::size_t legs = lengths.size();
     std::vector<std::size_t> inwards;
     for (std::size_t k = 0; k < legs; ++k) inwards.push_back(k % 2 == 0 ? k / 2 : legs - 1 - k / 2);
@@ -57,7 +57,7 @@ Course read_course(const Cursor& at, const Definitions& defs) {
         through.fail(
             fmt::format("expected a list of two hardpoints or more, found {}", through.found()));
     std::vector<Vector3> places;
-    std::vector<Real> lengths;
+    std::vector<double> lengths;
     for (const Cursor& point : points) {
         places.push_back(hardpoint(point, defs));
         course.hardpoints.push_back(point.value->text);
@@ -158,14 +158,14 @@ Course image(Course course, const Mirror& mirror) {
 // ---- Cross-section, and stiffness of a segment.
 
 struct CrossSection {
-    Real EA = 0;              // [N]
-    Real EI_y = 0, EI_z = 0;  // [N·m²]
-    Real GJ = 0;              // [N·m²]
-    Real GA_y = 0, GA_z = 0;  // [N]; 0: no shear deformation
+    double EA = 0;              // [N]
+    double EI_y = 0, EI_z = 0;  // [N·m²]
+    double GJ = 0;              // [N·m²]
+    double GA_y = 0, GA_z = 0;  // [N]; 0: no shear deformation
     bool is_round() const { return EI_y == EI_z && GA_y == GA_z; }
 };
 
-Real positive(const Cursor& at, const Unit& unit) { return above_zero(at, "too small", unit); }
+double positive(const Cursor& at, const Unit& unit) { return above_zero(at, "too small", unit); }
 
 // force/length², length², length⁴
 Unit modulus(const Units& u) {
@@ -177,28 +177,28 @@ Unit power_of_length(const Units& u, int n) {
 }
 
 // Rod or tube: A = π (D² - d²)/4,  I = π (D⁴ - d⁴)/64,  J = 2 I.
-CrossSection read_round(const Cursor& at, const Cursor& diameter, Real E, Real G,
+CrossSection read_round(const Cursor& at, const Cursor& diameter, double E, double G,
                         const Units& units) {
     for (const char* field : {"A", "I_y", "I_z", "J", "shear_y", "shear_z", "up"})
         if (const auto given = at.optional(field))
             given->fail(
                 "given together with diameter; allowed: diameter and wall, or A, I_y, I_z and J");
-    const Real D = positive(diameter, units.length);
-    Real d = 0;
+    const double D = positive(diameter, units.length);
+    double d = 0;
     if (const auto wall = at.optional("wall")) {
         d = D - 2 * positive(*wall, units.length);
         if (!(d >= -1e-12 * D))
             wall->fail(fmt::format("{} is more than half the diameter", wall->found()));
-        d = std::max(d, Real(0));
+        d = std::max(d, 0.0);
     }
     const auto power = [&](int n) { return pow(D, n) - pow(d, n); };
-    const Real A = std::numbers::pi / 4 * power(2), I = std::numbers::pi / 64 * power(4);
+    const double A = std::numbers::pi / 4 * power(2), I = std::numbers::pi / 64 * power(4);
     return {.EA = E * A, .EI_y = E * I, .EI_z = E * I, .GJ = G * 2 * I};
 }
 
 CrossSection read_cross_section(const Cursor& at, const Units& units) {
-    const Real E = positive(at.require("E"), modulus(units)),
-               G = positive(at.require("G"), modulus(units));
+    const double E = positive(at.require("E"), modulus(units)),
+                 G = positive(at.require("G"), modulus(units));
     if (const auto diameter = at.optional("diameter"))
         return read_round(at, *diameter, E, G, units);
     if (const auto wall = at.optional("wall"))
@@ -218,9 +218,9 @@ CrossSection read_cross_section(const Cursor& at, const Units& units) {
             .GA_z = shear("shear_z")};
 }
 
-Matrix6 stiffness(const CrossSection& s, Real L) {
-    const auto shear = [&](Real EI, Real GA) {
-        const Real phi = GA > 0 ? 12 * EI / (GA * L * L) : 0;
+Matrix6 stiffness(const CrossSection& s, double L) {
+    const auto shear = [&](double EI, double GA) {
+        const double phi = GA > 0 ? 12 * EI / (GA * L * L) : 0;
         return 12 * EI / (L * L * L * (1 + phi));
     };
     Vector6 k;

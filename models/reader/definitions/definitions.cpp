@@ -8,7 +8,6 @@
 #include "models/reader/definitions/beams.hpp"
 #include "models/reader/definitions/look_up.hpp"
 #include "models/reader/document/limits.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -92,7 +91,7 @@ void read_bodies(const Cursor& section, Definitions& defs) {
 // x, y, z or -x, -y, -z
 Vector3 named_axis(const Cursor& at) {
     const std::string& word = at.value->text;
-    const Real sign = word.starts_with('-') ? -1 : 1;
+    const double sign = word.starts_with('-') ? -1 : 1;
     const std::string letter = sign < 0 ? word.substr(1) : word;
     if (letter == "x") return sign * Vector3::UnitX();
     if (letter == "y") return sign * Vector3::UnitY();
@@ -115,14 +114,14 @@ Definitions read_definitions(const Cursor& scene) {
     return defs;
 }
 
-Real rate(const Cursor& at, const Unit& unit) {
-    const Real k = at.number(unit.name);
+double rate(const Cursor& at, const Unit& unit) {
+    const double k = at.number(unit.name);
     if (k < 0) at.fail(fmt::format("negative rate {}; allowed: zero or more", at.found()));
     return unit.si(k);
 }
 
-Real above_zero(const Cursor& at, const char* what, const Unit& unit) {
-    const Real x = unit.si(at.number(unit.name));
+double above_zero(const Cursor& at, const char* what, const Unit& unit) {
+    const double x = unit.si(at.number(unit.name));
     if (!(x > 0)) at.fail(fmt::format("{} is {}; allowed: above zero", at.found(), what));
     return x;
 }
@@ -183,10 +182,7 @@ Point point_of(BodyId body, const Vector3& p, const Definitions& defs) {
 }
 
 // Which of several formulas Eigen takes decides on the sign only.
-Quaternion quaternion_of(const Matrix3& axes) {
-    [[maybe_unused]] const ByValue by_value;
-    return Quaternion(axes).normalized();
-}
+Quaternion quaternion_of(const Matrix3& axes) { return Quaternion(axes).normalized(); }
 
 Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Definitions& defs) {
     return {body, point_of(body, p, defs).s_local, quaternion_of(axes)};
@@ -196,7 +192,7 @@ Between between(const Cursor& at, const Definitions& defs, const char* what) {
     const auto [i, j] = body_pair(at.require("bodies"), defs);
     const Vector3 from = hardpoint(at.require("from"), defs),
                   to = hardpoint(at.require("to"), defs);
-    const Real length = (to - from).norm();
+    const double length = (to - from).norm();
     if (!(length > coincident))
         at.require("to").fail(fmt::format("the same position as `from`; {} needs a length", what));
     return {point_of(i, from, defs), point_of(j, to, defs), length};

@@ -18,8 +18,8 @@ namespace elastocheck::reader {
 struct Unit {
     std::string name;
     double divide = 1, multiply = 1;
-    Real si(Real x) const { return x / divide * multiply; }
-    Real written(Real si) const { return si * divide / multiply; }
+    double si(double x) const { return x / divide * multiply; }
+    double written(double si) const { return si * divide / multiply; }
 };
 
 struct Units {
@@ -46,9 +46,9 @@ Definitions read_definitions(const Cursor& scene);
 // Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
 inline constexpr double coincident = 1e-9;
 
-Real rate(const Cursor& at, const Unit& unit);  // zero or more, SI
+double rate(const Cursor& at, const Unit& unit);  // zero or more, SI
 // SI; `what` completes "'0' is ...; allowed: above zero".
-Real above_zero(const Cursor& at, const char* what, const Unit& unit = {});
+double above_zero(const Cursor& at, const char* what, const Unit& unit = {});
 Vector3 vector(const Cursor& at, const Unit& unit = {});       // three numbers, SI
 Vector3 hardpoint(const Cursor& at, const Definitions& defs);  // [m]
 Vector3 direction(const Cursor& at, const Definitions& defs);  // unit
@@ -70,7 +70,7 @@ Marker marker_of(BodyId body, const Vector3& p, const Matrix3& axes, const Defin
 // a length".
 struct Between {
     Point i, j;
-    Real length;  // [m]
+    double length;  // [m]
 };
 Between between(const Cursor& at, const Definitions& defs, const char* what);
 

@@ -37,7 +37,7 @@ const Load& look_up_load(const Term& term, const Loads& loads) {
                              did_you_mean(term.name, names_of(loads), "defined")));
 }
 
-Real held_value(const Term& term, const Load& load, const Units& units) {
+double held_value(const Term& term, const Load& load, const Units& units) {
     const Unit& unit = is_moment(load.kind) ? units.moment : units.force;
     return unit.si(term.number(unit.name));
 }

@@ -15,7 +15,7 @@ struct Term {
     Cursor at;
     bool has_number = false;
 
-    Real number(const std::string& unit = "") const { return has_number ? at.number(unit) : 1; }
+    double number(const std::string& unit = "") const { return has_number ? at.number(unit) : 1; }
 };
 
 // A name, a list of names or a map of names to numbers, without repeats. `what` completes "the name
@@ -27,6 +27,6 @@ using Loads = std::map<std::string, Load>;
 const Load& look_up_load(const Term& term, const Loads& loads);
 
 // The constant value of a load: a force, or a moment for a moment load [N, N·m].
-Real held_value(const Term& term, const Load& load, const Units& units);
+double held_value(const Term& term, const Load& load, const Units& units);
 
 }  // namespace elastocheck::reader

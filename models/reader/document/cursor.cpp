@@ -11,7 +11,6 @@
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -119,7 +118,7 @@ const std::string& Cursor::text(const std::string& what) const {
     return value->text;
 }
 
-Real Cursor::number(const std::string& unit) const {
+double Cursor::number(const std::string& unit) const {
     if (accesses) accesses->read.insert(value);
     std::string_view digits = value->text;
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
@@ -136,7 +135,7 @@ Real Cursor::number(const std::string& unit) const {
         fail(fmt::format("{} is out of range; allowed: 0, or {:g} to {:g} in size", found(),
                          least_size, largest_size));
     numbers->push_back({path + item, x, unit});
-    return as_read(numbers->back());
+    return x;
 }
 
 bool Cursor::yes_or_no() const { return one_of("yes or no", {"true", "false"}) == 0; }
@@ -151,7 +150,6 @@ int Cursor::whole_number(int least, int most) const {
         n > most)
         fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));
     numbers->push_back({path + item, static_cast<double>(n), ""});
-    as_counted(numbers->back());
     return n;
 }
 

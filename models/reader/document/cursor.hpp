@@ -48,7 +48,7 @@ struct Cursor {
     // ---- scalars; `what` completes "expected ..." and "'text' is not ..."
     const std::string& text(const std::string& what) const;  // one line, not empty
     // 0, or 1e-30 to 1e30 in size; locale-independent
-    Real number(const std::string& unit = "") const;
+    double number(const std::string& unit = "") const;
     bool yes_or_no() const;  // true, false
     int whole_number(int least, int most) const;
     // position in `allowed`

@@ -21,7 +21,6 @@
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/elements/sections.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -32,8 +31,8 @@ struct Parameter {
     Unit unit;
 };
 
-Real weight_of(const Term& term, const char* what) {
-    const Real weight = term.number();
+double weight_of(const Term& term, const char* what) {
+    const double weight = term.number();
     if (weight == 0) term.at.fail(fmt::format("zero, which {}; remove it", what));
     return weight;
 }
@@ -42,7 +41,7 @@ Real weight_of(const Term& term, const char* what) {
 void in_arms(Load& load, const Unit& arm) {
     if (!is_moment(load.kind)) return;
     Vector3& m = load_vector(load.kind);
-    m = m.unaryExpr([&](Real x) { return arm.si(x); }).eval();
+    m = m.unaryExpr([&](double x) { return arm.si(x); }).eval();
 }
 
 Parameter read_loads_moved(const Cursor& at, const Units& units, const Loads& loads,
@@ -71,12 +70,12 @@ Parameter read_driven(const Cursor& at, Drivables& drivables, Scene& scene, Bran
     for (const Term& term : terms(at, "a driven quantity")) {
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
         if (!parameter) parameter = Parameter{quantity.kind, quantity.unit};
-        const Real rate =
+        const double rate =
             weight_of(term, "rate zero drives nothing; a constant value belongs in hold");
         // Rate in quantity units per unit of a; exactly 1 for equal units.
-        const Real si = quantity.unit.name == parameter->unit.name
-                            ? rate
-                            : quantity.unit.si(rate) / parameter->unit.si(1);
+        const double si = quantity.unit.name == parameter->unit.name
+                              ? rate
+                              : quantity.unit.si(rate) / parameter->unit.si(1);
         branch.drivers.push_back({.what = quantity.what, .start = 0, .rate = si * quantity.factor});
     }
     return *parameter;
@@ -94,7 +93,7 @@ void read_hold(const Cursor& at, Drivables& drivables, Scene& scene, Branch& bra
         at.fail(fmt::format("expected a map from held quantities to values, found {}", at.found()));
     for (const Term& term : terms(at, "a held quantity")) {
         const Drivable& quantity = drivable(term.at, term.name, drivables, scene);
-        const Real value = quantity.unit.si(term.number(quantity.unit.name));
+        const double value = quantity.unit.si(term.number(quantity.unit.name));
         branch.drivers.push_back(
             {.what = quantity.what, .start = value * quantity.factor, .rate = 0});
     }
@@ -183,7 +182,6 @@ std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
 }
 
 void require_moving(const Cursor& section, const Scene& scene) {
-    [[maybe_unused]] const ByValue by_value;
     const Model model = compile(scene);
     const auto moves = [](const Driver& driver) { return driver.rate != 0; };
     for (std::size_t b = 0; b < scene.branches.size(); ++b) {

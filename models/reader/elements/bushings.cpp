@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "models/kinds.hpp"
+#include "models/near.hpp"
 #include "models/reader/elements/sections.hpp"
 #include "models/reader/tables/curves.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -24,9 +24,7 @@ Vector3 rates(const Cursor& at, const Unit& unit) {
 }
 
 // The larger size of the two.
-double larger_of(const Real& a, const Real& b) {
-    return std::max(std::abs(value_of(a)), std::abs(value_of(b)));
-}
+double larger_of(const double& a, const double& b) { return std::max(std::abs(a), std::abs(b)); }
 
 // ---- The frame of a bushing.
 
@@ -40,7 +38,7 @@ struct FrameField {
 
 // The right-handed frame with the axes a and b (0 x, 1 y, 2 z) along e_a and e_b.
 Axes completed(int a, const Vector3& e_a, int b, const Vector3& e_b) {
-    const Real sign = b == (a + 1) % 3 ? 1 : -1;  // e_x × e_y = e_z, but e_y × e_x = -e_z
+    const double sign = b == (a + 1) % 3 ? 1 : -1;  // e_x × e_y = e_z, but e_y × e_x = -e_z
     Axes frame;
     frame.col(a) = e_a;
     frame.col(b) = e_b;
@@ -79,25 +77,22 @@ Axes read_frame_j(const Cursor& at, const FrameField& frame, const Definitions& 
 
 // ---- The stiffness of a bushing.
 
-using ValueMatrix6 = Eigen::Matrix<double, 6, 6>;
-using ValueVector6 = Eigen::Matrix<double, 6, 1>;
-
 // S = D⁻¹ K D⁻¹ with D = diag(√|K_ii|): its eigenvalues have the signs of K's (Sylvester) and do
 // not mix units. Where K_ii = 0, D_ii makes the largest entry of the row 1, so that a non-zero row
 // makes S clearly indefinite.
-ValueMatrix6 scaled_to_unit_diagonal(const ValueMatrix6& K) {
+Matrix6 scaled_to_unit_diagonal(const Matrix6& K) {
     const auto one_if_zero = [](double x) { return x == 0 ? 1 : x; };
-    ValueVector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
-    const ValueVector6 known = d.unaryExpr(one_if_zero);
+    Vector6 d = K.diagonal().cwiseAbs().cwiseSqrt();
+    const Vector6 known = d.unaryExpr(one_if_zero);
     for (int i = 0; i < 6; ++i)
         if (d[i] == 0) d[i] = one_if_zero((K.col(i).array().abs() / known.array()).maxCoeff());
     return (K.array() / (d * d.transpose()).array()).matrix();
 }
 
 void require_semidefinite(const Cursor& at, const Matrix6& K) {
-    const ValueMatrix6 S = scaled_to_unit_diagonal(values_of(K));
+    const Matrix6 S = scaled_to_unit_diagonal(K);
     const double lowest =
-        Eigen::SelfAdjointEigenSolver<ValueMatrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
+        Eigen::SelfAdjointEigenSolver<Matrix6>(S, Eigen::EigenvaluesOnly).eigenvalues()[0];
     if (!(lowest >= -round_off))
         at.fail(
             fmt::format("indefinite, its lowest eigenvalue is {:g} when scaled to a unit diagonal; "
@@ -250,7 +245,7 @@ std::optional<Matrix6> rates_round(int axis, const SpatialLaw& law) {
     const auto of_axes = [&](const PerAxis& u) -> std::optional<Matrix6> {
         Matrix6 K = Matrix6::Zero();
         for (int k = 0; k < 6; ++k) {
-            const Real* rate = rate_of(u.axis[static_cast<std::size_t>(k)]);
+            const double* rate = rate_of(u.axis[static_cast<std::size_t>(k)]);
             if (!rate && k % 3 != axis) return std::nullopt;
             K(k, k) = rate ? *rate : 0;
         }

@@ -63,10 +63,10 @@ void add_joints(const Scene& scene, const Units& units, const std::map<int, int>
 // length.
 void add_spring(int k, const std::string& name, const ScalarLaw& law, const Units& units,
                 Drivables& result) {
-    const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, Real factor) {
+    const auto add = [&](const char* field, ParameterUnit kind, const Unit& unit, double factor) {
         result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
     };
-    const Real* rate = rate_of(law);
+    const double* rate = rate_of(law);
     if (rate != nullptr && *rate == 0) {
         for (const char* field : {".free_length", ".preload"})
             result.not_driven[name + field] = "of a spring of rate zero, on which it has no effect";

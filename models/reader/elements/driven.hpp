@@ -16,7 +16,7 @@ struct Drivable {
     ParameterUnit kind;
     Unit unit;                   // unit of its values in the file
     Driven what;                 // a Motion without joint until the joint is created
-    Real factor = 1;             // of `what` per SI unit of the quantity
+    double factor = 1;           // of `what` per SI unit of the quantity
     std::optional<Joint> joint;  // created when it is first driven
 };
 

@@ -18,7 +18,7 @@ Vector3 read_acceleration(const Cursor& at, const Definitions& defs) {
 }
 
 // [kg]; none if the body has no mass
-std::optional<Real> read_mass(const Cursor& body) {
+std::optional<double> read_mass(const Cursor& body) {
     const auto mass = body.optional("mass");
     if (!mass) {
         if (const auto centre = body.optional("centre_of_gravity"))
@@ -26,7 +26,7 @@ std::optional<Real> read_mass(const Cursor& body) {
                 "centre of gravity of a body without mass; give its mass or remove this field");
         return std::nullopt;
     }
-    const Real m = mass->number("kg");
+    const double m = mass->number("kg");
     if (m < 0) mass->fail(fmt::format("negative mass {}; allowed: zero or more", mass->found()));
     return m;
 }

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "models/kinds.hpp"
+#include "models/near.hpp"
 #include "models/reader/elements/sections.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -33,10 +33,10 @@ struct JointFields {
 std::pair<Direction, Direction> perpendicular_axes(const JointFields& f) {
     const Direction i = f.axis_i("axis_i");
     Direction j = f.axis_j("axis_j");
-    const Real cosine = i.u_local.dot(j.u_local);
+    const double cosine = i.u_local.dot(j.u_local);
     if (!are_near(cosine, 0, square)) {
-        const double sine = value_of(i.u_local.cross(j.u_local).norm());
-        const double angle = std::atan2(sine, value_of(cosine)) * 180 / std::numbers::pi;  // [deg]
+        const double sine = i.u_local.cross(j.u_local).norm();
+        const double angle = std::atan2(sine, cosine) * 180 / std::numbers::pi;  // [deg]
         f.at.require("axis_j").fail(
             fmt::format("{:.10g} deg from axis_i; the two axes must be perpendicular", angle));
     }

@@ -29,8 +29,8 @@ SteeringAxis read_steering_axis(const Cursor& at, BodyId wheel, const Definition
     return {lower.point, upper.point};
 }
 
-Real share(const Cursor& at) {
-    const Real x = at.number();
+double share(const Cursor& at) {
+    const double x = at.number();
     if (!(x >= 0 && x <= 1)) at.fail(fmt::format("{} is not a share; allowed: 0 to 1", at.found()));
     return x;
 }

@@ -14,13 +14,13 @@ AxialSpring read_ends(const Cursor& at, const Definitions& defs) {
 }
 
 // The deflection x with f(x) = -p: a preload is positive in compression.
-Real deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
-    const Real p = units.force.si(preload.number(units.force.name));
+double deflection_under(const Cursor& preload, const ScalarLaw& law, const Units& units) {
+    const double p = units.force.si(preload.number(units.force.name));
     return deflection_at(preload, law, 0 - p, units.force);  // 0, not -0
 }
 
 // ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.
-Real free_length(const Cursor& spring, Real length, const ScalarLaw& law, const Definitions& defs) {
+double free_length(const Cursor& spring, double length, const ScalarLaw& law, const Definitions& defs) {
     const Units& units = defs.units;
     const auto given = spring.optional("free_length");
     const auto preload = spring.optional("preload");
@@ -29,9 +29,9 @@ Real free_length(const Cursor& spring, Real length, const ScalarLaw& law, const 
     if (!preload) {
         const auto curve = spring.optional("curve");
         const auto of_file = curve ? free_length_of_file(*curve, defs) : std::nullopt;
-        return of_file ? Real(*of_file) : length;
+        return of_file ? *of_file : length;
     }
-    const Real l0 = length - deflection_under(*preload, law, units);
+    const double l0 = length - deflection_under(*preload, law, units);
     if (!(l0 > 0))
         preload->fail(
             fmt::format("needs a free length of {:g} {}; a free length must be above zero",

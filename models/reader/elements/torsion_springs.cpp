@@ -6,7 +6,7 @@ namespace elastocheck::reader {
 namespace {
 
 SpatialLaw about_z(const ScalarLaw& law) {
-    if (const Real* rate = rate_of(law)) {
+    if (const double* rate = rate_of(law)) {
         LinearStiffness all;
         all.K(5, 5) = *rate;
         return all;

@@ -119,7 +119,7 @@ void require_as_many(const Cursor& at, const Trim& trim) {
 
 // ---- Loads.
 
-Load scaled(Load load, Real value) {
+Load scaled(Load load, double value) {
     load_vector(load.kind) *= value;
     return load;
 }

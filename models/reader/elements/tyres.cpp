@@ -29,8 +29,8 @@ std::size_t wheel_of(const Cursor& tyre, const Scene& scene) {
 }
 
 struct Tyre {
-    Real k = 0;  // [N/m] > 0
-    Real P = 0;  // force that pushes the wheel up at the design position [N]
+    double k = 0;  // [N/m] > 0
+    double P = 0;  // force that pushes the wheel up at the design position [N]
 };
 
 Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {

@@ -9,7 +9,6 @@
 
 #include "models/laws.hpp"
 #include "models/overloaded.hpp"
-#include "models/real.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -31,12 +30,12 @@ std::vector<TablePoint> odd(const Cursor& at, const std::vector<TablePoint>& hal
 }
 
 void scale(const Cursor& at, std::vector<TablePoint>& points) {
-    const Real factor = above_zero(at, "not a scale");
+    const double factor = above_zero(at, "not a scale");
     for (TablePoint& point : points) point.f *= factor;
 }
 
 void shift(const Cursor& at, const Unit& unit, std::vector<TablePoint>& points) {
-    const Real offset = unit.si(at.number(unit.name));
+    const double offset = unit.si(at.number(unit.name));
     for (std::size_t k = 0; k < points.size(); ++k) {
         points[k].x += offset;
         if (k > 0 && !(points[k].x > points[k - 1].x))
@@ -68,7 +67,7 @@ Curve read_contact(const Cursor& at, const Definitions& defs) {
     contact.known_outside = is_known_outside(at);
     if (!contact.known_outside) {
         contact.knots.insert(contact.knots.begin(), -beyond_all);
-        contact.pieces.insert(contact.pieces.begin(), std::array<Real, 4>{});
+        contact.pieces.insert(contact.pieces.begin(), std::array<double, 4>{});
     }
     return contact;
 }
@@ -98,13 +97,13 @@ ScalarLaw read_law(const Cursor& element, const LawUnits& units, const Definitio
 Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs) {
     at.only_keys({"clearance", "rate", "curve"});
     const Unit& length = defs.units.length;
-    const Real clearance = length.si(at.require("clearance").number(length.name));
+    const double clearance = length.si(at.require("clearance").number(length.name));
     const auto k = at.optional("rate"), curve = at.optional("curve");
     if (k && curve) curve->fail("given together with rate; allowed: one of the two");
     if (!k && !curve) at.fail("no law; required: rate or curve");
     Curve law =
         k ? Curve{{0}, {{}, {0, rate(*k, defs.units.rate), 0, 0}}} : read_contact(*curve, defs);
-    for (Real& knot : law.knots) knot += clearance;
+    for (double& knot : law.knots) knot += clearance;
     for (std::size_t n = 1; n < law.knots.size(); ++n)
         if (!(law.knots[n] > law.knots[n - 1]))
             at.require("clearance")
@@ -117,15 +116,14 @@ namespace {
 
 // f is non-decreasing. Outside the knots it is linear; inside the interval that brackets the force,
 // bisection runs to the last bit.
-Real deflection_at(const Cursor& at, const Curve& curve, Real force, const Unit& unit) {
+double deflection_at(const Cursor& at, const Curve& curve, double force, const Unit& unit) {
     const auto& x = curve.knots;
     const auto at_knot = [&](std::size_t k) { return curve.pieces[k + 1][0]; };
     const std::size_t last = x.size() - 1;
-    const Real below = curve.pieces.front()[1], above = curve.pieces.back()[1];  // slopes
-    const double largest =
-        std::max(std::abs(value_of(at_knot(0))), std::abs(value_of(at_knot(last))));
+    const double below = curve.pieces.front()[1], above = curve.pieces.back()[1];  // slopes
+    const double largest = std::max(std::abs(at_knot(0)), std::abs(at_knot(last)));
     const auto is_equal = [&](std::size_t k) {
-        return std::abs(value_of(at_knot(k) - force)) <= round_off * largest;
+        return std::abs(at_knot(k) - force) <= round_off * largest;
     };
     const auto many = [&] {
         at.fail(fmt::format(
@@ -147,17 +145,16 @@ Real deflection_at(const Cursor& at, const Curve& curve, Real force, const Unit&
     std::size_t k = 0;
     while (k + 1 < last && at_knot(k + 1) < force) ++k;
     const auto& c = curve.pieces[k + 1];
-    const auto f = [&](double t) -> Real { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); };
-    double low = 0, high = value_of(x[k + 1] - x[k]);
+    const auto f = [&](double t) -> double { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); };
+    double low = 0, high = x[k + 1] - x[k];
     for (double t; t = low + (high - low) / 2, t > low && t < high;)
-        (value_of(f(t)) < value_of(force) ? low : high) = t;
-    const Real slope = c[1] + high * (2 * c[2] + high * 3 * c[3]);
-    return x[k] + high + rate_only((force - f(high)) / slope);  // f(t) = force, differentiated
+        (f(t) < force ? low : high) = t;
+    return x[k] + high;
 }
 
 }  // namespace
 
-Real deflection_at(const Cursor& at, const ScalarLaw& law, Real force, const Unit& unit) {
+double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit) {
     const auto of_rate = [&](const LinearRate& u) {
         if (u.k == 0)
             at.fail("a spring of rate zero cannot have a preload; remove it or give a rate");

@@ -22,6 +22,6 @@ Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs);
 
 // The unique deflection at which the law has this force [N]. `at` reports an error if there is
 // none or several.
-Real deflection_at(const Cursor& at, const ScalarLaw& law, Real force, const Unit& unit);
+double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit);
 
 }  // namespace elastocheck::reader

@@ -17,28 +17,24 @@
 
 #include <algorithm>
 
-#include "models/real.hpp"
-
 namespace elastocheck::reader {
 namespace {
 
-Real inner_slope(Real h_0, Real d_0, Real h_1, Real d_1) {
-    if (d_0 == 0 && d_1 == 0) return 0;
-    const Real a = (h_0 + 2 * h_1) / (3 * (h_0 + h_1));
-    if (value_of(d_0) == 0 || value_of(d_1) == 0)
-        return rate_only(d_0 * d_1 / (a * d_1 + (1 - a) * d_0));  // the same, without 1/0
+double inner_slope(double h_0, double d_0, double h_1, double d_1) {
+    if (d_0 == 0 || d_1 == 0) return 0;
+    const double a = (h_0 + 2 * h_1) / (3 * (h_0 + h_1));
     return 1 / (a / d_0 + (1 - a) / d_1);
 }
 
-Real end_slope(Real h_0, Real d_0, Real h_1, Real d_1) {
-    return std::max(Real(0), ((2 * h_0 + h_1) * d_0 - h_0 * d_1) / (h_0 + h_1));
+double end_slope(double h_0, double d_0, double h_1, double d_1) {
+    return std::max(0., ((2 * h_0 + h_1) * d_0 - h_0 * d_1) / (h_0 + h_1));
 }
 
 }  // namespace
 
 Curve interpolant(const std::vector<TablePoint>& points) {
     const std::size_t n = points.size();
-    std::vector<Real> h(n - 1), d(n - 1), m(n);
+    std::vector<double> h(n - 1), d(n - 1), m(n);
     for (std::size_t k = 0; k + 1 < n; ++k) {
         h[k] = points[k + 1].x - points[k].x;
         d[k] = (points[k + 1].f - points[k].f) / h[k];
@@ -62,7 +58,7 @@ Curve polygon(const std::vector<TablePoint>& points) {
     for (std::size_t k = 0; k < points.size(); ++k) {
         const std::size_t next =
             std::min(k + 1, points.size() - 1);  // the last piece continues the one before it
-        const Real slope =
+        const double slope =
             (points[next].f - points[next - 1].f) / (points[next].x - points[next - 1].x);
         if (k == 0) curve.pieces.push_back({points[0].f, slope, 0, 0});
         curve.pieces.push_back({points[k].f, slope, 0, 0});

@@ -8,8 +8,8 @@
 namespace elastocheck::reader {
 
 struct TablePoint {
-    Real x = 0;  // deflection [m] or [rad]
-    Real f = 0;  // [N] or [N·m]
+    double x = 0;  // deflection [m] or [rad]
+    double f = 0;  // [N] or [N·m]
 };
 
 // The piecewise cubic Hermite interpolant with the slopes of Fritsch and Butland (1984), known as

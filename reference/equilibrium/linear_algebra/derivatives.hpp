@@ -1,5 +1,4 @@
-// Derivatives of the system by automatic differentiation. Only the sources of this header and of
-// number_rates.hpp use Ceres.
+// Derivatives of the system by automatic differentiation. Only the source of this header uses Ceres.
 #pragma once
 
 #include "reference/equilibrium/linear_algebra/factors.hpp"

@@ -173,13 +173,11 @@ Vec6<T> deformations(const System& system, std::size_t e, const T& a, const Fram
                       system.model->elastics[e].kind);
 }
 
-// Constraint c with the reactions R of its rows [N, N·m]. `more` is added to its offset, length or
-// angle.
+// Constraint c with the reactions R of its rows [N, N·m].
 template <class T>
 Holding<T> holding(const System& system, std::size_t c, const T& a, const T& held,
-                   const Frame<T>& i, const Frame<T>& j, const T* R, const T* more = nullptr) {
-    T value = system.values[c].at(a) + held * system.turns[c];
-    if (more != nullptr) value += *more;
+                   const Frame<T>& i, const Frame<T>& j, const T* R) {
+    const T value = system.values[c].at(a) + held * system.turns[c];
     return std::visit([&](const auto& kind) { return holding(kind, value, i, j, R); },
                       system.model->constraints[c].kind);
 }
@@ -216,11 +214,6 @@ template <LeavesOut Source>
 bool wants(const Source& source, Term term, std::size_t k) {
     return source.wants(term, k);
 }
-// A source may add to the offset of a constraint: `source.offset(c)`.
-template <class Source>
-concept AddsOffsets = requires(const Source& source) {
-    source.offset(std::size_t{});
-};
 template <class Source>
 concept HasOneOfOneBody = requires(const Source& source) {
     source.of_one_body();
@@ -295,13 +288,7 @@ void assemble(const System& system, const T& a, const T& held, const Pieces& pie
         for (int k = 0; k < part.rows; ++k)
             R[k] = source.reaction(part, k) *
                    (directions ? system.force * system.length : system.force);
-        Holding<T> h;
-        if constexpr (AddsOffsets<Source>) {
-            const T more = source.offset(c);
-            h = holding(system, c, a, held, frame_i, frame_j, R, &more);
-        } else {
-            h = holding(system, c, a, held, frame_i, frame_j, R);
-        }
+        const Holding<T> h = holding(system, c, a, held, frame_i, frame_j, R);
         apply(part, i, frame_i, h.reaction, T(+1.0));
         apply(part, j, frame_j, h.reaction, T(-1.0));
         for (int k = 0; k < part.rows; ++k)

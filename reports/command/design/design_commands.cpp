@@ -70,13 +70,13 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
     }
     const auto figures = figures_of(wanted);
     const auto scene = scene_at(request.scene, request.settings, varied.numbers);
-    const auto rates = rates_at(request.scene, request.settings, varied.numbers);
     SolvedFor solved{.numbers = varied.numbers,
                      .wishes = {target, varied.start, varied.low, varied.high},
                      .solution = {},
                      .rows = {}};
     solved.solution = compare::solve_for(
-        compare::exact_figures(scene, rates, figures, threads_of(request.running)), solved.wishes);
+        compare::solved_figures(scene, varied.numbers, figures, threads_of(request.running)),
+        solved.wishes);
     const compare::Solution& solution = solved.solution;
     if (!solution.before.allFinite()) {
         print_error(
@@ -88,9 +88,8 @@ int solve_for(const SolveForRequest& request, const Delivery& delivery) {
         if (solution.still[j])
             throw std::invalid_argument(fmt::format(
                 "--want {}: none of the numbers moves it:\n  {}", request.want[j],
-                fmt::join(
-                    compare::why_still(scene, rates, figures[j], varied.numbers, varied.start),
-                    "\n  ")));
+                fmt::join(compare::why_still(scene, figures[j], varied.numbers, varied.start),
+                          "\n  ")));
     if (!solution.gradient.rate.allFinite()) {
         print_error("no rate at the start: {}\n", solution.gradient.why_not);
         return could_not_judge;
@@ -194,9 +193,8 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
     for (const auto& number : given.numbers) words.push_back(number.path);
     const Varied varied = parse_varied(words, loaded.scene);
     const compare::Figures figures =
-        compare::exact_figures(scene_at(request.scene, request.settings, varied.numbers),
-                               rates_at(request.scene, request.settings, varied.numbers),
-                               figures_of(named), threads_of(request.running));
+        compare::solved_figures(scene_at(request.scene, request.settings, varied.numbers),
+                                varied.numbers, figures_of(named), threads_of(request.running));
     const VectorXd nominal = figures.value(varied.start);
     const compare::FigureGradient gradient = figures.gradient(varied.start);
     const auto scatter = compare::scatter(gradient.rate, given.numbers, given.correlation);

@@ -112,12 +112,12 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
                                 loaded.scene, loaded.model);
     const Varied& varied = file.varied;
     const auto scene = scene_at(request.scene, request.settings, varied.numbers);
-    const auto rates = rates_at(request.scene, request.settings, varied.numbers);
     const int threads = threads_of(request.running);
     GoalFigures all = figures_of(file);
     const auto search = [&](const std::vector<VectorXd>& starts) {
-        return compare::optimise(compare::exact_figures(scene, rates, all.figures, threads),
-                                 all.goals, starts, progress);
+        return compare::optimise(
+            compare::solved_figures(scene, varied.numbers, all.figures, threads), all.goals, starts,
+            progress);
     };
     const auto starts = compare::starts_of(all.goals, request.starts);
     compare::Optimum optimum = search(starts);
@@ -125,10 +125,8 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
         progress("");
         const auto why =
             compare::figure_values(loaded.scene, all.figures, compare::Leg::equilibrium).why_not;
-        print_error("{}\n",
-                    why.empty()
-                        ? "no rate at the start: a figure has no value at a slightly changed number"
-                        : "no value at the start: " + why);
+        print_error("{}\n", why.empty() ? "no rate at the start: " + optimum.gradient.why_not
+                                        : "no value at the start: " + why);
         return could_not_judge;
     }
     // A goal that does not move is refused, unless it is met.
@@ -143,10 +141,10 @@ int optimise(const OptimiseRequest& request, const Delivery& delivery) {
                   optimum.before[i] <= all.goals.high[i];
             last = k;
         }
-        const std::string reasons =
-            fmt::format("{}", fmt::join(compare::why_still(scene, rates, all.figures[last],
-                                                           varied.numbers, varied.start),
-                                        "\n  "));
+        const std::string reasons = fmt::format(
+            "{}",
+            fmt::join(compare::why_still(scene, all.figures[last], varied.numbers, varied.start),
+                      "\n  "));
         const bool is_goal = g < file.goals.size();
         if (!met)
             reader::fail(request.file, is_goal ? file.goals[g].line : file.minimised_line,

@@ -51,25 +51,14 @@ const Item& named(const std::vector<Item>& all, const std::string& name, const N
                                             reader::did_you_mean(name, names, label)));
 }
 
-// Names joined by commas are numbers that change together.
-std::vector<std::string> paths_in(const std::string& joined) {
-    std::vector<std::string> paths;
-    for (std::size_t from = 0; from <= joined.size();) {
-        const std::size_t end = std::min(joined.find(',', from), joined.size());
-        paths.push_back(joined.substr(from, end - from));
-        from = end + 1;
-    }
-    return paths;
-}
-
 void add(Settings& settings, const Number& number, double value) {
-    for (const std::string& path : paths_in(number.path))
+    for (const std::string& path : compare::paths_in(number.path))
         settings.push_back(elastocheck::setting(path, value));
 }
 
 Settings without(Settings settings, const std::vector<Number>& numbers) {
     for (const Number& number : numbers)
-        for (const std::string& path : paths_in(number.path))
+        for (const std::string& path : compare::paths_in(number.path))
             std::erase_if(settings, [&](const Setting& one) { return one.path == path; });
     return settings;
 }
@@ -77,7 +66,7 @@ Settings without(Settings settings, const std::vector<Number>& numbers) {
 // The number of a name; of several joined by commas, which have the same value.
 Number number_of_path(const std::string& joined, const Scene& scene) {
     Number number;
-    for (const std::string& path : paths_in(joined)) {
+    for (const std::string& path : compare::paths_in(joined)) {
         const Number& one = named(
             scene.numbers, path, [](const Number& n) { return n.path; }, "--vary", "number",
             "numbers");
@@ -150,18 +139,6 @@ compare::SceneAt scene_at(const std::string& file, const Settings& settings,
         for (std::size_t k = 0; k < numbers.size(); ++k)
             add(all, numbers[k], p[static_cast<Index>(k)]);
         return read_scene(file, all);
-    };
-}
-
-compare::RatesAt rates_at(const std::string& file, const Settings& settings,
-                          const std::vector<Number>& numbers) {
-    std::vector<std::string> paths;
-    for (const Number& number : numbers) paths.push_back(number.path);
-    return [file, fixed = without(settings, numbers), numbers, paths](const VectorXd& p) {
-        Settings all = fixed;
-        for (std::size_t k = 0; k < numbers.size(); ++k)
-            add(all, numbers[k], p[static_cast<Index>(k)]);
-        return model_rates(file, all, paths);
     };
 }
 

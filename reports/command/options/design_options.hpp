@@ -32,9 +32,6 @@ Varied parse_varied(const std::vector<std::string>& words, const Scene& scene);
 // The scene of a file with these values of the numbers; `settings` apply to all others.
 compare::SceneAt scene_at(const std::string& file, const Settings& settings,
                           const std::vector<Number>& numbers);
-// The derivatives of its model by these numbers.
-compare::RatesAt rates_at(const std::string& file, const Settings& settings,
-                          const std::vector<Number>& numbers);
 
 // ---- Figures.
 

@@ -59,14 +59,14 @@ VectorXd extents_of(const Scene& scene, const std::vector<compare::Figure>& figu
 // What to measure so that each undetermined combination is determined.
 std::vector<ProposedOutput> propose(const FittedScene& fit, const Model& model,
                                     const MeasuredFigures& data, const compare::SceneAt& scene,
-                                    const compare::RatesAt& rates, int threads) {
+                                    int threads) {
     const auto& open = fit.fitted.undetermined;
     std::vector<ProposedOutput> proposed(static_cast<std::size_t>(open.cols()));
     for (const bool kinematic : {true, false}) {
         if (std::ranges::none_of(proposed, &std::string::empty, &ProposedOutput::output)) break;
         const auto named = unmeasured(model, data, kinematic);
         const auto figures = figures_of(named);
-        const auto of = compare::exact_figures(scene, rates, figures, threads);
+        const auto of = compare::solved_figures(scene, fit.numbers, figures, threads);
         const VectorXd value = of.value(fit.fitted.p);
         const auto found = compare::proposals(of.gradient(fit.fitted.p), value,
                                               extents_of(scene(fit.fitted.p), figures, value),
@@ -102,16 +102,16 @@ FittedScene fitted(const FitInput& input, const LoadedScene& loaded, const Varie
     for (Index k = 0; k < varied.start.size(); ++k)
         result.measured.step[k] = compare::step_of(varied.numbers[static_cast<std::size_t>(k)]);
     const auto scene = scene_at(input.scene, input.settings, varied.numbers);
-    const auto rates = rates_at(input.scene, input.settings, varied.numbers);
-    result.fitted = compare::fit(compare::exact_figures(scene, rates, data.figures, input.threads),
-                                 result.measured);
+    result.fitted =
+        compare::fit(compare::solved_figures(scene, varied.numbers, data.figures, input.threads),
+                     result.measured);
     if (!result.fitted.why_not.empty()) {
         const auto start =
             compare::figure_values(loaded.scene, data.figures, compare::Leg::equilibrium);
         if (!start.why_not.empty()) result.fitted.why_not += ": " + start.why_not;
         return result;
     }
-    result.proposed = propose(result, loaded.model, data, scene, rates, input.threads);
+    result.proposed = propose(result, loaded.model, data, scene, input.threads);
     return result;
 }
 

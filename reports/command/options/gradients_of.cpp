@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -18,17 +18,6 @@
 namespace elastocheck::reports {
 namespace {
 
-// Numbers that the file accepts only together are one entry, their names joined by commas.
-bool matches(const std::string& pattern, const std::string& names) {
-    if (names == pattern) return true;
-    for (std::size_t from = 0; from <= names.size();) {
-        const std::size_t end = std::min(names.find(',', from), names.size());
-        if (::fnmatch(pattern.c_str(), names.substr(from, end - from).c_str(), 0) == 0) return true;
-        from = end + 1;
-    }
-    return false;
-}
-
 // The positions of the names that match one of the patterns, in the order of the names. Throws
 // std::invalid_argument for a pattern without a match, with the nearest name.
 std::vector<std::size_t> matching(const char* option, const char* label, const char* labels,
@@ -38,7 +27,8 @@ std::vector<std::size_t> matching(const char* option, const char* label, const c
     for (const auto& pattern : patterns) {
         bool fits = false;
         for (std::size_t k = 0; k < names.size(); ++k)
-            if (matches(pattern, names[k])) chosen[k] = fits = true;
+            if (names[k] == pattern || ::fnmatch(pattern.c_str(), names[k].c_str(), 0) == 0)
+                chosen[k] = fits = true;
         if (!fits)
             throw std::invalid_argument(fmt::format("{}: there is no {} {}{}", option, label,
                                                     reader::quote(pattern),
@@ -101,17 +91,10 @@ std::map<std::string, std::vector<double>> stations(const std::vector<std::strin
 compare::Gradients gradients_of(const std::string& file, const Settings& settings,
                                 const LoadedScene& loaded,
                                 std::span<const compare::Channel> outputs,
-                                std::vector<ModelRate> rates, compare::GradientOptions options) {
-    std::vector<compare::VariedNumber> numbers;
-    for (const ModelRate& rate : rates)
-        numbers.push_back(compare::varied_number(rate, loaded.scene.numbers));
-    std::optional<compare::TrimRates> trim;
-    if (loaded.trim) {
-        trim = compare::trim_rates(read_scene(file, settings), {loaded.scene, loaded.trim}, rates);
-        rates = trim->numbers;
-        options.trim = &*trim;
-    }
-    return compare::gradients(loaded.model, outputs, numbers, rates, options);
+                                const compare::VaryingScene& varying,
+                                const compare::GradientOptions& options) {
+    return compare::gradients(read_scene(file, settings), {loaded.scene, loaded.trim}, loaded.model,
+                              varying, outputs, options);
 }
 
 compare::Gradients gradients_of(const std::string& file, const Settings& settings,
@@ -123,17 +106,22 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
         std::erase_if(outputs, [](const compare::Channel& c) { return !c.main; });
     outputs = of_names("--of", "output", "outputs", outputs, request.of,
                        [](const compare::Channel& c) { return c.name; });
-    std::vector<ModelRate> rates = all_model_rates(file, settings);
-    rates = of_names("--to", "number", "numbers", std::move(rates), request.to,
-                     [](const ModelRate& rate) { return rate.path; });
+    std::vector<std::string> names;
+    for (const Number& number : loaded.scene.numbers) names.push_back(number.path);
+    std::set<std::string> wanted;
+    for (const std::size_t k : matching("--to", "number", "numbers", names, request.to))
+        wanted.insert(names[k]);
+    const auto varying = compare::varying(
+        file, settings, [&](const std::string& path) { return wanted.contains(path); });
     const auto branches = of_names("--branch", "branch", "branches", model.branches,
                                    request.branches, [](const Branch& b) { return b.name; });
     std::vector<std::string> of_branches;
     for (const Branch& branch : branches) of_branches.push_back(branch.name);
-    return gradients_of(file, settings, loaded, outputs, std::move(rates),
+    return gradients_of(file, settings, loaded, outputs, varying,
                         {.points = request.points,
                          .stations = stations(request.at, model),
                          .branches = of_branches,
+                         .threads = request.threads,
                          .progress = progress});
 }
 

@@ -1,4 +1,4 @@
-// Gradients of a scene file: its numbers' rates, its trim, and the legs' sensitivities.
+// Gradients of a scene file, its trim included.
 #pragma once
 
 #include <functional>
@@ -11,18 +11,20 @@
 
 namespace elastocheck::reports {
 
-// Derivatives of the outputs by the numbers of `rates`, which are those of the file with these
-// settings (all_model_rates); the trim of a trimmed scene is part of the function.
+// Derivatives of the outputs by numbers of the file with these settings; the trim of a trimmed scene
+// is part of the function.
 compare::Gradients gradients_of(const std::string& file, const Settings& settings,
                                 const LoadedScene& loaded,
                                 std::span<const compare::Channel> outputs,
-                                std::vector<ModelRate> rates, compare::GradientOptions options);
+                                const compare::VaryingScene& varying,
+                                const compare::GradientOptions& options);
 
 // What `sensitivity` is asked for, as on its command line.
 struct GradientsRequest {
     std::vector<std::string> of, to, branches;  // names or patterns with *; none: the defaults
     std::vector<std::string> at;                // BRANCH:VALUE
     int points = 4;                             // stations of a branch without one in `at`
+    int threads = 1;
 };
 // Throws std::invalid_argument for a name without a match, with the nearest, and for a station that
 // is not on its branch.

@@ -27,10 +27,6 @@ Response linear_response(const Model&, const Branch&, const Equilibrium&,
                          std::span<const Disturbance>) {
     absent("the equilibrium leg");
 }
-ResponseRates response_rates(const Model&, const Branch&, const Equilibrium&,
-                             std::span<const Disturbance>, std::span<const Model>) {
-    absent("the equilibrium leg");
-}
 }  // namespace reference::equilibrium
 
 namespace reference::energy {
@@ -41,10 +37,6 @@ EquilibriumPath solve(const Model&, const Branch&, std::span<const double>, cons
 Residuals residuals(const Model&, const Branch&, const Equilibrium&) { absent("the energy leg"); }
 Response linear_response(const Model&, const Branch&, const Equilibrium&,
                          std::span<const Disturbance>) {
-    absent("the energy leg");
-}
-ResponseRates response_rates(const Model&, const Branch&, const Equilibrium&,
-                             std::span<const Disturbance>, std::span<const Model>) {
     absent("the energy leg");
 }
 }  // namespace reference::energy

@@ -268,6 +268,7 @@ std::optional<Section> change_section(const JsonCursor& scene) {
     section.words = {{"conclusive", (*study)["conclusive"].truth()},
                      {"compared", whole_number((*study)["compared"].whole())},
                      {"apart", number((*study)["apart"].number(), 2)},
+                     {"where", study->find("where") ? (*study)["where"].text() : ""},
                      {"trim", scene.find("trim").has_value()},
                      {"branch", rows.front().branch}};
     if (auto group = arrows(scene, figures.front(), rows))

@@ -309,7 +309,7 @@ def certify(scene, methods=(), tolerance=None, *, points=20, threads=0, progress
 
 
 def sensitivity(scene, of=(), to=(), *, branches=(), at=(), points=4, most=5, progress=None):
-    """Exact derivatives of outputs by numbers of the scene, by all legs; frame() has all of them.
+    """Derivatives of outputs by numbers of the scene, by two or three legs; frame() has all of them.
 
     Names, or patterns with *; `at`: stations "BRANCH:VALUE" in place of `points`.
     """

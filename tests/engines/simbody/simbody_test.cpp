@@ -347,12 +347,11 @@ TEST(SimbodyCandidate, AFitToItsCurvesFindsWhatWasChanged) {
     }
     measured.value =
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-    const auto found = compare::fit(
-        compare::exact_figures(
-            [&](const Eigen::VectorXd& p) { return read_scene(file, settings(p)); },
-            [&](const Eigen::VectorXd& p) { return model_rates(file, settings(p), paths); },
-            figures),
-        measured);
+    const auto found =
+        compare::fit(compare::solved_figures(
+                         [&](const Eigen::VectorXd& p) { return read_scene(file, settings(p)); },
+                         numbers, figures),
+                     measured);
     EXPECT_TRUE(found.converged);
     EXPECT_NEAR(found.p[0], truth[0], 1e-6);
     EXPECT_NEAR(found.p[1], truth[1], 1e-3 * 1000);

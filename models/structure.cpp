@@ -1,8 +1,9 @@
-#include "recursive/batch/structure.hpp"
+#include "models/structure.hpp"
 
 #include "models/kinds.hpp"
+#include "models/overloaded.hpp"
 
-namespace elastocheck::recursive::batch {
+namespace elastocheck {
 namespace {
 
 void note(const ScalarLaw& law, std::vector<int>& list) {
@@ -44,7 +45,8 @@ void structure(const Model& model, std::vector<int>& list) {
     list.clear();
     for (const std::size_t count :
          {model.bodies.size(), model.joints.size(), model.constraints.size(), model.elastics.size(),
-          model.static_loads.size(), model.branches.size()})
+          model.static_loads.size(), model.branches.size(), model.wheels.size(),
+          model.probes.size(), model.dampers.size()})
         list.push_back(static_cast<int>(count));
     for (const auto& joint : model.joints) list.insert(list.end(), {joint.i, joint.driven});
     for (const auto& constraint : model.constraints) {
@@ -55,6 +57,7 @@ void structure(const Model& model, std::vector<int>& list) {
     for (const auto& load : model.static_loads) note_kind(load.kind, list);
     for (const auto& branch : model.branches) {
         list.push_back(static_cast<int>(branch.drivers.size()));
+        list.push_back(branch.from == 0);
         for (const auto& driver : branch.drivers) {
             list.push_back(static_cast<int>(driver.what.index()));
             std::visit(overloaded{[&](const Load& load) { note_kind(load.kind, list); },
@@ -65,4 +68,4 @@ void structure(const Model& model, std::vector<int>& list) {
     }
 }
 
-}  // namespace elastocheck::recursive::batch
+}  // namespace elastocheck

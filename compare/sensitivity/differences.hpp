@@ -1,0 +1,96 @@
+// Derivatives of what is read from the state of a leg, by differences over neighbouring models.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/comparison/compliance.hpp"
+#include "elastocheck/channels.hpp"
+#include "elastocheck/legs.hpp"
+#include "elastocheck/trim.hpp"
+
+namespace elastocheck::compare {
+
+// Offsets in h, and weights times h of the derivative, of the error of a formula of lower order, and
+// of a kink: the difference of the slopes to both sides.
+struct Stencil {
+    std::array<double, 4> t, weight, check, kink;
+};
+
+// The scene and its compiled model where a number is larger by some amount.
+struct Changed {
+    Model model;
+    std::optional<Trim> trim;  // as read, for what it asks of the state
+};
+struct Changing {
+    std::function<Changed(double by)> at;  // throws SceneError where the file does not accept it
+    double h = 0;                          // of the differences
+    double step = 1;                       // of its effect
+};
+
+// The models of one stencil: around the number, or on the side that the file accepts.
+struct Compiled {
+    std::vector<Changed> points = {};
+    const Stencil* stencil = nullptr;
+    double h = 0;
+    int side = 0;
+    std::string undefined = {};  // reason why there are none
+};
+Compiled compiled(const Changing& changing);
+
+// A side of a branch with what is read on it.
+struct Outputs {
+    std::vector<Channel> channels;  // of the model of the side
+    // Of the same channels of a neighbouring model what they read there, and what they count from.
+    struct Placed {
+        std::vector<Reads> reads;
+        Eigen::VectorXd from;
+    };
+    std::function<Placed(const Model& on_side, const std::optional<Trim>& trim)> placed;
+};
+struct ReadSide {
+    BranchSide side;  // with its analysis
+    Outputs outputs;
+};
+// The models on a side of a branch.
+struct Neighbouring {
+    std::vector<BranchSide> sides;
+    std::vector<Outputs::Placed> placed;
+    const Stencil* stencil = nullptr;
+    double h = 0;
+    std::string undefined = {};
+};
+Neighbouring on_side(const Compiled& compiled, const ReadSide& of);
+
+// One-sided derivatives where there is no derivative [outputs × numbers], in the same units: where
+// the number grows, and where it falls. NaN where there are none; empty matrices where every entry
+// has a derivative.
+struct OneSided {
+    Eigen::MatrixXd growing, falling;
+    bool empty() const { return growing.size() == 0; }
+};
+
+struct Rates {
+    Eigen::MatrixXd at;  // [outputs × numbers], NaN where there is none
+    // [outputs × numbers] rounding of an output over h, from the second differences of all numbers:
+    // what a stiff element amplifies
+    Eigen::MatrixXd rounding;
+    std::vector<std::string> why;  // per number: why there is none
+    OneSided one_sided = {};
+};
+// At a state of a leg. `near`: of each of `numbers`. With `judges_kinks` an entry whose slopes to
+// both sides differ has no derivative.
+Rates rates_at(const ReadSide& side, Leg leg, const Equilibrium& state,
+               std::span<const Changing> numbers, std::span<const Neighbouring> near,
+               bool judges_kinks, Analyses& analyses);
+
+// The smallest size of a row of such a matrix that counts, for its largest entries by the steps of
+// the numbers: a millionth of the largest of its kind, and 1e-5 of its unit; of a characteristic a
+// thousandth of its unit.
+std::vector<double> least_sizes(std::span<const Channel> outputs, std::vector<double> largest);
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,151 @@
+#include "compare/sensitivity/varying.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "models/reader/document/suggestions.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+struct File {
+    std::filesystem::path path;
+    std::vector<Setting> settings;
+
+    // the scene where the number has this value
+    Scene with(const VariedNumber& number, double value) const {
+        std::vector<Setting> all = settings;
+        for (const std::string& path_of_one : paths_in(number.path)) {
+            std::erase_if(all, [&](const Setting& set) { return set.path == path_of_one; });
+            all.push_back(setting(path_of_one, value));
+        }
+        return read_scene(path, all);
+    }
+    bool accepts(const VariedNumber& number) const {
+        const double h = difference_step(number);
+        for (const double by : {h, -h}) try {
+                (void)with(number, number.value + by);
+                return true;
+            } catch (const SceneError&) {
+            }
+        return false;
+    }
+};
+
+VaryingScene varying(File file, std::vector<VariedNumber> numbers) {
+    return {numbers, [file = std::move(file), numbers](std::size_t k, double by) {
+                return file.with(numbers[k], numbers[k].value + by);
+            }};
+}
+
+// The group of a number: "bushings.mount" of "bushings.mount.rates.y".
+std::string_view group(std::string_view path) {
+    const auto dot = path.find('.');
+    return path.substr(0, path.find('.', dot == path.npos ? dot : dot + 1));
+}
+
+// The wanted ones of all numbers. One that cannot be varied alone is joined with another that it can
+// be varied together with: of its group and of its value.
+std::vector<VariedNumber> joined(const File& file, std::vector<VariedNumber> numbers,
+                                 std::vector<bool> wanted) {
+    std::map<std::size_t, bool> known;
+    const auto alone = [&](std::size_t k) {
+        const auto [at, is_new] = known.try_emplace(k);
+        if (is_new) at->second = file.accepts(numbers[k]);
+        return at->second;
+    };
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+        if (!wanted[k] || alone(k)) continue;
+        for (std::size_t l = 0; l < numbers.size(); ++l) {
+            if (l == k || group(numbers[k].path) != group(numbers[l].path) ||
+                numbers[k].value != numbers[l].value || alone(l))
+                continue;
+            const auto [first, second] = std::minmax(k, l);
+            VariedNumber both = numbers[first];
+            both.path += "," + numbers[second].path;
+            if (!file.accepts(both)) continue;
+            numbers[first] = std::move(both);
+            wanted[first] = known[first] = known[second] = true, wanted[second] = false;
+            break;
+        }
+    }
+    std::vector<VariedNumber> list;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+        if (wanted[k]) list.push_back(std::move(numbers[k]));
+    return list;
+}
+
+const std::map<std::string, double>& millimetre() {
+    static const std::map<std::string, double> units{
+        {"mm", 1}, {"m", 1e-3}, {"cm", 0.1}, {"in", 1 / 25.4}};
+    return units;
+}
+
+}  // namespace
+
+std::vector<std::string> paths_in(const std::string& joined) {
+    std::vector<std::string> paths;
+    for (std::size_t from = 0; from <= joined.size();) {
+        const std::size_t end = std::min(joined.find(',', from), joined.size());
+        paths.push_back(joined.substr(from, end - from));
+        from = end + 1;
+    }
+    return paths;
+}
+
+VariedNumber varied_number(const Number& number) {
+    VariedNumber varied{.path = number.path, .value = number.value, .unit = number.unit};
+    if (const auto unit = millimetre().find(varied.unit); unit != millimetre().end()) {
+        varied.step = unit->second, varied.step_name = "1 mm";
+        return varied;
+    }
+    varied.step = varied.value != 0 ? std::abs(varied.value) / 100 : 1;
+    if (varied.value == 0) varied.step_name = "1 unit";
+    return varied;
+}
+
+double difference_step(const VariedNumber& number) {
+    if (const auto unit = millimetre().find(number.unit); unit != millimetre().end())
+        return 0.05 * unit->second;
+    if (number.unit == "deg") return 0.05;
+    return 1e-3 * (number.value != 0 ? std::abs(number.value) : 100);
+}
+
+VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
+                     std::span<const std::string> paths) {
+    const Scene scene = read_scene(file, settings);
+    std::vector<VariedNumber> numbers;
+    for (const std::string& joined : paths) {
+        for (const std::string& path : paths_in(joined))
+            if (std::ranges::find(scene.numbers, path, &Number::path) == scene.numbers.end()) {
+                std::vector<std::string> names;
+                for (const Number& number : scene.numbers) names.push_back(number.path);
+                throw SceneError(fmt::format("{}: the scene has no number {}{}", scene.source,
+                                             reader::quote(path),
+                                             reader::did_you_mean(path, names, "there")));
+            }
+        numbers.push_back(varied_number(
+            *std::ranges::find(scene.numbers, paths_in(joined).front(), &Number::path)));
+        numbers.back().path = joined;
+    }
+    return varying({file, {settings.begin(), settings.end()}}, std::move(numbers));
+}
+
+VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,
+                     const std::function<bool(const std::string& path)>& wanted) {
+    std::vector<VariedNumber> numbers;
+    std::vector<bool> chosen;
+    const Scene scene = read_scene(file, settings);
+    for (const Number& number : scene.numbers) {
+        numbers.push_back(varied_number(number));
+        chosen.push_back(!wanted || wanted(number.path));
+    }
+    File of{file, {settings.begin(), settings.end()}};
+    auto list = joined(of, std::move(numbers), std::move(chosen));
+    return varying(std::move(of), std::move(list));
+}
+
+}  // namespace elastocheck::compare

@@ -1,0 +1,116 @@
+#include "recursive/neighbours.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "recursive/diagnosis/analysis.hpp"
+#include "recursive/response_system.hpp"
+
+namespace elastocheck::recursive {
+namespace {
+
+constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
+
+struct Residual {
+    Inputs<double> inputs;
+    Vector<double> upper, lower;  // f_ext - f_elast - Φ_qᵀ λ, -Φ
+};
+Residual residual_of(const Model& model, const Branch& branch, double a, const State<double>& q,
+                     const Vector<double>& lambda) {
+    Residual at{inputs_at<double>(model, branch, a), {}, {}};
+    Vector<double> force = Vector<double>::Zero(coordinates(model));
+    at.upper = force, at.lower = Vector<double>::Zero(constraint_rows(model));
+    external_force<double>(model, branch, at.inputs, q, at.upper);
+    elastic_force<double>(model, at.inputs, q, force);
+    at.upper -= force;
+    constraint_force<double>(model, at.inputs, q, lambda, force, at.lower);
+    at.upper -= force;
+    at.lower = -at.lower;
+    return at;
+}
+
+std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
+    switch (outcome) {
+        case Outcome::loaded_idle_mode:
+            return "the number loads a motion that no joint or element resists: " +
+                   idle_modes(diagnosis);
+        case Outcome::inconsistent_constraints:
+            return "redundant joints close at this value of the number only";
+        case Outcome::not_finite: return "the derivative is not finite";
+        default: return "the tangent is singular at the state";
+    }
+}
+
+// Σ w_k ΔG_k into s.upper and s.lower. Points and lengths that change together keep a row closed: what
+// is left is rounding.
+void difference(SteppingState<double>& s, double a, const Residual& here,
+                const Neighbours& stencil) {
+    s.upper.setZero(), s.lower.setZero();
+    for (const Neighbour& k : stencil) {
+        const Residual there = residual_of(*k.model, k.model->branches.front(), a, s.q, s.lambda);
+        s.upper += k.weight * (there.upper - here.upper);
+        s.lower += k.weight * (there.lower - here.lower);
+    }
+    const double rounding = last_digits * (1 + reach(s.q)) * amplification(stencil);
+    for (double& row : s.lower)
+        if (std::abs(row) <= rounding) row = 0;
+}
+
+}  // namespace
+
+std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& branch,
+                                              const Equilibrium& state,
+                                              std::span<const Neighbours> stencils,
+                                              const Analysis& analysis) {
+    check(model, branch);
+    if (state.poses.size() != model.bodies.size())
+        throw std::invalid_argument("the state belongs to another model");
+    SteppingState<double> s(model, branch, analysis);
+    s.q = state_of<double>(state.poses);
+    go_to(s, {1, state.load});
+    ResponseOrders orders;
+    const Outcome ready = std::isnan(analysis.diagnosis.constraint_error)
+                              ? Outcome::not_finite
+                              : factorise_response(s, true, orders);
+    if (ready != Outcome::converged)
+        return {stencils.size(), NeighbourStates{ready, why_not(ready, analysis.diagnosis), {}}};
+    const Residual here = residual_of(model, branch, state.load, s.q, s.lambda);
+    const double stiffest = *std::ranges::max_element(s.system.M.values, {},
+                                                      [](double x) { return std::abs(x); }),
+                 rounding = last_digits * stiffest * s.length;
+    std::vector<NeighbourStates> all;
+    for (const Neighbours& stencil : stencils) {
+        NeighbourStates& result = all.emplace_back();
+        difference(s, state.load, here, stencil);
+        result.outcome = answer_response(s, Judged::all, rounding * amplification(stencil));
+        if (result.outcome != Outcome::converged) {
+            result.detail = why_not(result.outcome, analysis.diagnosis);
+            continue;
+        }
+        for (const Neighbour& k : stencil) {
+            State<double> q = s.q;
+            Vector<double> lambda = s.lambda;
+            double first = 0;
+            bool met = false, last = false;
+            for (int step = 0; step < chord_steps && !last; ++step) {
+                last = met;
+                const Residual there =
+                    residual_of(*k.model, k.model->branches.front(), state.load, q, lambda);
+                s.upper = there.upper - here.upper, s.lower = there.lower - here.lower;
+                (void)answer_response(s, Judged::nothing);
+                advance(q, s.x.head(s.n()));
+                lambda += s.x.tail(s.m());
+                const double size = std::sqrt(size_of_solution(s));
+                if (step == 0) first = size;
+                met = size <= chord_met * first;
+            }
+            Equilibrium& there = result.states.emplace_back(state);
+            const auto inputs = inputs_at<double>(*k.model, k.model->branches.front(), state.load);
+            record<double>(*k.model, inputs, q, q, lambda, state.load, there);
+        }
+    }
+    return all;
+}
+
+}  // namespace elastocheck::recursive

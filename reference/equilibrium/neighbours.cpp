@@ -1,0 +1,68 @@
+#include "reference/equilibrium/neighbours.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+#include "reference/equilibrium/state_tangent.hpp"
+
+namespace elastocheck::reference::equilibrium {
+namespace {
+
+constexpr double last_digits = 64 * std::numeric_limits<double>::epsilon();
+
+// The system of a neighbour in the scales of `of`.
+System in_scales_of(const System& of, const Model& model, double a) {
+    System system = make_system(model, model.branches.front(), {&a, 1});
+    if (system.equations() != of.equations())
+        throw std::invalid_argument("a neighbour of another model");
+    system.centre = of.centre, system.length = of.length, system.force = of.force;
+    return system;
+}
+
+}  // namespace
+
+std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& branch,
+                                              const Equilibrium& state,
+                                              std::span<const Neighbours> stencils) {
+    const StateTangent tangent = tangent_at(model, branch, state);
+    if (tangent.outcome != Outcome::converged)
+        return {stencils.size(), NeighbourStates{tangent.outcome, tangent.what, {}}};
+    const Eigen::VectorXd here = residual(tangent.system, tangent.loading, tangent.x);
+    const double rounding = last_digits * largest_entry(tangent.at.J);
+    std::vector<NeighbourStates> all;
+    for (const Neighbours& stencil : stencils) {
+        NeighbourStates& result = all.emplace_back();
+        std::vector<System> systems;
+        Eigen::VectorXd E_rate = Eigen::VectorXd::Zero(here.size());
+        for (const Neighbour& k : stencil) {
+            systems.push_back(in_scales_of(tangent.system, *k.model, state.load));
+            E_rate += k.weight * (residual(systems.back(), tangent.loading, tangent.x) - here);
+        }
+        const Answered answered = answer_to(tangent, E_rate, rounding * amplification(stencil));
+        if (answered.outcome != Outcome::converged) {
+            result.outcome = answered.outcome, result.detail = answered.what;
+            continue;
+        }
+        // what is of second order need not be in the range of J
+        constexpr double not_judged = std::numeric_limits<double>::infinity();
+        for (const System& system : systems) {
+            Eigen::VectorXd x = tangent.x;
+            double first = 0;
+            bool met = false, last = false;
+            for (int step = 0; step < chord_steps && !last; ++step) {
+                last = met;
+                const Answered by =
+                    answer_to(tangent, residual(system, tangent.loading, x) - here, not_judged);
+                if (by.outcome != Outcome::converged) break;
+                x = moved(system, x, by.dx);
+                const double size = pose_size(system, by.dx);
+                if (step == 0) first = size;
+                met = size <= chord_met * first;
+            }
+            result.states.push_back(state_of(system, tangent.loading, x));
+        }
+    }
+    return all;
+}
+
+}  // namespace elastocheck::reference::equilibrium
