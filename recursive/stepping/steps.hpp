@@ -101,6 +101,7 @@ template <class Real>
 Outcome step(SteppingState<Real>& s, const Linear& method, Parameters<Real> next) {
     const Drive drive = next.t != s.parameters.t ? Drive::start : Drive::rate;
     const Real amount = drive == Drive::start ? next.t - s.parameters.t : next.a - s.parameters.a;
+    if (!(std::abs(next.a) <= std::abs(Real(s.end)))) return Outcome::inconsistent_constraints;
     if (turns_too_far(s, drive, amount)) return Outcome::diverged;
     const Parameters<Real> here = s.parameters;
     if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
@@ -144,6 +145,7 @@ Outcome step(SteppingState<Real>& s, const Linear& method, Parameters<Real> next
 template <class Real>
 Outcome step(SteppingState<Real>& s, const Consistent& method, Parameters<Real> next) {
     const int n = s.n(), m = s.m();
+    if (!(std::abs(next.a) <= std::abs(Real(s.end)))) return Outcome::inconsistent_constraints;
     if (turns_too_far(s, Drive::rate, next.a - s.parameters.a)) return Outcome::diverged;
     go_to(s, next);
     // for the check of idle modes
