@@ -38,6 +38,14 @@ Residuals residuals(const Model& model, const Branch& branch, const Equilibrium&
     for_each_row<double>(model, inputs, q, [&](int, const Row<double>& row) {
         worse(row.length ? result.length : result.direction, row.Phi);
     });
+    // Both rows are also zero on the mirrored side.
+    for (std::size_t c = 0; c < model.constraints.size(); ++c) {
+        const ConstraintKind& kind = model.constraints[c].kind;
+        const double length = inputs.offset[c];
+        if (std::holds_alternative<DistanceBetween>(kind) && !(length > 0))
+            worse(result.length, 2 * length);
+        if (is_angle(kind) && !(slope<double>(kind, length, q) < 0)) worse(result.direction, 2);
+    }
     return result;
 }
 

@@ -52,7 +52,10 @@ std::string words(const Model& model, const Diagnosis& diagnosis, const Branch& 
                     "one";
             break;
         case Outcome::inconsistent_constraints:
-            if (!std::isnan(stop.at))
+            if (const auto gone = vanishing_length(model, branch);
+                gone && !std::isnan(stop.at) && std::abs(stop.at) >= 0.99 * std::abs(gone->at))
+                detail = no_length(model, branch, *gone);
+            else if (!std::isnan(stop.at))
                 detail += ": redundant joints are inconsistent";
             else
                 detail = fmt::format(
@@ -95,6 +98,11 @@ EquilibriumPath found(const Model& model, const Branch& branch, const Options& o
                       const Analysis& analysis, const Visit& visit) {
     if (const std::string doubt = undecided(model, analysis.diagnosis); !doubt.empty())
         return {Outcome::singular, fmt::format("branch '{}': {}", branch.name, doubt), {}, {}};
+    if (const auto gone = vanishing_length(model, branch); gone && gone->at == 0)
+        return {Outcome::inconsistent_constraints,
+                fmt::format("branch '{}': {}", branch.name, no_length(model, branch, *gone)),
+                {},
+                {}};
     if (const auto* how = std::get_if<Series>(&options.method.kind)) {
         const int points = options.record > 0  ? options.record
                            : options.steps > 0 ? options.steps

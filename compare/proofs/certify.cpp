@@ -100,7 +100,9 @@ bool CertifyStudy::conclusive() const {
                if (is_not_applicable(side.outcome)) return true;
                const bool ended = side.outcome == Outcome::converged ||
                                   (side.limit && side.limit->answer == Answer::proved);
-               return ended && side.tally.points > 0 && side.tally.proved == side.tally.points;
+               const bool one_curve = !side.curve || side.curve->answer == Answer::proved;
+               return ended && one_curve && side.tally.points > 0 &&
+                      side.tally.proved == side.tally.points;
            });
 }
 

@@ -54,7 +54,7 @@ struct CertifyStudy {
     int points() const;
     int proved() const;
     bool excluded() const;  // some point is proved wrong
-    // Every solver reached the end or a proved limit point, and every point is proved.
+    // Every solver reached the end or a proved limit point, and every point and curve is proved.
     bool conclusive() const;
 };
 

@@ -10,6 +10,7 @@
 #include "recursive/series/sides.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/stability.hpp"
+#include "recursive/stepping/step_check.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive::batch {
@@ -75,12 +76,14 @@ bool may_push_idle(SteppingState& s) {
 
 // Whether the determinant, 1 at τ = 0, may have a zero inside: as lost_inside() begins.
 bool may_dip(double in_middle, double at_end) {
-    constexpr double dips = 0.5;
+    constexpr double dips = 0.5, curved = 0.02;
     if (!(in_middle > 0)) return true;
+    const auto [lowest, highest] = std::minmax({1., in_middle, at_end});
     const double before = 2 * (in_middle - 1), behind = 2 * (at_end - in_middle),
                  bend = behind - before, there = 0.25 - before / (2 * bend),
                  least = 1 + there * (before + bend * (there - 0.5));
-    return bend > 0 && there > 0 && there < 1 && least < dips * std::min(1.0, at_end);
+    const double deep = std::max(dips * std::min(1.0, at_end), curved * (highest - lowest));
+    return bend > 0 && there > 0 && there < 1 && least < deep;
 }
 
 }  // namespace
@@ -615,7 +618,8 @@ void Pack::check_ends(bool stable, Matrix<Lanes>& softest) {
     if (stable) least = least_stiffness(going(), softest);
     each(going(), [&](Slot& slot, int at) {
         const double log_end = log_determinant(lu, at);
-        slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side;
+        slot.inside = static_cast<int>(lane(lu.sign, at)) == slot.side &&
+                      !any_reversed(slot.s->model, slot.from, slot.s->q);
         if (stable) {
             const auto& [mu, of_energy] = least[static_cast<std::size_t>(at)];
             slot.inside = slot.inside && of_energy && mu > 0 && !may_push_idle(*slot.s) &&

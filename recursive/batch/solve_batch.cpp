@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 
@@ -56,7 +57,10 @@ void solve_batch(const Model& design, const Analysis& analysis, std::span<const 
     for (std::size_t v = 0; v < variants.size(); ++v) {
         for (const auto& branch : variants[v].branches) check(variants[v], branch);
         elastocheck::structure(variants[v], structure);
-        if (!pack || structure != expected) {
+        const bool ends_early = std::ranges::any_of(variants[v].branches, [&](const Branch& side) {
+            return vanishing_length(variants[v], side).has_value();
+        });
+        if (!pack || structure != expected || ends_early) {
             solve_alone(v, variants[v], options, visit);
             continue;
         }

@@ -11,6 +11,7 @@
 
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
+#include "models/vanishing_length.hpp"
 #include "recursive/formula/law.hpp"
 
 namespace elastocheck::recursive {
@@ -107,6 +108,14 @@ inline void check(const Model& model, const Branch& branch) {
     require(
         stands_on(model, branch),
         "the model has parts that are inactive on it, or it does not begin at 0 (on_branch, ways)");
+}
+
+// The last parameter that is followed: `to` unless a driven length between two points vanishes
+// before. The row (d·d - c²) / (2c) of a length c is also zero where c = -|d|.
+inline double last_parameter(const Model& model, const Branch& branch) {
+    constexpr double before = 1 - 1e-3;
+    const auto gone = vanishing_length(model, branch);
+    return gone ? before * gone->at : branch.to;
 }
 
 // The inputs at (t, a), from those at the design position. Allocates only on the first call with

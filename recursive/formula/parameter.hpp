@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "elastocheck/scene.hpp"
+#include "models/vanishing_length.hpp"
 
 namespace elastocheck::recursive {
 
@@ -20,6 +20,12 @@ inline std::string in_unit(ParameterUnit unit, double a, int digits = 6) {
         case ParameterUnit::none: break;
     }
     return fmt::format("{:.{}g}", a, digits);
+}
+
+inline std::string no_length(const Model& model, const Branch& branch, const Vanishing& gone) {
+    return fmt::format("joint '{}' would have no length from {} on",
+                       model.joints[static_cast<std::size_t>(gone.joint)].name,
+                       in_unit(branch.unit, gone.at));
 }
 
 }  // namespace elastocheck::recursive

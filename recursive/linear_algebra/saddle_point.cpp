@@ -6,6 +6,16 @@ namespace elastocheck::recursive {
 
 Vector<double> equilibration(const SaddleMatrix<double>& M) {
     Vector<double> d = Vector<double>::Ones(M.n + M.m), largest(M.n + M.m);
+    // Rates far below the unit of Φ_q would be satisfied by d = 1 and stay small.
+    double rate = 0;
+    for_each_entry(M, [&](int i, int j, int at) {
+        if (i < M.n && j < M.n && i % 6 < 3 && j % 6 < 3)
+            rate = std::max(rate, std::abs(M.values[static_cast<std::size_t>(at)]));
+    });
+    if (rate > 0 && rate < 1) {
+        d.head(M.n).setConstant(1 / std::sqrt(rate));
+        d.tail(M.m).setConstant(std::sqrt(rate));
+    }
     for (int sweep = 0; sweep < 10; ++sweep) {
         largest.setZero();
         for_each_entry(M, [&](int i, int j, int at) {

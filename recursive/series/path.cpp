@@ -12,6 +12,7 @@
 #include "recursive/stepping/recording.hpp"
 #include "recursive/stepping/settle.hpp"
 #include "recursive/stepping/stability.hpp"
+#include "recursive/stepping/step_check.hpp"
 #include "recursive/stepping/stiffness.hpp"
 
 namespace elastocheck::recursive::series {
@@ -64,7 +65,8 @@ struct Continuation {
     Coefficients<double> c;
     std::vector<Followed>& curves;
     Near near;
-    double to;  // of the parameter
+    double to;   // of the parameter
+    double end;  // the last one that is followed: `to`, or before a driven length is zero
     // a_1 of the next expansion; by arc length its sign, where `ahead` is zero
     double first;
     double per_unit;       // metres equivalent to an error of one unit of the parameter
@@ -78,7 +80,8 @@ struct Continuation {
     double log_begin = 0;  // log₂ |determinant| at the start of the expansion
     // determinant() at the midpoint of the expansion; -1 if the matrix is singular there
     double in_middle = 1;
-    Vector<double> x;  // value of the polynomial
+    bool reversed = false;  // an element, at the end of the last expansion
+    Vector<double> x;       // value of the polynomial
     Path path;
 
     Continuation(SteppingState& s_, std::vector<Followed>& curves_,
@@ -90,6 +93,7 @@ struct Continuation {
           curves(curves_),
           near{s.length, 0.1 * options.tolerance, 10 * options.tolerance},
           to(drive == Drive::start ? 1 : s.branch.to),
+          end(drive == Drive::start ? 1 : s.end),
           first(to),
           per_unit(s.length / std::abs(to)),
           ahead(Vector<double>::Zero(s.n() + s.m())) {
@@ -242,12 +246,12 @@ Outcome range_of_validity(Continuation& w, double a_0, const Singularity& singul
         // [m]; a branch without curvature would have an infinite range
         end.tau = std::min(end.tau, 1.0);
         if (const auto met =
-                first_zero([&](double t) { return polynomial(w.c.load, t) - w.to; }, end.tau))
+                first_zero([&](double t) { return polynomial(w.c.load, t) - w.end; }, end.tau))
             end = {*met, true, {}, {}};
         stop_at_knots(w, end);
         return Outcome::converged;
     }
-    const double rest = (w.to - a_0) / w.to;
+    const double rest = (w.end - a_0) / w.to;
     if (end.tau >= rest) end = {rest, true, {}, {}};
     stop_at_knots(w, end);
     if (end.last || !end.over.empty() || !end.at_once.empty()) return Outcome::converged;
@@ -326,7 +330,7 @@ Outcome accept_expansion(Continuation& w, const State<double>& from, End& end,
                 factorise_at(w.s, w.s.q, w.s.lambda) == Outcome::converged ? determinant(w) : -1;
 
         move_to(w, from, end.tau);
-        if (end.last && !w.by_arc()) w.go_to(w.to);
+        if (end.last && !w.by_arc()) w.go_to(w.end);
         w.ahead = w.by_arc() ? derivative(w.c.x, end.tau) : Vector<double>(w.c.x.col(1));
         const Outcome outcome = correct_at_end(w, &judged, judged.error_end);
         const double error = judged.error_end;
@@ -407,11 +411,12 @@ std::vector<Piece> pieces_of(const std::vector<Followed>& curves) {
 
 // Expands at the present point on the pieces that the motion enters. A deformation that starts at a
 // knot and leaves its piece at once belongs to the neighbouring piece. Each change of piece changes
-// the motion: a linear complementarity problem. All such curves change piece together, or one at a
-// time where the set of pieces would repeat. Where no set agrees with its motion, the path turns
-// back at the knot.
+// the motion: a linear complementarity problem. All such curves change piece together; once a set of
+// pieces would repeat, only the first of them does, which ends where a solution exists (Murty 1974).
+// Where no set agrees with its motion, the path turns back at the knot.
 Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
     std::vector<std::vector<Piece>> tried;
+    bool together = true;
     for (;;) {
         expand(w.s, w.e, w.c, w.first, w.by_arc(), w.ahead);
         singularity = nearest_singularity(w.s, w.c);
@@ -425,7 +430,11 @@ Outcome expand_here(Continuation& w, Singularity& singularity, End& end) {
             for (const auto& [k, direction] : end.at_once) next[k] += direction;
             return std::ranges::find(tried, next) != tried.end();
         };
-        if (would_repeat()) end.at_once.resize(1);
+        if (together && would_repeat()) {
+            together = false;
+            tried.assign(1, pieces_of(w.curves));
+        }
+        if (!together) end.at_once.resize(1);
         if (would_repeat()) {
             w.path.limits.push_back(w.at());
             return Outcome::limit_point;
@@ -456,8 +465,9 @@ double divide(Continuation& w, const State<double>& from, double reach) {
 // predicts the minimum, and the value there replaces one of the three, until the value is negative,
 // or is positive and agrees with the prediction. If none is found, the state is left at the end.
 std::optional<double> lost_inside(Continuation& w, const State<double>& from, double reach) {
-    // A predicted minimum below this fraction of the smaller end value is evaluated.
-    constexpr double dips = 0.5;
+    // A predicted minimum below this fraction of the smaller end value, or of the range of the three
+    // values, is evaluated.
+    constexpr double dips = 0.5, curved = 0.02;
     constexpr double foretold = 0.2;  // error of a prediction that counts as agreement, relative
     // Smallest distance of a new point from the middle one, as a fraction of the interval.
     constexpr double apart = 0.05;
@@ -465,7 +475,8 @@ std::optional<double> lost_inside(Continuation& w, const State<double>& from, do
     if (!w.stable) return std::nullopt;
     if (w.in_middle < 0) return reach / 2;
     std::array<double, 3> tau{0, reach / 2, reach}, at{1, w.in_middle, determinant(w)};
-    const double deep = dips * std::min(at[0], at[2]);
+    const auto [lowest, highest] = std::ranges::minmax(at);
+    const double deep = std::max(dips * std::min(at[0], at[2]), curved * (highest - lowest));
     const double a = w.at();
     State<double> end;
     Vector<double> lambda_end;
@@ -507,6 +518,37 @@ std::optional<double> lost_inside(Continuation& w, const State<double>& from, do
         w.s.lambda = lambda_end;
         (void)factorise_at(w.s, w.s.q, w.s.lambda);
     }
+    return std::nullopt;
+}
+
+// The first τ at which an element reverses: a spring passes through zero length, or a bushing through
+// half a turn. The polynomial goes on smoothly where the force jumps. The state is left there.
+std::optional<double> reversed_inside(Continuation& w, const State<double>& from, double reach) {
+    constexpr int pieces = 32, halvings = 40;
+    const Model& model = w.s.model;
+    if (!any_reversed(model, from, w.s.q)) return std::nullopt;
+    const State<double> end = w.s.q;
+    const Vector<double> lambda_end = w.s.lambda;
+    const double a = w.at();
+    State<double> before = from;
+    for (int k = 1; k <= pieces; ++k) {
+        double low = reach * (k - 1) / pieces, high = reach * k / pieces;
+        move_to(w, from, high);
+        if (!any_reversed(model, before, w.s.q)) {
+            before = w.s.q;
+            continue;
+        }
+        for (int n = 0; n < halvings; ++n) {
+            const double middle = (low + high) / 2;
+            move_to(w, from, middle);
+            (any_reversed(model, before, w.s.q) ? high : low) = middle;
+        }
+        move_to(w, from, low);
+        return low;
+    }
+    w.go_to(a);  // an element has only turned far
+    w.s.q = end;
+    w.s.lambda = lambda_end;
     return std::nullopt;
 }
 
@@ -583,10 +625,15 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
         w.log_begin = again ? (*begun)->log_determinant : log_determinant(s.system);
         if (const Outcome o = accept_expansion(w, from, end, judged); o != Outcome::converged)
             return o;
+        const auto reversed = reversed_inside(w, from, end.tau);
+        if (reversed) {
+            end = {*reversed, false, {}, {}};
+            w.reversed = true;
+        }
         // The polynomial continues past a bifurcation point, and the branch past a loss of
         // stability.
-        bool past = is_past(w, rises_ahead(w));
-        if (!past)
+        bool past = !reversed && is_past(w, rises_ahead(w));
+        if (!past && !reversed)
             if (const auto lost = lost_inside(w, from, end.tau)) past = true, end.tau = *lost;
         if (past) end.tau = divide(w, from, end.tau);
         if (w.by_arc()) look_for_turns(w, end.tau);
@@ -594,7 +641,8 @@ Outcome follow_to_end(Continuation& w, const StartStability* known = nullptr,
                                      static_cast<int>(end.over.size()), singularity, judged});
         gone_over += end.over.size();
         if (past) return Outcome::bifurcation_point;
-        if (end.last) return Outcome::converged;
+        if (reversed) return Outcome::branch_lost;
+        if (end.last) return w.end == w.to ? Outcome::converged : Outcome::inconsistent_constraints;
         if (w.by_arc() && !(std::abs(w.at()) <= 2 * std::abs(w.to))) return Outcome::branch_lost;
         if (const Outcome o = cross_knots(w, end.over); o != Outcome::converged) return o;
     }
@@ -633,12 +681,22 @@ std::string words(const Continuation& w, Outcome outcome, const Diagnosis& diagn
             return at +
                    ": another curve of equilibria crosses the branch, which is unstable past this "
                    "point";
-        case Outcome::inconsistent_constraints: return at + ": redundant joints are inconsistent";
+        case Outcome::inconsistent_constraints:
+            if (const auto gone = vanishing_length(w.s.model, w.s.branch);
+                gone && std::abs(w.at()) >= 0.99 * std::abs(w.end))
+                return fmt::format("{}: {}", branch, no_length(w.s.model, w.s.branch, *gone));
+            return at + ": redundant joints are inconsistent";
         case Outcome::loaded_idle_mode:
             return at +
                    ": the load acts on a motion that no joint or element resists at the design "
                    "position: " +
                    idle_modes(diagnosis);
+        case Outcome::branch_lost:
+            if (w.reversed)
+                return at +
+                       ": a spring passes through zero length or a bushing through half a turn, "
+                       "where its force jumps";
+            return at;
         default: return at;
     }
 }

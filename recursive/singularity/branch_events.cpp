@@ -86,8 +86,9 @@ std::optional<double> lost_between(SteppingState& s, const ContinuationSettings&
 std::optional<double> suspect_between(SteppingState& s, const ContinuationSettings& settings,
                                       const Node& from, const Node& to, double log_from,
                                       double log_to) {
-    // A predicted minimum below this fraction of the lowest value is evaluated.
-    constexpr double dips = 0.25;
+    // A predicted minimum below this fraction of the lowest value, or of the range of the three
+    // values, is evaluated.
+    constexpr double dips = 0.25, curved = 0.02;
     // Below this fraction of the larger end value two modes may have passed zero.
     constexpr double nearly = 0.01;
     constexpr int most = 8;  // values
@@ -119,8 +120,9 @@ std::optional<double> suspect_between(SteppingState& s, const ContinuationSettin
                      least = m->d + (vertex - m->t) * (rise + bend * (vertex - l->t));
         const auto is_near = [&](const Value& value) { return std::abs(value.t - vertex) < 1e-3; };
         const bool inside = bend > 0 && vertex > l->t && vertex < r->t;
-        if (!inside || !(least < dips * lowest->d) || std::ranges::any_of(known, is_near) ||
-            known.size() == most) {
+        const double range = std::max(l->d, r->d) - lowest->d;
+        if (!inside || !(least < std::max(dips * lowest->d, curved * range)) ||
+            std::ranges::any_of(known, is_near) || known.size() == most) {
             const double ends = std::max(known.front().d, known.back().d);
             const bool between_ends = lowest->t > 0 && lowest->t < 1;
             return between_ends && lowest->d < nearly * ends ? std::optional(place(lowest->t))
@@ -219,7 +221,7 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
         return Event{o, std::numeric_limits<double>::quiet_NaN(), s.unstable_start};
     else if (o != Outcome::converged)
         return std::nullopt;  // the method reports this failure itself
-    const Traversal traversal = follow_by_long_steps(s, branch.to);
+    const Traversal traversal = follow_by_long_steps(s, s.end);
     if (traversal.through) return std::nullopt;
     const std::optional<Event> event = find_event(model, branch, analysis);
     const bool sooner =

@@ -96,7 +96,8 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
 
     for (int steps = 0; reached <= last; ++steps) {
         if (steps == most_steps) return Outcome::iteration_limit;
-        next.p = std::abs(to - node.p) < std::abs(h) * 1.1 ? to : node.p + h;
+        if (node.p == s.end && s.end != to) return Outcome::inconsistent_constraints;
+        next.p = std::abs(s.end - node.p) < std::abs(h) * 1.1 ? s.end : node.p + h;
         KnotCrossing met;
         Trial trial =
             step_to_knot(s, settings, node, curvature, lambda_curvature, next, q, lambda, met);
@@ -119,7 +120,7 @@ Outcome adapt(SteppingState& s, const Adaptive& method, double to, Recording& re
                 error = std::max({trial.left, size,
                                   share_of_reactions(s, settings, q, node.lambda, next.lambda)});
                 const bool turned = s.system.lu.orientation != node.orientation;
-                const bool dips = log_determinant(s.system) < std::min(log_here, log_next) - 1;
+                const bool dips = determinant_dips(log_here, log_determinant(s.system), log_next);
                 if (trial.verdict == Verdict::accepted && (turned || dips))
                     trial.verdict =
                         turned ? Verdict::past_singular_point : Verdict::nearly_singular;

@@ -108,17 +108,18 @@ std::string moving_bodies(const Model& model, const Eigen::VectorXd& motion) {
     return text;
 }
 
-// The motion of least stiffness with the matrix in the system: the eigenvector of ZᵀKZ, Z a basis
-// of the null space of Φ_q, in the norm |W x|. Computed densely, where a message needs it.
-std::string softest_motion(const SteppingState& s) {
-    constexpr Eigen::Index most = 600;    // coordinates
+// Z, a basis of the null space of Φ_q [n × d], and ZᵀKZ with the matrix in the system, in the norm
+// |W x|; computed densely.
+struct Reduced {
+    Eigen::MatrixXd Z, K;
+};
+constexpr int most_reduced = 600;  // coordinates
+Reduced reduced(const SteppingState& s) {
     constexpr double independent = 1e-9;  // of rows of length one
     const Eigen::Index n = s.n(), m = s.m();
-    if (n > most) return "a motion of a model too large to say which bodies move";
     const Eigen::MatrixXd M = sparse(s.system.M);
     const auto scale = s.system.weight.head(n).cwiseInverse().asDiagonal();
-    Eigen::MatrixXd K = scale * M.topLeftCorner(n, n) * scale;
-    K = ((K + K.transpose()) / 2).eval();
+    const Eigen::MatrixXd K = scale * M.topLeftCorner(n, n) * scale;
     Eigen::MatrixXd Z = Eigen::MatrixXd::Identity(n, n);
     if (m > 0) {
         Eigen::MatrixXd Phi_T = (M.bottomLeftCorner(m, n) * scale).transpose();
@@ -128,9 +129,30 @@ std::string softest_motion(const SteppingState& s) {
         qr.compute(Phi_T);
         Z = matrix_Q(qr).rightCols(n - qr.rank());
     }
-    const Eigen::MatrixXd reduced = Z.transpose() * K * Z;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(reduced);
-    return moving_bodies(s.model, Z * solver.eigenvectors().col(0));
+    return {Z, Z.transpose() * K * Z};
+}
+
+// The motion of least stiffness: an eigenvector of the symmetric part of ZᵀKZ.
+std::string softest_motion(const SteppingState<double>& s) {
+    if (s.n() > most_reduced) return "a motion of a model too large to say which bodies move";
+    const Reduced at = reduced(s);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+        Eigen::MatrixXd((at.K + at.K.transpose()) / 2));
+    return moving_bodies(s.model, at.Z * solver.eigenvectors().col(0));
+}
+
+// Whether ZᵀKZ has a negative real eigenvalue where a dead moment makes it unsymmetric. Statics does
+// not decide on complex ones.
+bool is_unstable_under_moments(const SteppingState<double>& s) {
+    constexpr double rounding = 1e-12;  // of the largest eigenvalue
+    if (s.free <= 0 || s.n() > most_reduced || s.system.held.idle > 0) return false;
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(reduced(s).K, false);
+    const auto& mu = solver.eigenvalues();
+    const double size = mu.cwiseAbs().maxCoeff();
+    return solver.info() == Eigen::Success &&
+           std::any_of(mu.begin(), mu.end(), [&](const auto& of) {
+               return of.imag() == 0 && of.real() < -rounding * size;
+           });
 }
 
 }  // namespace
@@ -141,7 +163,8 @@ StartStability start_stability(SteppingState& s) {
     // modes soft relative to the stiffest are below the rounding of is_unstable()
     start.unstable =
         is_unstable(s) || negative_idle_stiffness(s, s.q, s.lambda) < 0 ||
-        (has_energy(s.model, s.branch) && start.least.of_energy && start.least.value < 0);
+        (has_energy(s.model, s.branch) &&
+         (start.least.of_energy ? start.least.value < 0 : is_unstable_under_moments(s)));
     if (start.unstable) start.motion = softest_motion(s);
     return start;
 }
@@ -150,6 +173,19 @@ Outcome check_start_stability(SteppingState& s, const StartStability& start) {
     if (!start.unstable || !has_energy(s.model, s.branch)) return Outcome::converged;
     s.unstable_start = start.motion;
     return Outcome::singular;
+}
+
+// d(t) = d₀ + b t + c t², 0 ≤ t ≤ 1, relative to the largest value; at its least d₀ - b² / 4c
+bool determinant_dips(double log_from, double log_middle, double log_to) {
+    constexpr double deep = 0.5, curved = 0.02;
+    const double most = std::max({log_from, log_middle, log_to});
+    const double from = std::exp2(log_from - most), middle = std::exp2(log_middle - most),
+                 to = std::exp2(log_to - most);
+    const double b = -3 * from + 4 * middle - to, c = 2 * (from - 2 * middle + to);
+    const double least = std::min({from, middle, to});
+    return middle < deep * std::min(from, to) ||
+           (c > 0 && b < 0 && -b < 2 * c &&
+            from - b * b / (4 * c) < std::max(deep * least, curved * (1 - least)));
 }
 
 double least_eigenvalue(const Eigen::MatrixXd& Q) {

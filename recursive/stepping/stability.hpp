@@ -38,6 +38,10 @@ StartStability start_stability(SteppingState& s);
 // `singular` if the start of the branch is unstable.
 Outcome check_start_stability(SteppingState& s, const StartStability& start);
 
+// Whether the parabola through log₂ |determinant| at the ends and the middle of a step, taken as
+// values, falls below half of the least of them or below 2 % of their range in between.
+bool determinant_dips(double log_from, double log_middle, double log_to);
+
 // The smallest eigenvalue of the symmetric part of Q.
 double least_eigenvalue(const Eigen::MatrixXd& Q);
 

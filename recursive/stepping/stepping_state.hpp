@@ -87,6 +87,7 @@ struct SteppingState {
     const Model& model;
     const Branch& branch;
     double length;  // L of the diagnosis [m]
+    double end;     // last parameter that is followed: branch.to, or before a driven length is zero
     int free;       // number of motions that the joints allow and something resists
     Counts counts;
     bool consistent = false;  // whether the matrix is the consistent tangent, else K of (19)
@@ -128,6 +129,7 @@ struct SteppingState {
         : model(model_),
           branch(branch_),
           length(analysis.diagnosis.length),
+          end(last_parameter(model_, branch_)),
           free(analysis.diagnosis.degrees_of_freedom() -
                static_cast<int>(analysis.diagnosis.idle.size())),
           q(design_state<double>(model)),

@@ -30,6 +30,8 @@
 // covered.
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "reference/certificate/certificate.hpp"
 #include "reference/certificate/krawczyk.hpp"
 #include "reference/certificate/state.hpp"
@@ -410,12 +412,24 @@ Held held_over(const NodeSolver& solver, const Piece& piece) {
     return held_by(solver.system, solver.border, mu);
 }
 
+std::string in_unit_of(ParameterUnit unit, double a) {
+    switch (unit) {
+        case ParameterUnit::newton: return fmt::format("{:.12g} N", a);
+        case ParameterUnit::newton_metre: return fmt::format("{:.12g} N·m", a);
+        case ParameterUnit::metre: return fmt::format("{:.12g} mm", 1e3 * a);
+        case ParameterUnit::radian: return fmt::format("{:.12g} deg", a * 180 / std::numbers::pi);
+        case ParameterUnit::none: break;
+    }
+    return fmt::format("{:.12g}", a);
+}
+
 }  // namespace
 
 Tube certify_branch(const Model& model, const Branch& branch, std::span<const Equilibrium> states,
                     const Tolerance& tolerance) {
     Tube tube;
     tube.width = {0, 0, 0, 0};
+    const auto place = [&](double a) { return in_unit_of(branch.unit, a); };
     const auto open = [&](const std::string& why) {
         tube.answer = Answer::open;
         tube.detail = why;
@@ -432,7 +446,7 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
         if (!at[k].z.allFinite() || !std::isfinite(states[k].load))
             return open("a state is not finite");
         if (k > 0 && !((states[k].load - states[k - 1].load) * range > 0))
-            return open(fmt::format("the states turn back at {:.9g}", states[k].load));
+            return open(fmt::format("the states turn back at {}", place(states[k].load)));
     }
     const StateAt& middle = at[at.size() / 2];
     const Interpolant interpolant_of = interpolant(at);
@@ -446,11 +460,11 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     Held held, pushed;
     Node from = solver.node(tube.from), middle_node, to;
     if (!from.found)
-        return open(
-            fmt::format("Newton's method does not converge near the state at {:.9g}", tube.from));
+        return open(fmt::format("Newton's method does not converge near the state at {}",
+                                place(tube.from)));
     enclose(solver, from);
     if (from.box.size() == 0 || !solver.is_sound(from))
-        return open(fmt::format("nothing is proved at {:.9g}", tube.from));
+        return open(fmt::format("nothing is proved at {}", place(tube.from)));
     const VectorXd none = VectorXd::Zero(from.y.size());
     std::size_t next_state = 0;
     bool halved = false;
@@ -458,22 +472,22 @@ Tube certify_branch(const Model& model, const Branch& branch, std::span<const Eq
     while (tube.to != end) {
         if (bridges == most_bridges)
             return open(
-                fmt::format("past {:.12g} the path stays on a knot, or close to one", tube.to));
+                fmt::format("past {} the path stays on a knot, or close to one", place(tube.to)));
         const bool last = std::abs(end - tube.to) <= 1.01 * std::abs(h);
         const double a1 = last ? end : tube.to + h;
         if (a1 == tube.to || std::abs(h) < shortest * std::abs(range)) {
             if (pushed.held > tolerance.held)
-                return open(fmt::format(
-                    "past {:.12g} the idle motion of {} is loaded by up to {:.2g} N or N·m",
-                    tube.to, idle_bodies(system, solver.border), pushed.held));
-            if (pushed.gap > tolerance.gap)
                 return open(
-                    fmt::format("past {:.12g} joints {} have a gap of up to {:.2g} m or rad",
-                                tube.to, redundant_joints(system, solver.border), pushed.gap));
+                    fmt::format("past {} the idle motion of {} is loaded by up to {:.2g} N or N·m",
+                                place(tube.to), idle_bodies(system, solver.border), pushed.held));
+            if (pushed.gap > tolerance.gap)
+                return open(fmt::format("past {} joints {} have a gap of up to {:.2g} m or rad",
+                                        place(tube.to), redundant_joints(system, solver.border),
+                                        pushed.gap));
             return open(
-                fmt::format("no piece is proved past {:.12g}: the branch turns back or bifurcates, "
+                fmt::format("no piece is proved past {}: the branch turns back or bifurcates, "
                             "or a law ends",
-                            tube.to));
+                            place(tube.to)));
         }
         to = halved && middle_node.a == a1 ? middle_node : solver.node(a1);
         middle_node = solver.node(tube.to / 2 + a1 / 2);

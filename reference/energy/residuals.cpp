@@ -1,6 +1,7 @@
 // Residuals of a state from any leg in the conditions of this leg.
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "elastocheck/energy.hpp"
@@ -16,7 +17,6 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double backwards = 2;  // distance of two opposite unit vectors
 
 double max_or_nan(double a, double b) {
     return std::isnan(a) || std::isnan(b) ? unknown : std::max(a, b);
@@ -49,8 +49,13 @@ Residuals residuals(const Model& given_model, const Branch& branch,
     for (std::size_t k = 0; k < model.constraints.size(); ++k) {
         const auto& kind = model.constraints[k].kind;
         double error = largest(values.Phi.segment(row, rows(kind)));
-        if (points_backwards(kind, prescribed.offset[static_cast<Eigen::Index>(k)], chart))
-            error = backwards;
+        // Φ of a length or an angle is also zero on the mirrored side.
+        const double given = own_offset(kind) + prescribed.offset[static_cast<Eigen::Index>(k)];
+        if (const auto measured = measured_offset(kind, chart)) {
+            const double off = *measured - given;
+            error = max_or_nan(
+                error, std::abs(is_angle(kind) ? std::remainder(off, 2 * std::numbers::pi) : off));
+        }
         double& of_kind = is_direction(kind) ? worst.direction : worst.length;
         of_kind = max_or_nan(of_kind, error);
         row += rows(kind);

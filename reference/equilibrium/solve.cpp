@@ -7,6 +7,23 @@
 #include "reference/equilibrium/continuation/settle.hpp"
 
 namespace elastocheck::reference::equilibrium {
+namespace {
+
+// Two points cannot be at a distance of zero or less.
+std::optional<Failure> vanishing_link(const System& system, double a) {
+    for (std::size_t c = 0; c < system.values.size(); ++c) {
+        const Constraint& constraint = system.model->constraints[c];
+        if (!std::holds_alternative<DistanceBetween>(constraint.kind) || system.values[c].at(a) > 0)
+            continue;
+        const auto joint = static_cast<std::size_t>(constraint.joint);
+        return Failure{Outcome::inconsistent_constraints,
+                       fmt::format("joint '{}' would have no length at {}",
+                                   system.model->joints[joint].name, parameter(*system.branch, a))};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
 
 EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const double> points,
                       const Options& options, const Visit& visit) {
@@ -27,9 +44,11 @@ EquilibriumPath solve(const Model& model, const Branch& branch, std::span<const 
                       "the equations give a number that is not finite at the design pose"});
     double reach = 0;
     for (const double a : points) reach = std::max(reach, std::abs(a));
-    auto failed = settle(continuation, system, reach);
+    auto failed = vanishing_link(system, 0);
+    if (!failed) failed = settle(continuation, system, reach);
     for (auto a = points.begin(); a != points.end() && !failed; ++a) {
-        failed = advance(continuation, *a);
+        failed = vanishing_link(system, *a);
+        if (!failed) failed = advance(continuation, *a);
         if (failed) break;
         Equilibrium point = state_of(system, loading_at(continuation, *a), continuation.here.x);
         if (visit)

@@ -44,7 +44,7 @@ std::string sentence(const compare::CertifyStudy& study) {
     if (proved == points)
         return fmt::format(
             "Not all is proved: {} that were found {} to {}, but some were not found or not "
-            "judged.",
+            "judged, or the curve through them is open.",
             points == 1 ? "the one point" : fmt::format("all {} points", points),
             points == 1 ? "is an equilibrium" : "are equilibria", claim(study.tolerance));
     return fmt::format(

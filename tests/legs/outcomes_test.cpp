@@ -409,5 +409,84 @@ TEST_P(EveryMethod, NothingToSolveIsSolved) {
         EXPECT_LE((state.poses[0].r - at).norm(), 1e-12);
 }
 
+// ---- Scenes that were answered wrongly, or declined though another leg was right.
+
+OneWay found(const std::string& name) {
+    const std::filesystem::path scenes = ELASTOCHECK_SCENES;
+    return side_of(compile(read_scene(scenes / "../../tests/legs/found" / (name + ".yaml"))));
+}
+
+// A rod between a block on springs and the ground, shortened from 102 mm on; the reader refuses it.
+OneWay shortened_rod(double by) {
+    Scene s;
+    s.bodies = {{"block", {0.4 * X}}};
+    s.joints = {{"rod", Distance{{0}, {ground, Vector3d(0.4, 0.02, 0.1)}, std::hypot(0.02, 0.1)}}};
+    s.elastics = {{"k", bushing({ground, 0.4 * X}, {0}, {5e4, 5e4, 5e4}, {1, 1, 1})}};
+    s.branches = {motion_branch(0, -by)};
+    s.probes = {{"end", {0}}};
+    return side_of(s);
+}
+
+// Φ of a length is also zero where the length is negative: on the mirrored side.
+TEST_P(EveryMethod, ALengthThatVanishesEndsTheBranch) {
+    for (const double by : {0.11, 0.15, 0.21, 0.5})
+        for (const int steps : {1, 10, 20}) {
+            const auto path = solve(leg(), shortened_rod(by), steps);
+            EXPECT_EQ(path.outcome, Outcome::inconsistent_constraints) << by << " " << path.detail;
+            EXPECT_TRUE(contains(path.detail, "rod")) << path.detail;
+            for (const auto& point : path.points)
+                EXPECT_LT(std::abs(point.load), std::hypot(0.02, 0.1)) << by << " " << steps;
+        }
+    EXPECT_EQ(solve(leg(), shortened_rod(0.09), 60).outcome, Outcome::converged);
+}
+
+TEST_P(EveryMethod, AStateOnTheMirroredSideHasAResidual) {
+    const OneWay side = shortened_rod(0.15);
+    Equilibrium mirrored = solve({Leg::equilibrium}, shortened_rod(0.05), 1).points.back();
+    mirrored.load = -0.15;
+    const Vector3d base(0.4, 0.02, 0.1), d = mirrored.poses[0].r - base;
+    mirrored.poses[0].r = base + (0.15 - std::hypot(0.02, 0.1)) * d.normalized();
+    EXPECT_GT(residuals(leg(), side, mirrored).length, 0.04);
+}
+
+// The force of a spring jumps where its length is zero: 500 N at the end.
+TEST_P(Outcomes, ASpringThroughZeroLengthIsFollowedOrReported) {
+    const OneWay side = found("spring-through-zero-length");
+    for (const int steps : {1, 2, 7, 40}) {
+        const auto path = solve(leg(), side, steps);
+        for (const auto& point : path.points) {
+            const double x = point.poses[0].r.x();
+            EXPECT_NEAR(std::abs(point.reactions.back().force.x()), 1e4 * (0.1 - std::abs(x)), 2e-2)
+                << steps << " at " << point.load;
+            if (x < 0) {
+                EXPECT_GT(point.reactions.back().force.x(), 0);
+            }
+        }
+    }
+}
+
+// Of two settled states one is unstable under the static moments.
+TEST_P(Outcomes, TheStableOfTwoSettledStatesIsFound) {
+    const auto path = solve(leg(), found("two-settled-states"), 20);
+    ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;
+    EXPECT_NEAR(path.points.back().poses[0].r.x(), -0.4106611, 1e-6);
+}
+
+TEST_P(Outcomes, SmallForcesAndSeveralKnotsAtTheStartAreNoEnd) {
+    for (const char* name : {"tiny-forces", "knots-at-the-start"}) {
+        const auto path = solve(leg(), found(name), 20);
+        EXPECT_EQ(path.outcome, Outcome::converged) << name << ": " << path.detail;
+    }
+}
+
+// The load is perpendicular to a direction fifteen decades softer than others to nine digits: the
+// rest moves the tip by 2.8e-7 m.
+TEST_P(Outcomes, AMotionFarSofterThanOthersIsFollowedOrReported) {
+    const auto path = solve(leg(), found("soft-beside-stiff"), 4);
+    if (path.outcome == Outcome::converged) {
+        EXPECT_NEAR(path.points.back().poses[0].r.norm(), 2.838e-7, 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace elastocheck::legs

@@ -112,6 +112,74 @@ TEST_P(Stability, AnArchThatNeverLeavesItsPlaneGoesThrough) {
             expect_passed(arch.scene(part * arch.side_rate(0), driven), fmt::format("{}", part));
 }
 
+// An arch of unequal sides whose apex is pushed through in a plane and may leave it sideways, with a
+// rotation so soft that the sideways stiffness is not the least one where it dips.
+struct UnequalArch {
+    double b, h, drop;  // half width, height, and how far the right end is below the left [m]
+    double k = 1e5;
+    double side_rate(double z) const {
+        double sum = 0;
+        for (const double end : {0., -drop})
+            sum += k * (1 - std::hypot(b, h - end) / std::hypot(b, z - end));
+        return sum;
+    }
+    // The height from which on the sides push hardest.
+    double worst(double to) const {
+        double least = h;
+        for (int k_ = 0; k_ <= 1000; ++k_)
+            if (const double z = h + to * k_ / 1000; side_rate(z) < side_rate(least)) least = z;
+        return least;
+    }
+    Scene scene(double k_y, double to) const {
+        Scene s;
+        s.bodies = {{"apex", {h * Z}}};
+        s.joints = {{"x", InPlane{{0}, {ground}, ground_x}},
+                    {"about y", Perpendicular{{0, X}, ground_z}},
+                    {"about z", Perpendicular{{0, X}, ground_y}},
+                    {"jack", InPlane{{0}, {ground, h * Z}, ground_z}, true}};
+        for (const double side : {-1., 1.})
+            s.elastics.push_back(
+                {"side", AxialSpring{{0},
+                                     {ground, Vector3d(side * b, 0, side > 0 ? -drop : 0)},
+                                     LinearRate{k},
+                                     std::hypot(b, h + (side > 0 ? drop : 0))}});
+        s.elastics.push_back(
+            {"mount", bushing({ground, h * Z}, {0}, {0, k_y, 0}, {0.57, 0.57, 0.57})});
+        s.branches = {motion_branch(3, to)};
+        s.probes = {{"apex", {0}}};
+        return s;
+    }
+};
+
+// `count` arches with unstable stretches of 0.2 to 20 % of the way, in 1 to 20 steps, adaptive in
+// up to 80; golden ratio fractions instead of random numbers.
+void pass_no_unstable_stretch(const Leg& leg, int from, int count) {
+    const auto share = [](int k, double by) { return std::fmod(by * k, 1.); };
+    for (int k = from; k < from + count; ++k) {
+        UnequalArch arch{0.2 + 0.2 * share(k, 0.618034), 0.02 + 0.1 * share(k, 0.754878), 0};
+        arch.drop = share(k, 0.569840) < 0.5 ? 0 : 0.4 * arch.h;
+        const double to = -arch.h * (1.6 + 1.4 * share(k, 0.381966));
+        const double z = arch.worst(to), half = std::pow(10., -3 + 2 * share(k, 0.324718)) * to;
+        const double k_y = -std::max(arch.side_rate(z + half), arch.side_rate(z - half));
+        if (!(k_y > 0)) continue;
+        const bool adaptive = leg.kind == Leg::recursive && leg.method.name == "adaptive";
+        const int steps = adaptive ? 20 + 60 * k % 61 : 1 + k % 20;
+        const auto path = solve(leg, side_of(arch.scene(k_y, to)), steps);
+        EXPECT_TRUE(path.outcome == Outcome::bifurcation_point || path.outcome == Outcome::singular)
+            << fmt::format("arch {} in {} steps: {} {}", k, steps, name(path.outcome), path.detail);
+    }
+}
+
+struct UnstableStretch : LegTest {};
+ELASTOCHECK_FOR(legs_by_every_method, UnstableStretch);
+struct NightlyUnstableStretch : LegTest {};
+ELASTOCHECK_FOR(legs_by_every_method, NightlyUnstableStretch);
+
+TEST_P(UnstableStretch, OfADrivenArchIsNotPassed) { pass_no_unstable_stretch(leg(), 1, 25); }
+TEST_P(NightlyUnstableStretch, OfADrivenArchIsNotPassed) {
+    pass_no_unstable_stretch(leg(), 26, 1000);
+}
+
 // ---- Columns.
 
 Scene column(double k_R, bool two_planes = false) {

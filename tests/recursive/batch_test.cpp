@@ -371,5 +371,27 @@ TEST(Batch, LanesAreIndependentAndAsDoubles) {
     }
 }
 
+// A variant whose driven length vanishes before the end of the branch.
+TEST(Batch, AnImpossibleVariantIsReported) {
+    const Model design = compile(parse_scene(R"(elastocheck: 1
+name: rod
+units: {length: mm, angle: deg, force: N}
+points: {end: [400, 0, 0], base: [400, 20, 100]}
+bodies: {block: {origin: end}}
+joints: {rod: {type: distance, bodies: [block, ground], from: end, to: base}}
+bushings: {k: {bodies: [ground, block], at: end, rates: [50, 50, 50], rotational_rates: [10, 10, 10]}}
+branches: {b: {drive: joints.rod, to: -90, steps: 10}}
+probes: {end: {on: block, at: end}}
+)",
+                                             "rod.yaml"));
+    std::vector<Model> variants(5, design);
+    std::get<DistanceBetween>(variants[2].constraints[0].kind).length = 0.08;
+    const auto paths = in_batch(design, variants, {.points = 10});
+    for (const auto& [variant, path] : paths)
+        EXPECT_EQ(path[0].outcome,
+                  variant == 2 ? Outcome::inconsistent_constraints : Outcome::converged)
+            << variant << " " << path[0].detail;
+}
+
 }  // namespace
 }  // namespace elastocheck::recursive

@@ -16,11 +16,13 @@
 #include <set>
 
 #include "elastocheck/compile.hpp"
+#include "models/branch.hpp"
 #include "models/kinds.hpp"
 #include "models/reader/definitions/terms.hpp"
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/elements/sections.hpp"
+#include "models/vanishing_length.hpp"
 
 namespace elastocheck::reader {
 namespace {
@@ -181,10 +183,30 @@ std::string lost(const Driver& driver, const Scene& scene, const Model& model) {
                        reason(model, body));
 }
 
+// Points at a distance cannot come closer than zero, on either side of the branch.
+void require_lengths(const Cursor& branch, const Model& model, std::size_t b) {
+    for (const Branch& side : ways(model.branches[b])) {
+        const auto gone = vanishing_length(model, side);
+        if (!gone) continue;
+        const Cursor place = gone->at == 0
+                                 ? branch.require("hold")
+                                 : branch.require(side.to == model.branches[b].to ? "to" : "from");
+        const std::string& name = model.joints[static_cast<std::size_t>(gone->joint)].name;
+        place.fail(
+            gone->at == 0
+                ? fmt::format("leaves joint {} no length", quote(name))
+                : fmt::format("{} would leave joint {} a length of {:.6g} mm; allowed: short "
+                              "of {:.6g}, where its length is zero",
+                              place.found(), quote(name), 1e3 * gone->to,
+                              place.number("") * gone->at / side.to));
+    }
+}
+
 void require_moving(const Cursor& section, const Scene& scene) {
     const Model model = compile(scene);
     const auto moves = [](const Driver& driver) { return driver.rate != 0; };
     for (std::size_t b = 0; b < scene.branches.size(); ++b) {
+        require_lengths(section.require(scene.branches[b].name), model, b);
         if (std::ranges::any_of(model.branches[b].drivers, moves)) continue;
         std::string why;
         for (const Driver& driver : scene.branches[b].drivers)

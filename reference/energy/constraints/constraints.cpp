@@ -240,12 +240,4 @@ double own_offset(const ConstraintKind& kind) {
     return value != nullptr ? *value : 0;
 }
 
-bool points_backwards(const ConstraintKind& kind, double offset, const Chart& chart) {
-    const auto* c = std::get_if<DirectionAtAngle>(&kind);
-    if (!c) return false;
-    const Direction along = across(*c, c->angle + offset - std::numbers::pi / 2);
-    return turned(chart[c->i.body], c->i.u_local)
-               .u.dot(turned(chart[along.body], along.u_local).u) < 0;
-}
-
 }  // namespace elastocheck::reference::energy

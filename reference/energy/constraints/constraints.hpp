@@ -37,7 +37,4 @@ std::optional<double> measured_offset(const ConstraintKind& kind, const Chart& c
 // The constraint's own length, offset or angle; 0 where it has none.
 double own_offset(const ConstraintKind& kind);
 
-// Whether the direction of a DirectionAtAngle is reversed, at α + π, where Φ = 0 too.
-bool points_backwards(const ConstraintKind& kind, double offset, const Chart& chart);
-
 }  // namespace elastocheck::reference::energy

@@ -36,6 +36,9 @@ constexpr double constrained_rounding = 2e-15;
 // Relative part of a load on an idle mode that counts as round-off.
 constexpr double remainder_round_off = 1e-9;
 
+// The same on a soft mode: the rounding of a sum.
+constexpr double soft_round_off = 1e-14;
+
 // However close the points, a step between two of them may be halved at least this often.
 constexpr int least_halvings = 6;
 
@@ -144,12 +147,17 @@ Stability stability_between(Continuation& continuation, const Station& from, con
     auto by = derivatives(continuation.system, loading_at(continuation, from.t + h / 2),
                           moved(continuation.system, from.x, dx), continuation.counts);
     const Eigen::Index redundant = from.stiffness.redundant;
-    auto middle = stiffness_of_few(continuation.system, by.J,
-                                   from.linearised.modes.count() - redundant, redundant);
-    if (!middle)
-        middle = stiffness(continuation.system,
-                           linearise(std::move(by.J), &from.linearised, continuation.counts));
-    return over_step(from.stiffness, *middle, to.stiffness);
+    const auto formed = [](const Stiffness& of) { return !std::isnan(of.log_determinant); };
+    if (formed(from.stiffness) && formed(to.stiffness))
+        if (const auto few = stiffness_of_few(continuation.system, by.J,
+                                              from.linearised.modes.count() - redundant, redundant))
+            return over_step(from.stiffness, *few, to.stiffness,
+                             {from.stiffness.log_determinant, few->log_determinant,
+                              to.stiffness.log_determinant});
+    const Linearisation middle = linearise(std::move(by.J), &from.linearised, continuation.counts);
+    return over_step(from.stiffness, stiffness(continuation.system, middle), to.stiffness,
+                     {from.linearised.bordered.log_determinant(), middle.bordered.log_determinant(),
+                      to.linearised.bordered.log_determinant()});
 }
 
 // Whether a continuation step stays on this side of every singular point. During the homotopy from
@@ -311,20 +319,22 @@ std::optional<Failure> change_pieces(Continuation& continuation, double directio
                                  100 * continuation.here.t)
                    : "at " + a;
     };
-    Pieces changed(continuation.pieces.size(), ElementPieces{});  // by ±1, the others 0
+    // The pieces and the motion that belong together are those of a linear complementarity problem.
+    // Changing the first piece that its deformation leaves ends there where a solution exists
+    // (Murty 1974); a set of pieces that repeats has none.
+    std::vector<Pieces> tried;
     for (bool at_end = true; at_end;) {
         at_end = false;
         for (const OnCurve& at : continuation.here.curves) {
             int& piece = continuation.pieces[at.element][at.axis];
             const int side = leaves(at, piece, direction, continuation.length);
             if (side == 0) continue;
-            int& before = changed[at.element][at.axis];
-            if (before == -side)
+            if (std::ranges::find(tried, continuation.pieces) != tried.end())
                 return Failure{
                     Outcome::limit_point,
                     fmt::format("the branch turns back where the law of '{}' has a knot, {}",
                                 continuation.system.model->elastics[at.element].name, where())};
-            before = side;
+            tried.push_back(continuation.pieces);
             piece += side;
             at_end = true;
             break;
@@ -333,13 +343,13 @@ std::optional<Failure> change_pieces(Continuation& continuation, double directio
         continuation.before.reset();
         continuation.here =
             station_at(continuation, continuation.here.t, continuation.here.x, nullptr);
-        const Stiffness& now = continuation.here.stiffness;
-        if (continuation.stage == Stage::branch && over_step(now, now, now) != Stability::kept)
-            return Failure{
-                Outcome::singular,
-                fmt::format("the equilibrium loses its stability where a law has a knot, {}",
-                            where())};
     }
+    const Stiffness& now = continuation.here.stiffness;
+    if (!tried.empty() && continuation.stage == Stage::branch &&
+        over_step(now, now, now) != Stability::kept)
+        return Failure{
+            Outcome::singular,
+            fmt::format("the equilibrium loses its stability where a law has a knot, {}", where())};
     return std::nullopt;
 }
 
@@ -445,9 +455,11 @@ std::optional<Failure> advance(Continuation& continuation, double target) {
         const double remainder = std::abs(rest) * continuation.here.mu.norm(),
                      applied = std::abs(rest) * continuation.here.E_rate.norm();
         // A load below the tolerance is harmless on an idle motion, but not on a soft one.
+        // Soft ones may move far under a part of the load that is not exactly zero.
         const bool soft = continuation.here.linearised.modes_are_soft;
         if (remainder >
-            std::max(soft ? 0 : continuation.options.tolerance, remainder_round_off * applied)) {
+            (soft ? soft_round_off * applied
+                  : std::max(continuation.options.tolerance, remainder_round_off * applied))) {
             const VectorXd left = continuation.here.linearised.modes.left * continuation.here.mu;
             return soft ? too_soft(continuation.system, left)
                         : unsolvable_load(continuation.system, left);

@@ -19,8 +19,9 @@ using Eigen::VectorXd;
 // Round-off of an eigenvalue, relative to the largest entry of ∂(balance)/∂q.
 constexpr double eigenvalue_round_off = 1e-13;
 
-// Share of its least node below which the parabola may not dip; otherwise the step is halved.
-constexpr double deepest_dip = 0.5;
+// Share of its least node, and of the range of its nodes, below which the parabola may not dip;
+// otherwise the step is halved.
+constexpr double deepest_dip = 0.5, curved = 0.02;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -36,7 +37,9 @@ Sparse constraint_rows(const System& system, const Sparse& J) {
 struct Spectrum {
     double least = std::numeric_limits<double>::infinity(), modulus = least;
     int negative = 0;
+    double log_product = 0;
     void see(const std::complex<double>& mu) {
+        log_product += std::log2(std::abs(mu));
         const bool real = mu.imag() == 0;
         least = std::min(least, real ? mu.real() : std::abs(mu));
         modulus = std::min(modulus, std::abs(mu));
@@ -250,6 +253,7 @@ std::optional<Stiffness> stiffness_of_few(const System& system, const Sparse& J,
     Stiffness found =
         spectrum->of(system, eigenvalue_round_off * largest_entry(balance_rows(system, J)));
     found.redundant = redundant;
+    found.log_determinant = spectrum->log_product;
     return found;
 }
 
@@ -305,9 +309,22 @@ bool constraints_keep_their_side(const System& system, const Linearisation& from
     return Factors(S).sign() > 0;
 }
 
+namespace {
+
 // With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),
 // has its least value λ₀ - b² / 4c where 0 < -b / 2c < 1.
-Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to) {
+bool dips(double l_0, double l_m, double l_1, double round_off) {
+    const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
+    const auto [least, most] = std::minmax({l_0, l_m, l_1});
+    return c > 0 && b < 0 && -b < 2 * c &&
+           l_0 - b * b / (4 * c) <
+               std::max(deepest_dip * least, curved * (most - least)) - round_off;
+}
+
+}  // namespace
+
+Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to,
+                    const std::array<double, 3>& logs) {
     const double l_0 = from.least, l_m = middle.least, l_1 = to.least;
     const double round_off = std::max({from.round_off, middle.round_off, to.round_off});
     const double least = std::min({l_0, l_m, l_1});
@@ -320,10 +337,10 @@ Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffn
     constexpr double hardly = 0.25;
     const bool pair = from.negative != to.negative || from.negative != middle.negative;
     if (pair && std::max({l_0, l_m, l_1}) > (1 + hardly) * least) return Stability::uncertain;
-    const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
-    const bool dips = c > 0 && b < 0 && -b < 2 * c;
-    if (dips && l_0 - b * b / (4 * c) < deepest_dip * least - round_off)
-        return Stability::uncertain;
+    if (dips(l_0, l_m, l_1, round_off)) return Stability::uncertain;
+    const double most = std::max({logs[0], logs[1], logs[2]});
+    const auto determinant = [&](std::size_t k) { return std::exp2(logs[k] - most); };
+    if (dips(determinant(0), determinant(1), determinant(2), 0)) return Stability::uncertain;
     return Stability::kept;
 }
 

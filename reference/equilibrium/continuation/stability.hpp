@@ -8,9 +8,13 @@
 // that is, the Hessian of the energy with the curvature of the constraints, over F L. A path of
 // equilibria on which no eigenvalue of M reaches zero has no bifurcation, no limit point and no
 // loss of stability. Equal signs at both ends of a step do not exclude a zero in between, so the
-// least eigenvalue is interpolated over each step by a parabola through its ends and its middle.
+// least eigenvalue is interpolated over each step by a parabola through its ends and its middle. An
+// eigenvalue that is not the least at these three places may dip between them, so det M is
+// interpolated too.
 #pragma once
 
+#include <array>
+#include <limits>
 #include <optional>
 
 #include "reference/equilibrium/linear_algebra/linearisation.hpp"
@@ -32,6 +36,8 @@ struct Stiffness {
     double round_off = 0;
     int negative = 0;
     Eigen::Index redundant = 0;  // constraints, of which the null space has as many self-stresses
+    // log₂ |det M| without its idle modes, where M was formed; else NaN
+    double log_determinant = std::numeric_limits<double>::quiet_NaN();
 };
 Stiffness stiffness(const System& system, const Linearisation& at);
 
@@ -56,7 +62,9 @@ enum class Stability {
     lost,      // an eigenvalue is negative on the step
     uncertain  // the parabola dips; a shorter step is needed
 };
-Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to);
+// `logs`: log₂ of a determinant with the zeros of det M, at the same three places.
+Stability over_step(const Stiffness& from, const Stiffness& middle, const Stiffness& to,
+                    const std::array<double, 3>& logs = {0, 0, 0});
 
 // Whether the constraints stay on one side of a bifurcation of their own on a step. det J contains
 // det Φ_q squared and keeps its sign there; the determinant of

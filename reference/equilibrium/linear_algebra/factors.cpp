@@ -108,6 +108,16 @@ Factors::Factors(const Sparse& A, const Factors* of_such) : size_(A.cols()) {
     for (Index k = 0; k < size_; ++k) sign_ *= pivot[k] > 0 ? 1 : pivot[k] < 0 ? -1 : 0;
 }
 
+double Factors::log_determinant() const {
+    if (sign_ == 0) return size_ == 0 ? 0 : -std::numeric_limits<double>::infinity();
+    const klu_numeric* numeric = pivots_->numeric;
+    const auto* pivot = static_cast<const double*>(numeric->Udiag);
+    double sum = 0;
+    for (Index k = 0; k < size_; ++k)
+        sum += std::log2(std::abs(pivot[k])) + (numeric->Rs ? std::log2(numeric->Rs[k]) : 0);
+    return sum;
+}
+
 double Factors::condition(const Sparse& A) const {
     if (sign_ == 0) return std::numeric_limits<double>::infinity();
     klu_common common = settings();

@@ -26,6 +26,8 @@ class Factors {
     // Sign of the determinant: 0 where a pivot is zero; solve() is then not available.
     int sign() const { return sign_; }
     Eigen::Index size() const { return size_; }
+    // log₂ |determinant|; -infinity where a pivot is zero
+    double log_determinant() const;
 
     // Condition number of A in the 1-norm, rows and columns scaled to size one (Higham & Tisseur
     // 2000 estimate); infinite where a pivot is zero.

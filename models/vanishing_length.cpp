@@ -1,0 +1,29 @@
+#include "models/vanishing_length.hpp"
+
+#include <cmath>
+
+#include "models/kinds.hpp"
+
+namespace elastocheck {
+
+std::optional<Vanishing> vanishing_length(const Model& model, const Branch& side) {
+    std::optional<Vanishing> first;
+    for (const Driver& driver : side.drivers) {
+        const int joint = driven_joint(driver.what);
+        if (joint < 0 || model.joints.at(static_cast<std::size_t>(joint)).driven < 0) continue;
+        const auto c =
+            static_cast<std::size_t>(model.joints[static_cast<std::size_t>(joint)].driven);
+        const auto* link = std::get_if<DistanceBetween>(&model.constraints[c].kind);
+        if (link == nullptr) continue;
+        double start = link->length, rate = 0;
+        for (const Driver& other : side.drivers)
+            if (driven_joint(other.what) == joint) start += other.start, rate += other.rate;
+        const double end = start + rate * side.to;
+        if (start > 0 && end > 0) continue;
+        const double at = start > 0 ? -start / rate : 0;
+        if (!first || std::abs(at) < std::abs(first->at)) first = Vanishing{joint, at, end};
+    }
+    return first;
+}
+
+}  // namespace elastocheck
