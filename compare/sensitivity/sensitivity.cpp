@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
@@ -409,13 +410,15 @@ Gradients gradients(const Model& model, std::span<const Channel> outputs,
             SideGradients& here = all.sides.emplace_back();
             here.name = side.name, here.branch = branch_name;
             here.unit = unit_of(side.branch.unit);
-            const auto determined =
-                determined_channels(outputs, side.model, side.analysis->diagnosis.determined);
+            const auto active = active_channels(outputs, side.model);
+            Analyses as_drawn;
+            const auto drawn =
+                evaluate(side.model, side, outputs, design_state(side.model), as_drawn);
             for (std::size_t c = 0; c < outputs.size(); ++c)
-                here.why_output.push_back(
-                    determined[c] ? idle_motion_of(side, outputs[c])
-                                  : "its joint is inactive on this branch, or shares its load with "
-                                    "redundant joints in an undetermined way");
+                here.why_output.push_back(!active[c] ? "its joint is inactive on this branch"
+                                          : !outputs[c].joints().empty() && drawn[c] == undefined
+                                              ? why_undefined(outputs[c])
+                                              : idle_motion_of(side, outputs[c]));
             for (const Leg leg : options.legs) {
                 LegGradients& by = here.legs.emplace_back();
                 by.leg = leg;
