@@ -9,6 +9,7 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/compare.hpp"
 #include "compare/comparison/compliance.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/definitions/definitions.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "compare/outputs/readings.hpp"
@@ -582,6 +583,19 @@ CandidateJudgement judge_candidate(const Model& model, const Comparison& compari
                             left.branch, missed));
         }
 
+    std::string shared, why_shared;
+    for (const auto& column : result.columns) {
+        const Channel& channel = channels[column.channel];
+        if (channel.joints().empty() ||
+            std::ranges::none_of(comparison.branches, [&](const BranchComparison& b) {
+                return is_undefined_somewhere(column.channel, truth_of(b));
+            }))
+            continue;
+        shared += (shared.empty() ? "" : ", ") + channel.name;
+        why_shared = why_undefined(channel);
+    }
+    if (!shared.empty())
+        result.notes.push_back(fmt::format("not compared: {}: {}", shared, why_shared));
     if (nothing_moves(result)) result.reasons.emplace_back("nothing moves in it");
     if (within && none_has_moved(result, comparison)) {
         const std::string names = nowhere_compared(result, comparison);

@@ -115,7 +115,7 @@ Assessment assess(const Model& model, const Comparison& comparison, const Tolera
         j.outputs += judged[c];
         j.others += judged[c] && !is_motion(comparison.channels[c]);
     }
-    if (!j.position && !j.angle) j.reasons.emplace_back("nothing was compared");
+    if (!j.position && !j.angle && !j.other) j.reasons.emplace_back("nothing was compared");
     if (!comparison.conclusive() && j.reasons.empty())
         j.reasons.emplace_back("nothing was compared");
     if (j.reasons.empty()) j.verdict = within ? Grade::pass : Grade::fail;

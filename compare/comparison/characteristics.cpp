@@ -339,6 +339,7 @@ std::vector<Channel> characteristics_otherwise(const Model& model) {
 
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,
                 const WheelResponse& response) {
+    if (response.blocked) return undefined;
     return response.why_not.empty() ? entry(what.entry).formula({model, state, response}, what.of)
                                     : nan;
 }

@@ -110,7 +110,7 @@ LegRun run(const Model& model, const std::vector<Channel>& channels, const Branc
     const bool kept = solver.leg == Leg::equilibrium;
     const auto stations = kept ? stations_of(requested) : std::vector<double>{};
     std::optional<LargestForces> largest;
-    if (kept) largest.emplace(model, branch);
+    if (kept) largest.emplace(model, side);
     static_cast<PathCurve&>(run) =
         walk(model, channels, branch, sides, solver,
              [&](const Equilibrium& state, const WheelResponse* response) {
@@ -239,18 +239,9 @@ std::string which_is_right(const LegRun& other) {
                        name(other.leg), t.proved, t.points);
 }
 
-bool is_undefined_somewhere(const Channel& channel, std::size_t c,
-                            const std::vector<LegRun>& runs) {
-    return channel.may_be_undefined() && std::ranges::any_of(runs, [&](const LegRun& run) {
-               return std::ranges::any_of(
-                   run.curve.values, [&](const auto& values) { return values[c] == undefined; });
-           });
-}
-
 // First point at which only one of the two runs has a value for an output; empty if none.
 std::string defined_by_one(const Channel& channel, std::size_t c, const LegRun& one,
                            const LegRun& other) {
-    if (!channel.may_be_undefined()) return {};
     for (std::size_t k = 0; k < std::min(one.curve.values.size(), other.curve.values.size()); ++k) {
         const bool by_one = one.curve.values[k][c] != undefined,
                    by_other = other.curve.values[k][c] != undefined;
@@ -300,8 +291,7 @@ Objections disagreements(const Model& model, const std::vector<Channel>& channel
     }
     if (!objections.empty()) return objections;
     const LegRun &equilibrium = branch.run(Leg::equilibrium), &second = branch.run(branch.second);
-    if (const auto why = nothing_moves(model, channels, requested, equilibrium.curve); !why.empty())
-        objections.add(why);
+    if (const auto why = nothing_drives(model, requested); !why.empty()) objections.add(why);
 
     const auto& reading = branch.uncertainty.equal_parameter;
     if (!reading.not_compared.empty())
@@ -375,7 +365,9 @@ BranchComparison compare_runs(const Model& model, const std::vector<Channel>& ch
     if (const LegRun& energy = b.run(Leg::energy); is_not_applicable(energy.outcome))
         b.second = Leg::series, b.why_not_energy = energy.detail;
     for (std::size_t c = 0; c < channels.size(); ++c)
-        b.determined[c] = b.determined[c] && !is_undefined_somewhere(channels[c], c, b.runs);
+        b.determined[c] = b.determined[c] && std::ranges::none_of(b.runs, [&](const LegRun& run) {
+                              return is_undefined_somewhere(c, run.curve);
+                          });
     const LegRun& truth = b.run(Leg::equilibrium);
     b.abscissa =
         requested_abscissa >= 0 ? requested_abscissa : default_abscissa(channels, truth.curve);
@@ -427,16 +419,9 @@ Comparison compare(const Model& model, const Options& options, const std::vector
             fmt::format("'{}' is not an output of the scene", options.abscissa));
 
     std::vector<std::vector<BranchSide>> sides;
-    std::vector<std::vector<bool>> determined;  // per branch and joint
-    std::vector<std::vector<int>> groups;
-    for (const auto& branch : model.branches) {
+    for (const auto& branch : model.branches)
         sides.push_back(sides_of(model, branch, options.recursion.steps));
-        const auto diagnosis = recursive::diagnose(sides.back().front().model);
-        determined.push_back(diagnosis.determined);
-        for (const auto& group : diagnosis.redundant_sets)
-            if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
-    }
-    std::ranges::move(totals(model, groups), std::back_inserter(result.channels));
+    std::ranges::move(sums(model), std::back_inserter(result.channels));
 
     const auto solve = [&](std::size_t k, const SolverSettings& solver) {
         LegRun found =
@@ -467,11 +452,10 @@ Comparison compare(const Model& model, const Options& options, const std::vector
     for (std::size_t k = 0; k < model.branches.size(); ++k)
         jobs.push_back({fmt::format("{}: deviations", model.branches[k].name), [&, k] {
                             if (series[k]) runs[k].push_back(std::move(*series[k]));
-                            const auto comparable = determined_channels(
-                                result.channels, sides[k].front().model, determined[k]);
-                            result.branches[k] =
-                                compare_runs(model, result.channels, sides[k], std::move(runs[k]),
-                                             comparable, k, requested, options);
+                            result.branches[k] = compare_runs(
+                                model, result.channels, sides[k], std::move(runs[k]),
+                                active_channels(result.channels, sides[k].front().model), k,
+                                requested, options);
                         }});
     run_jobs(jobs, options.threads, part(options.progress, 0.9, 1));
     for (const BranchComparison& b : result.branches)

@@ -145,6 +145,16 @@ std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& al
     return list;
 }
 
+// Whether 1 N or 1 N·m moves a wheel by a million kilometres: the stiffness there is rounding.
+bool is_unresisted(const std::vector<std::array<Motions, causes>>& free) {
+    constexpr double nowhere = 1e9;
+    for (const auto& wheel : free)
+        for (const Motions& motions : wheel)
+            for (const Increment& body : motions)
+                if (body.dr.norm() > nowhere || body.dpi.norm() > nowhere) return true;
+    return false;
+}
+
 std::string failure_text(const Response& response) {
     return std::string(name(response.outcome)) +
            (response.detail.empty() ? "" : ": " + response.detail);
@@ -199,6 +209,9 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
                 free.outcome == Outcome::loaded_idle_mode || free.outcome == Outcome::singular;
         }
     }
+    if (is_unresisted(response.free))
+        response.free.clear(), response.why_not_free = "only rounding resists a motion",
+                               response.nothing_resists = true;
 
     const std::size_t first = freed_case.model.joints.size();
     const bool steers =
@@ -220,6 +233,7 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
         }
     if (jacked.outcome != Outcome::converged) {
         response.why_not = failure_text(jacked);
+        response.blocked = jacked.outcome == Outcome::inconsistent_constraints;
         return response;
     }
     if (steers) {

@@ -36,6 +36,7 @@ inline constexpr int at_centre = 0, moment_on = 3, at_patch = 6, causes = 9;
 // the state, but for the elimination orders, which are those of the last one: they change rounding.
 struct Analyses {
     std::optional<recursive::ResponseAnalysis> free, jacked, tied;  // computed on first use
+    std::optional<std::vector<int>> dependent_rows;                 // of diagnosis.hpp, likewise
 };
 
 struct WheelResponse {
@@ -48,9 +49,11 @@ struct WheelResponse {
     // the wheels move only together: `jacked` has one jack, under the first wheel. `travel` then
     // holds that motion first, and its other entries are empty
     bool tied = false;
-    std::string why_not;           // reason why travel, steering and held are missing
-    std::string why_not_free;      // reason why `free` is missing
-    bool nothing_resists = false;  // that reason is a wheel that moves freely, which is no failure
+    std::string why_not;       // reason why travel, steering and held are missing
+    std::string why_not_free;  // reason why `free` is missing
+    // These reasons are no failures: the joints hold the wheels, so that no jack raises them; a
+    // wheel moves freely.
+    bool blocked = false, nothing_resists = false;
 };
 
 // Position of the steering joint in Model::joints: the first joint, other than a jack, that some

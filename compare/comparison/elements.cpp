@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "compare/comparison/compliance.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "compare/outputs/not_a_number.hpp"
@@ -15,6 +16,8 @@
 #include "elastocheck/compare.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
+#include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/diagnosis/self_stress.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -183,8 +186,62 @@ std::vector<double> evaluate(const Model& model, const Branch& branch,
     return values;
 }
 
-LargestForces::LargestForces(const Model& of_model, const Branch& of_branch)
-    : model(&of_model), branch(&of_branch) {
+std::vector<double> evaluate(const Model& model, const BranchSide& side,
+                             std::span<const Channel> channels, const Equilibrium& state,
+                             Analyses& analyses) {
+    // Of a self-stress of 1 N. The constraint error of a fast method leaves a remainder.
+    constexpr double rounding = 1e-6, per_remainder = 10;
+    std::vector<double> values = evaluate(model, side.branch, channels, state);
+    auto& dependent = analyses.dependent_rows;
+    if (!dependent) dependent = recursive::dependent_rows(side.model);
+    if (dependent->empty()) return values;
+    Equilibrium stressed = state;
+    for (auto& stress : recursive::self_stresses(side.model, side.branch, *dependent, state)) {
+        stressed.reactions = std::move(stress.wrenches);
+        const auto shared = evaluate(model, channels, stressed);
+        const double zero = rounding + per_remainder * stress.left;
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            if (!channels[c].joints().empty() && std::abs(shared[c]) > zero) values[c] = undefined;
+    }
+    return values;
+}
+
+bool is_undefined_somewhere(std::size_t channel, const Curve& curve) {
+    return std::ranges::any_of(curve.values,
+                               [&](const auto& values) { return values[channel] == undefined; });
+}
+
+std::string why_undefined(const Channel& channel) {
+    if (!channel.joints().empty())
+        return "redundant joints share it in a way that the loads do not determine; their sum, as "
+               "A+B.force_x, is determined";
+    if (channel.kind() == ChannelKind::characteristic && channel.undefined.empty())
+        return "the joints hold the wheel: it does not rise";
+    return channel.undefined;
+}
+
+std::vector<bool> active_channels(std::span<const Channel> channels, const Model& standing) {
+    std::vector<bool> stands(standing.joints.size(), false), list;
+    for (const auto& constraint : standing.constraints)
+        stands[static_cast<std::size_t>(constraint.joint)] = true;
+    for (const auto& channel : channels)
+        list.push_back(std::ranges::all_of(
+            channel.joints(), [&](int k) { return stands[static_cast<std::size_t>(k)]; }));
+    return list;
+}
+
+std::vector<Channel> sums(const Model& model) {
+    std::vector<std::vector<int>> groups;
+    for (const Branch& branch : model.branches) {
+        const Model standing = sides_of(model, branch).front().model;
+        for (const auto& group : recursive::diagnose(standing).redundant_sets)
+            if (std::ranges::find(groups, group) == groups.end()) groups.push_back(group);
+    }
+    return totals(model, groups);
+}
+
+LargestForces::LargestForces(const Model& of_model, const BranchSide& on_side)
+    : model(&of_model), side(&on_side), analyses(std::make_shared<Analyses>()) {
     for (auto& channel : element_channels(of_model)) {
         const auto* of = std::get_if<OfElement>(&channel.reads);
         if (of != nullptr && of->component < 6) continue;
@@ -201,26 +258,26 @@ LargestForces::LargestForces(const Model& of_model, const Branch& of_branch)
 }
 
 void LargestForces::add(const Equilibrium& state) {
-    int element = -1;
-    ElementState at{};
+    const Branch& branch = side->branch;
+    const auto values = evaluate(*model, *side, channels, state, *analyses);
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        const Channel& channel = channels[c];
-        const auto* of = std::get_if<OfElement>(&channel.reads);
-        if (of != nullptr && of->element != element) {
-            element = of->element;
-            at = state_of(*model, *branch, state, element);
-        }
-        const double value = of != nullptr
-                                 ? in_unit(channel.unit) * at.component(of->component)
-                                 : evaluate(*model, std::span(&channel, 1), state).front();
         LargestForce& most = largest[entry[c]];
-        if (!(std::abs(value) > std::max(zero_value, std::abs(most.value)))) continue;
-        most.output = channel.name;
-        most.value = value;
-        most.a = parameter_in(unit_of(branch->unit), state.load);
+        if (std::isnan(most.value) || std::isnan(values[c]) ||
+            !(std::abs(values[c]) > std::max(zero_value, std::abs(most.value))))
+            continue;
+        most.output = channels[c].name;
+        if (values[c] == undefined) {
+            most.value = nan;
+            continue;
+        }
+        most.value = values[c];
+        most.a = parameter_in(unit_of(branch.unit), state.load);
+        const auto* of = std::get_if<OfElement>(&channels[c].reads);
         if (of == nullptr) continue;
         most.deformation_unit = unit_of_component(of->component - 6);
-        most.deformation = in_unit(most.deformation_unit) * at.component(of->component - 6);
+        most.deformation =
+            in_unit(most.deformation_unit) *
+            state_of(*model, branch, state, of->element).component(of->component - 6);
     }
 }
 

@@ -18,6 +18,7 @@
 // curves.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +27,7 @@
 #include "elastocheck/channels.hpp"
 #include "elastocheck/compare.hpp"
 #include "elastocheck/equilibrium_path.hpp"
+#include "elastocheck/legs.hpp"
 #include "elastocheck/model.hpp"
 
 namespace elastocheck::compare {
@@ -42,18 +44,36 @@ inline constexpr double zero_value = 1e-6;
 // Values of these and any other channels; NaN for a tyre that is inactive on the branch.
 std::vector<double> evaluate(const Model& model, const Branch& branch,
                              std::span<const Channel> channels, const Equilibrium& state);
+struct Analyses;  // compliance.hpp
+// Likewise; `undefined` for reactions that redundant joints share in a way that the loads do not
+// determine: those that read more than rounding from a self-stress of the joints.
+std::vector<double> evaluate(const Model& model, const BranchSide& side,
+                             std::span<const Channel> channels, const Equilibrium& state,
+                             Analyses& analyses);
+
+// Whether a channel is `undefined` at a point of the curve; the reason for that value.
+bool is_undefined_somewhere(std::size_t channel, const Curve& curve);
+std::string why_undefined(const Channel& channel);
+
+// What redundant joints share, summed up (totals()), on any branch of the model.
+std::vector<Channel> sums(const Model& model);
+
+// Per channel, whether the joints that it reads have constraints in `standing`, the model of a
+// branch.
+std::vector<bool> active_channels(std::span<const Channel> channels, const Model& standing);
 
 // ---- Largest values over the points of a branch.
 
 // Collects the largest force and the largest moment of each element and link, in the order of the
 // elements, then the links.
 struct LargestForces {
-    LargestForces(const Model& of_model, const Branch& of_branch);
+    LargestForces(const Model& of_model, const BranchSide& on_side);
     void add(const Equilibrium& state);
     std::vector<LargestForce> list() const;  // without those that are always zero
 
     const Model* model;
-    const Branch* branch;
+    const BranchSide* side;
+    std::shared_ptr<Analyses> analyses;
     std::vector<Channel> channels = {};   // forces and moments
     std::vector<std::size_t> entry = {};  // of each channel, in `largest`
     std::vector<LargestForce> largest = {};

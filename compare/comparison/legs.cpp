@@ -20,7 +20,6 @@
 #include "elastocheck/energy.hpp"
 #include "elastocheck/equilibrium.hpp"
 #include "models/branch.hpp"
-#include "recursive/diagnosis/diagnosis.hpp"
 
 namespace elastocheck::compare {
 namespace {
@@ -196,7 +195,7 @@ EquilibriumPath walk(const std::vector<BranchSide>& sides, const SolverSettings&
 Row row_of(const Model& model, std::span<const Channel> channels, const BranchSide& side,
            const SolverSettings& solver, const Equilibrium& state, Analyses& analyses,
            std::optional<WheelResponse>& response) {
-    Row row{state.load, state.constraint_error, evaluate(model, side.branch, channels, state)};
+    Row row{state.load, state.constraint_error, evaluate(model, side, channels, state, analyses)};
     response.reset();
     std::optional<bool> corner;
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -340,31 +339,13 @@ Residuals judge(Leg by, const BranchSide& side, const Equilibrium& state) {
     return {};
 }
 
-std::string nothing_moves(const Model& model, const std::vector<Channel>& channels,
-                          const Branch& branch, const Curve& truth) {
-    if (branch.drivers.empty()) {
-        std::string why;
-        for (const auto& omission : model.omitted)
-            if (omission.why.find("(branch '" + branch.name + "')") != std::string::npos)
-                why +=
-                    fmt::format("{}{}: {}", why.empty() ? ": " : "; ", omission.what, omission.why);
-        return fmt::format("nothing drives branch '{}'{}", branch.name, why);
-    }
-    // Movement that rounding can cause without a driver: a few units in the last place of the
-    // solved coordinates.
-    double size = 0;
-    for (std::size_t c = 0; c < channels.size(); ++c)
-        if (channels[c].main && channels[c].unit == Unit::mm)
-            for (const auto& point : truth.values) size = std::max(size, std::abs(point[c]));
-    const double dust_mm = 1e-12 * std::max(size, 1.0), dust_deg = 1e-12 * in_unit(Unit::deg);
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (!channels[c].main) continue;
-        for (const auto& point : truth.values)
-            if (!(std::abs(point[c] - truth.values[truth.start][c]) <=
-                  (channels[c].unit == Unit::deg ? dust_deg : dust_mm)))
-                return {};
-    }
-    return fmt::format("no requested output changes on branch '{}'", branch.name);
+std::string nothing_drives(const Model& model, const Branch& branch) {
+    if (!branch.drivers.empty()) return {};
+    std::string why;
+    for (const auto& omission : model.omitted)
+        if (omission.why.find("(branch '" + branch.name + "')") != std::string::npos)
+            why += fmt::format("{}{}: {}", why.empty() ? ": " : "; ", omission.what, omission.why);
+    return fmt::format("nothing drives branch '{}'{}", branch.name, why);
 }
 
 PathCurve joined(const std::vector<BranchSide>& sides, const std::vector<PathCurve>& curves) {
@@ -420,14 +401,13 @@ void judge_references(const Model& model, const std::vector<Channel>& channels,
     if (!references.failures.empty()) return;
     const Curve &truth = references.truth.curve, &other = references.other.curve;
     auto& extents = references.extents = extents_of(channels, truth, references.scale);
-    const Model& standing = sides.front().model;
-    const auto determined =
-        determined_channels(channels, standing, recursive::diagnose(standing).determined);
+    const auto active = active_channels(channels, sides.front().model);
     for (std::size_t c = 0; c < channels.size(); ++c)
-        if (!determined[c]) extents[c] = std::numeric_limits<double>::infinity();
+        if (!active[c] || is_undefined_somewhere(c, truth) || is_undefined_somewhere(c, other))
+            extents[c] = std::numeric_limits<double>::infinity();
     references.uncertainty =
         worse(distance(channels, truth, other, extents), rounding_of(channels, truth, extents));
-    if (const auto why = nothing_moves(model, channels, branch, truth); !why.empty())
+    if (const auto why = nothing_drives(model, branch); !why.empty())
         references.failures.push_back(why);
 }
 

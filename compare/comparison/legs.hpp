@@ -81,7 +81,7 @@ struct References {
     // distance of the two references on the main channels, forces and moments, at least their
     // rounding; NaN on failure
     Accuracy uncertainty;
-    // why there is no reference: a leg failed, nothing drives the branch, or no output moves
+    // why there is no reference: a leg failed, or nothing drives the branch
     std::vector<std::string> failures;
 };
 // Runs them without a judgement, judges their runs, or both.
@@ -96,10 +96,8 @@ References references(const Model& model, const std::vector<Channel>& channels,
 PathCurve second_reference(const Model& model, const std::vector<Channel>& channels,
                            const Branch& branch, const std::vector<BranchSide>& sides, Leg& leg);
 
-// Reason why a branch gives no information: it has no driver left, or no main channel moves by more
-// than its rounding. Empty otherwise.
-std::string nothing_moves(const Model& model, const std::vector<Channel>& channels,
-                          const Branch& branch, const Curve& truth);
+// Message where no driver of a branch is left; empty otherwise.
+std::string nothing_drives(const Model& model, const Branch& branch);
 
 // ---- Start of a branch: the state at a = 0, settled under the constant loads.
 

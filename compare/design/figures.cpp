@@ -66,8 +66,9 @@ struct Solver {
             value -= evaluate(model, std::span(&channel, 1), design_state(model)).front();
         result.value[static_cast<Index>(k)] = finite_or_nan(value);
         if (!std::isfinite(value))
-            miss(fmt::format("{}: {}", channel.name,
-                             std::isinf(value) ? channel.undefined : "it could not be computed"));
+            miss(fmt::format(
+                "{}: {}", channel.name,
+                std::isinf(value) ? why_undefined(channel) : "it could not be computed"));
     }
 
     // Figures at values of the parameter.
@@ -136,10 +137,11 @@ struct Solver {
 
 }  // namespace
 
-std::vector<Channel> figure_outputs(const Model& model) {
+std::vector<Channel> figure_outputs(const Model& model, bool with_sums) {
     auto all = channels(model);
     std::ranges::move(characteristics(model), std::back_inserter(all));
     std::ranges::move(element_channels(model), std::back_inserter(all));
+    if (with_sums) std::ranges::move(sums(model), std::back_inserter(all));
     return all;
 }
 

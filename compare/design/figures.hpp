@@ -46,8 +46,9 @@ struct Figures {
 // The scene with these values of the varied numbers. May throw std::runtime_error: no such scene.
 using SceneAt = std::function<Scene(const Eigen::VectorXd& p)>;
 
-// All outputs of a model that a figure can be: channels, characteristics, forces of elements.
-std::vector<Channel> figure_outputs(const Model& model);
+// All outputs of a model that a figure can be: channels, characteristics, forces of elements, sums
+// of what redundant joints share.
+std::vector<Channel> figure_outputs(const Model& model, bool with_sums = true);
 
 // Values of the figures by one leg, in their units. NaN where there is none, with the reason in
 // `why_not` (of the first).

@@ -471,21 +471,6 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
     return list;
 }
 
-std::vector<bool> determined_channels(std::span<const Channel> channels, const Model& standing,
-                                      const std::vector<bool>& determined) {
-    std::vector<bool> stands(standing.joints.size(), false), list;
-    for (const auto& constraint : standing.constraints)
-        stands[static_cast<std::size_t>(constraint.joint)] = true;
-    for (const auto& channel : channels) {
-        const bool total = std::holds_alternative<Total>(channel.reads);
-        list.push_back(std::ranges::all_of(channel.joints(), [&](int k) {
-            const auto j = static_cast<std::size_t>(k);
-            return stands[j] && (total || determined[j]);
-        }));
-    }
-    return list;
-}
-
 int find_channel(std::span<const Channel> channels, std::string_view name) {
     const auto found = std::ranges::find(channels, name, &Channel::name);
     return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());

@@ -257,13 +257,16 @@ std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channe
                 std::make_shared<const recursive::Analysis>(recursive::analyse(side.model));
             work.result.name = side.name, work.result.branch = branch.name;
             work.result.unit = unit_of(side.branch.unit);
-            const auto determined =
-                determined_channels(outputs, side.model, side.analysis->diagnosis.determined);
+            const auto active = active_channels(outputs, side.model);
+            Analyses as_drawn;
+            const auto drawn =
+                evaluate(side.model, side, outputs, design_state(side.model), as_drawn);
             for (std::size_t c = 0; c < outputs.size(); ++c)
                 work.result.why_output.push_back(
-                    determined[c] ? idle_motion_of(side, outputs[c])
-                                  : "its joint is inactive on this branch, or shares its load with "
-                                    "redundant joints in an undetermined way");
+                    !active[c] ? "its joint is inactive on this branch"
+                    : !outputs[c].joints().empty() && drawn[c] == undefined
+                        ? why_undefined(outputs[c])
+                        : idle_motion_of(side, outputs[c]));
             work.read = {std::move(side), outputs_of(outputs, options.changes)};
             all.push_back(std::move(work));
         }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compare/comparison/characteristics.hpp"
+#include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/outputs/curve.hpp"
 #include "compare/outputs/readings.hpp"
@@ -63,7 +64,7 @@ std::vector<CharacteristicRow> characteristic_rows(const Comparison& comparison)
                         finite_or_nan(second - is), finite_or_nan(recursion),
                         finite_or_nan(recursion - is),
                         finite_or_nan(100 * (recursion - is) / std::abs(is)),
-                        is == undefined ? channel.undefined : "", channel.definition});
+                        is == undefined ? why_undefined(channel) : "", channel.definition});
     }
     return rows;
 }
@@ -105,6 +106,8 @@ std::vector<ForceRow> force_rows(const Model& model, const Comparison& compariso
     std::vector<ForceRow> rows;
     for (std::size_t b = 0; b < comparison.branches.size(); ++b) {
         const BranchComparison& branch = comparison.branches[b];
+        const BranchSide side = sides_of(model, model.branches[b]).front();
+        Analyses analyses;
         for (const auto end : {&Landmarks::front, &Landmarks::back}) {
             const auto &truth = branch.run(Leg::equilibrium).landmarks.*end,
                        &reached = branch.run(Leg::recursive).landmarks.*end;
@@ -112,14 +115,14 @@ std::vector<ForceRow> force_rows(const Model& model, const Comparison& compariso
             if (!truth || !reached || truth->load == 0 ||
                 !(std::abs(truth->load - reached->load) <= 1e-9 * std::abs(truth->load)))
                 continue;
-            const auto values = evaluate(model, model.branches[b], channels, *truth),
-                       others = evaluate(model, model.branches[b], channels, *reached);
+            const auto values = evaluate(model, side, channels, *truth, analyses),
+                       others = evaluate(model, side, channels, *reached, analyses);
             for (std::size_t c = 0; c < channels.size(); ++c) {
                 const double error = others[c] - values[c], size = std::abs(values[c]);
                 if (std::isnan(values[c])) continue;  // inactive here
                 rows.push_back({branch.branch, parameter_in(branch.unit, truth->load),
                                 symbol(branch.unit), element_of(channels[c]), channels[c].name,
-                                symbol(channels[c].unit), values[c], error,
+                                symbol(channels[c].unit), finite_or_nan(values[c]), error,
                                 size > zero_value ? 100 * (error / size) : nan});
             }
         }

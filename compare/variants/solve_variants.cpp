@@ -54,6 +54,7 @@ VariantSolver::VariantSolver(const Model& design, std::vector<StudyFigure> figur
                 fmt::format("{}: the scene has no output '{}'", figure.name, figure.output));
         channel_.push_back(static_cast<std::size_t>(c));
         only_motion_ = only_motion_ && all[channel_.back()].kinematic();
+        with_sums_ = with_sums_ || std::holds_alternative<Total>(all[channel_.back()].reads);
     }
     place(design);
     for (Group& group : groups_) {
@@ -128,7 +129,7 @@ Model VariantSolver::followed(const Model& model, const std::vector<Way>& of) co
 }
 
 std::vector<Channel> VariantSolver::outputs(const Model& model) const {
-    return only_motion_ ? channels(model) : figure_outputs(model);
+    return only_motion_ ? channels(model) : figure_outputs(model, with_sums_);
 }
 
 bool VariantSolver::fits(const std::vector<Channel>& outputs) const {
@@ -166,7 +167,8 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
             if (reading.point >= 0 && reading.point != static_cast<int>(p)) continue;
             here.push_back(reading.figure);
             wanted.push_back(outputs[channel_[reading.figure]]);
-            responds = responds || wanted.back().kind() == ChannelKind::characteristic;
+            responds = responds || wanted.back().kind() == ChannelKind::characteristic ||
+                       !wanted.back().joints().empty();
         }
         if (here.empty()) continue;
         std::vector<double> values;

@@ -73,6 +73,7 @@ class VariantSolver {
     std::vector<StudyFigure> figures_;
     std::vector<std::size_t> channel_ = {};  // of each figure, among the outputs
     bool only_motion_ = true;                // every output is a position or an angle
+    bool with_sums_ = false;                 // an output is a sum of redundant joints
     bool together_ = true;
     int points_ = 1;
     std::vector<Group> groups_ = {};

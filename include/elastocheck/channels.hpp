@@ -206,12 +206,6 @@ std::vector<Channel> channels(const Model& model);
 // their total wrench on each body that two or more of them hold, "A+B.force_x" ... "A+B.moment_z".
 std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>> groups);
 
-// Per channel, whether the wrenches that it reads are determined on a branch: the joints have
-// constraints in `standing`, the model of that branch, and no redundant joint shares their load
-// (`determined`, per joint; not required for a total).
-std::vector<bool> determined_channels(std::span<const Channel> channels, const Model& standing,
-                                      const std::vector<bool>& determined);
-
 // Position of a channel by its name, or -1.
 int find_channel(std::span<const Channel> channels, std::string_view name);
 

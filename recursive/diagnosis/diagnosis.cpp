@@ -16,6 +16,8 @@
 #include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/diagnosis/length.hpp"
+#include "recursive/diagnosis/self_stress.hpp"
+#include "recursive/formula/reactions.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/rank.hpp"
 
@@ -83,14 +85,25 @@ Rows without(const Rows& rows, const std::vector<int>& omitted) {
     return stack.rows(rows.cols());
 }
 
-Rows constraint_rows_of(const Model& model, const Inputs<double>& inputs, const State<double>& q) {
+// Φ_q by (Δr, L Δπ), and of rows of unit length.
+struct ConstraintRows {
+    VectorXd physical;  // Δq = physical · (Δr, L Δπ)
+    Rows Phi_q;
+    VectorXd length;  // of the rows before they were scaled
+};
+ConstraintRows constraint_rows_of(const Model& model, const Inputs<double>& inputs,
+                                  const State<double>& q, double L) {
     Stack stack;
     for_each_row<double>(model, inputs, q, [&](int, const Row<double>& row) {
         stack.put(row.i, row.on_i());
         stack.put(row.j, row.on_j());
         stack.next();
     });
-    return stack.rows(coordinates(model));
+    ConstraintRows result{VectorXd::Ones(coordinates(model)), {}, {}};
+    for (int b = 0; b < q.bodies(); ++b) result.physical.segment<3>(6 * b + 3).setConstant(1 / L);
+    result.Phi_q = stack.rows(coordinates(model)) * result.physical.asDiagonal();
+    result.length = normalise(result.Phi_q);
+    return result;
 }
 
 // Rows of √K_e in the element's own axes, each as (force, moment) on body j about the attachment
@@ -393,6 +406,42 @@ double characteristic_length(const Model& model) {
     return count > 0 ? std::sqrt(sum / count) : 1.0;
 }
 
+std::vector<int> dependent_rows(const Model& model) {
+    if (!not_finite(model).empty()) return {};
+    return repeated(constraint_rows_of(model, inputs_as_drawn<double>(model),
+                                       design_state<double>(model), characteristic_length(model))
+                        .Phi_q)
+        .rows;
+}
+
+std::vector<SelfStress> self_stresses(const Model& model, const Branch& branch,
+                                      std::span<const int> dependent, const Equilibrium& state) {
+    constexpr double per_error = 100, largest_remainder = 0.05;
+    const auto is_finite = [](const Pose& at) {
+        return at.r.allFinite() && at.p.coeffs().allFinite();
+    };
+    if (dependent.empty() || !std::ranges::all_of(state.poses, is_finite)) return {};
+    const double L = characteristic_length(model);
+    const State<double> q = state_of<double>(state.poses);
+    const Inputs<double> inputs = inputs_at<double>(model, branch, state.load);
+    const ConstraintRows rows = constraint_rows_of(model, inputs, q, L);
+    const double error = state.constraint_error / std::min(1.0, L);
+    const Repeated repeating = repeated(
+        rows.Phi_q, dependent, std::clamp(per_error * error, rank_threshold, largest_remainder));
+    std::vector<SelfStress> list;
+    for (std::size_t c = 0; c < repeating.rows.size(); ++c) {
+        const VectorXd y = repeating.dependencies.col(static_cast<Eigen::Index>(c));
+        SelfStress& stress = list.emplace_back(
+            SelfStress{std::vector<Wrench>(model.joints.size()), repeating.left[c]});
+        joint_wrenches<double>(model, inputs, q, y.cwiseQuotient(rows.length), stress.wrenches);
+        double largest = 0;
+        for (const Wrench& w : stress.wrenches)
+            largest = std::max({largest, w.force.norm(), w.moment.norm() / L});
+        for (Wrench& w : stress.wrenches) w.force /= largest, w.moment /= largest;
+    }
+    return list;
+}
+
 Diagnosis diagnose(const Model& model) {
     const State<double> q = design_state<double>(model);
     const Inputs<double> inputs = inputs_as_drawn<double>(model);
@@ -410,13 +459,9 @@ Diagnosis diagnose(const Model& model) {
         return result;
     }
 
-    VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
-    for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);
-
     const VectorXd Phi = constraint_values<double>(model, inputs, q);
     result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
-    Rows Phi_q = constraint_rows_of(model, inputs, q) * physical.asDiagonal();
-    const VectorXd row_length = normalise(Phi_q);
+    auto [physical, Phi_q, row_length] = constraint_rows_of(model, inputs, q, L);
     const Repeated repeating = repeated(Phi_q);
     result.rank = m - static_cast<int>(repeating.rows.size());
     std::vector<int> joint_of_row;  // ascending

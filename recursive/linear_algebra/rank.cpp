@@ -41,7 +41,7 @@ struct Reduced {
 // and is zero for a dependent row. No combination of rows is nearer to row k than its distance from
 // their span, so a row that is dependent here is so by any measure. Back substitution with the same
 // l, starting from row k alone, gives its dependency in terms of the rows themselves.
-Repeated repeated(const Rows& rows) {
+Repeated repeated(const Rows& rows, std::span<const int> expected, double remainder) {
     const auto m = static_cast<std::size_t>(rows.rows()), n = static_cast<std::size_t>(rows.cols());
     std::vector<int> to_come(n, 0),
         pivot_of(n, -1);  // of a column: how many rows touch it, whose pivot it is
@@ -77,7 +77,7 @@ Repeated repeated(const Rows& rows) {
         }
         double largest = 0;
         for (const int at : x.touched) largest = std::max(largest, std::abs(x.value[at]));
-        if (largest > rank_threshold) {
+        if (largest > (std::ranges::binary_search(expected, k) ? remainder : rank_threshold)) {
             for (const int at : x.touched) {
                 const double size = std::abs(x.value[at]);
                 if (!(size >= pivot_threshold * largest)) continue;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
 #include <vector>
 
 namespace elastocheck::recursive {
@@ -24,7 +25,9 @@ struct Repeated {
     std::vector<double> left;  // largest entry of the remainder of each such row
     Columns dependencies;      // [rows × dependent rows]
 };
-Repeated repeated(const Rows& rows);
+// `expected`, ascending: rows that are dependent in a neighbouring state, up to this remainder.
+Repeated repeated(const Rows& rows, std::span<const int> expected = {},
+                  double remainder = rank_threshold);
 
 // A basis of the Δq with rows · Δq = 0, of unit length [columns × nullity].
 Columns null_space(const Rows& rows);

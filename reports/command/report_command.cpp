@@ -127,7 +127,7 @@ int points_of_spread(const Model& model) {
 // them read the same solves; the numbers of steps are such that they can.
 void add_studies(json& document, const Model& model, const compare::Comparison& comparison,
                  const compare::Tolerance& tolerance, int threads,
-                 const compare::Progress& progress_of_scene, std::vector<std::string>& reasons) {
+                 const compare::Progress& progress_of_scene) {
     constexpr int base = 10, finest = 4;
     compare::Solves solves(model, base, finest);
     const auto part = [&](double from, double to) {
@@ -143,8 +143,6 @@ void add_studies(json& document, const Model& model, const compare::Comparison& 
     add_gap(document, comparison, study);
     document["convergence"] = study_json(
         study, compare::attribute_gap(solves, {40, 80, 160, 320}, threads, part(0.35, 0.6)));
-    for (const auto& reason : study.inconclusive)
-        if (std::ranges::find(reasons, reason) == reasons.end()) reasons.push_back(reason);
 
     // The price is counted, so that the report is the same in every run; `trade`
     // measures times.
@@ -190,8 +188,17 @@ KeyOutputs key_outputs(const Model& model) {
     return key;
 }
 
-// "sensitivity": effects of the numbers of the scene on the key figures along
-// the leading sweep.
+// Why the derivatives on a side are not confirmed: the worst entry, or the leg that failed; empty
+// where they are, or where there is nothing to compare.
+std::string not_confirmed(const compare::SideGradients& side) {
+    for (const auto& leg : side.legs)
+        if (!leg.failure.empty() && !leg.not_applicable)
+            return fmt::format("{}: {} leg: {}", side.name, name(leg.leg), leg.failure);
+    return side.worst.agrees() ? "" : side.name + ": " + side.worst.where;
+}
+
+// "sensitivity": effects of the numbers of the scene on the key figures along the leading sweep.
+// Where they are not confirmed, this section says so; the verdict is on the curves and rates.
 void add_sensitivity(json& document, const LoadedScene& loaded, const std::string& file,
                      const Settings& settings, int threads) {
     const std::string source;
@@ -206,8 +213,9 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
                                     [&](const char* group) { return path.starts_with(group); });
     });
     std::vector<compare::EffectRow> rows;
-    compare::Disagreement worst;
-    bool conclusive = true;
+    double apart = 0;
+    long compared = 0;
+    std::vector<std::string> reasons;
     // a characteristic costs several times an angle, and is shown at one station
     const auto add = [&](const std::vector<compare::Channel>& outputs, bool of_design) {
         if (outputs.empty()) return;
@@ -218,19 +226,20 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
         for (auto& row : compare::effect_rows(all))
             if ((row.at == 0) == of_design) rows.push_back(std::move(row));
         for (const auto& side : all.sides) {
-            worst.compared += side.worst.compared;
-            if (side.worst.share <= worst.share) continue;
-            worst.share = side.worst.share, worst.where = side.worst.where;
+            apart = std::max(apart, side.worst.share), compared += side.worst.compared;
+            if (const auto why = not_confirmed(side); !why.empty()) reasons.push_back(why);
         }
-        conclusive = conclusive && all.conclusive();
     };
     add(key.at_design, true);
     add(key.at_ends, false);
     if (rows.empty()) return;
-    document["sensitivity"] = {{"conclusive", conclusive},
-                               {"compared", worst.compared},
-                               {"apart", worst.share},
-                               {"where", conclusive ? "" : worst.where},
+    if (compared == 0) reasons.emplace_back("no derivative was compared");
+    for (const auto& why : reasons)
+        print_error("{}: effects of the numbers are not confirmed: {}\n", file, why);
+    document["sensitivity"] = {{"conclusive", reasons.empty()},
+                               {"reasons", reasons},
+                               {"compared", compared},
+                               {"apart", apart},
                                {"effects", table_json(rows)}};
 }
 
@@ -276,7 +285,7 @@ json solve_scene(const std::string& file, const ReportRequest& request, int thre
                                            compare::part(progress_of_scene, after_legs, 0.35)),
                 comparison);
         add_studies(document, model, comparison, tolerance, threads,
-                    compare::part(progress_of_scene, 0.35, 1), reasons);
+                    compare::part(progress_of_scene, 0.35, 1));
     }
     if (request.candidate.wanted()) {
         document["candidates"] = json::array();

@@ -22,6 +22,7 @@
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
+#include "reports/tables/comparison_tables.hpp"
 #include "reports/tables/csv.hpp"
 
 namespace elastocheck::reports {
@@ -103,6 +104,7 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
     };
     std::vector<compare::PathCurve> kept;  // only for the document
     write(curves_header(channels));
+    std::vector<bool> is_undefined(channels.size(), false);
     int code = fine;
     const std::string who =
         leg == compare::Leg::recursive ? std::string(how.method.name) : name(leg);
@@ -124,6 +126,8 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
                 return compare::row_of(model, channels, sides.front(), solver, state, analyses);
             },
             [&](const compare::Row& row) {
+                for (std::size_t c = 0; c < channels.size(); ++c)
+                    is_undefined[c] = is_undefined[c] || row.values[c] == compare::undefined;
                 if (delivery.as_json) {
                     append(whole.curve, row.load, row.values);
                     whole.constraint_error.push_back(row.constraint_error);
@@ -143,6 +147,10 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         print_error("{}: {}: {}\n", who, name(path.outcome), path.detail);
         code = could_not_judge;
     }
+    if (const auto why =
+            not_determined(channels, [&](std::size_t c) { return bool(is_undefined[c]); });
+        !why.empty())
+        print_error("{}\n", why);
     if (csv) csv->finish();
     if (has_states)
         states->finish();

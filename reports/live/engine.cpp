@@ -195,7 +195,7 @@ json open(Session& session, std::string_view text, const std::string& name,
                                       {"kind", compare::name(channel.kind())},
                                       {"main", channel.main},
                                       {"definition", channel.definition},
-                                      {"undefined", channel.undefined}});
+                                      {"undefined", compare::why_undefined(channel)}});
     return answer;
 }
 

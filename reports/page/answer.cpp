@@ -95,7 +95,13 @@ std::string trust_sentence(const JsonCursor& scene) {
                                                whole_number(points));
     if (points > 0 && scene.find("proved"))  // with --quick
         text += " (the ends of the branches only)";
-    return text + ".";
+    text +=
+        ". This is on the solvers, not on the model nor on the formulas of the outputs, which "
+        "the solutions share.";
+    const auto effects = scene.find("sensitivity");
+    if (effects && !(*effects)["conclusive"].truth())
+        text += " The effects of the scene's numbers are not confirmed.";
+    return text;
 }
 
 namespace {

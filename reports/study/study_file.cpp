@@ -11,6 +11,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "compare/comparison/compliance.hpp"
+#include "compare/comparison/elements.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/variants/openturns.hpp"
 #include "compare/variants/sampler.hpp"
@@ -404,13 +406,26 @@ struct Reading {
         return result;
     }
 
+    // Whether redundant joints share this reaction at the design position.
+    bool is_shared(const compare::Channel& output, const Branch& branch) const {
+        compare::Analyses analyses;
+        return !output.joints().empty() &&
+               evaluate(model, compare::sides_of(model, branch).front(), std::span(&output, 1),
+                        compare::design_state(model), analyses)
+                       .front() == compare::undefined;
+    }
+
     void figures() {
         const Cursor section = whole.require("figures");
         if (model.branches.empty())
             section.fail("the scene has no branch, so no output has a value");
         const auto outputs = compare::figure_outputs(model);
-        for (const auto& [name, at] : section.entries())
-            study.figures.push_back(figure(name, at, outputs));
+        for (const auto& [name, at] : section.entries()) {
+            const auto& added = study.figures.emplace_back(figure(name, at, outputs));
+            const auto& output = *std::ranges::find(outputs, added.output, &compare::Channel::name);
+            if (is_shared(output, *std::ranges::find(model.branches, added.branch, &Branch::name)))
+                at.fail(output.name + ": " + why_undefined(output));
+        }
         if (study.figures.empty()) section.fail("no figure; allowed: NAME: toe@jounce:3000");
         if (study.figures.size() > 1000)
             section.fail("more figures than 1000, the most that a ledger has columns for");

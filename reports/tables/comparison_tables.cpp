@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/comparison/elements.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"
@@ -265,6 +266,11 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         legs_table(branch, text);
         proofs(branch, text);
         if (!branch.why_not_energy.empty()) text += not_asked(branch);
+        if (const auto why =
+                not_determined(comparison.channels,
+                               [&](std::size_t c) { return is_undefined_somewhere(c, reference); });
+            !why.empty())
+            fmt::format_to(out, "  {}\n", why);
         fmt::format_to(out, "  the references have to agree: {}\n",
                        compare::describe(branch.bounds));
         for (const auto& reason : branch.inconclusive.texts())
@@ -273,6 +279,16 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
     fmt::format_to(out, "\n{}: {} numbers compared.\n",
                    comparison.conclusive() ? "conclusive" : "INCONCLUSIVE", comparison.compared);
     return text;
+}
+
+std::string not_determined(std::span<const Channel> channels,
+                           const std::function<bool(std::size_t)>& is_undefined) {
+    std::string names, why;
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        if (!channels[c].joints().empty() && is_undefined(c))
+            names += (names.empty() ? "" : ", ") + channels[c].name,
+                why = why_undefined(channels[c]);
+    return names.empty() ? "" : fmt::format("no value of {}: {}", names, why);
 }
 
 }  // namespace elastocheck::reports

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "compare/candidate/judgement.hpp"
 #include "compare/gate/gate.hpp"
 #include "elastocheck/compile.hpp"
 #include "elastocheck/recursive.hpp"
@@ -227,8 +228,10 @@ TEST(Compare, OnlyReactionsThatRedundantJointsShareAreNotComparedAndTheirTotalIs
         for (const auto& reason : branch.inconclusive.texts()) ADD_FAILURE() << reason;
         for (std::size_t c = 0; c < comparison.channels.size(); ++c) {
             const auto& channel = comparison.channels[c];
+            // Two hinges on one axis share all but the moment about it.
             const bool shared =
-                channel.name.starts_with(pin + ".") || channel.name.starts_with("again.");
+                (channel.name.starts_with(pin + ".") || channel.name.starts_with("again.")) &&
+                !channel.name.ends_with(".moment_y");
             EXPECT_EQ(branch.determined[c], !shared) << channel.name;
             const bool total = channel.name.starts_with(pin + "+again.");
             totals_seen += total;
@@ -431,19 +434,16 @@ TEST(Judgement, ABranchThatLostItsLoadIsNoPass) {
     EXPECT_EQ(verdict.judgement(), Judgement::could_not_judge);
 }
 
-TEST(Judgement, ABranchOnWhichNoOutputMovesIsNoPass) {
+TEST(Judgement, ABranchOnWhichNoOutputMovesIsAResultOfZeros) {
     Scene scene = one_arm(1e5, 1000);
     // The load acts on the pin, which carries all of it.
     std::get<DeadForce>(std::get<Load>(scene.branches[0].drivers[0].what).kind) = {{0, {0, 0, 0}},
                                                                                    {1, 0, 0}};
-    const auto comparison = compare(compile(scene));
-    EXPECT_FALSE(comparison.conclusive());
-    const auto why = comparison.branches[0].inconclusive.texts();
-    ASSERT_FALSE(why.empty());
-    EXPECT_NE(why[0].find("no requested output changes on branch 'up'"), std::string::npos)
-        << why[0];
-    // A stiff mount that moves by 1e-5 mm counts as moving.
-    EXPECT_TRUE(compare(compile(one_arm(1e11, 1000))).conclusive());
+    const Model model = compile(scene);
+    const auto comparison = compare(model);
+    EXPECT_TRUE(comparison.conclusive());
+    EXPECT_GT(comparison.compared, 0);
+    EXPECT_EQ(assess(model, comparison, default_tolerance, true).verdict, Grade::pass);
 }
 
 // ---- Two-sided branches

@@ -107,6 +107,7 @@ TEST(Sections, EffectsOfNumbersAreBarsArrowsAndAMap) {
                     compare::nan, "corner of a law"});
     const auto section_with = [&](bool conclusive) {
         result["scenes"][0]["sensitivity"] = {{"conclusive", conclusive},
+                                              {"reasons", json::array()},
                                               {"compared", 10},
                                               {"apart", 1e-12},
                                               {"effects", table_json(rows)}};

@@ -192,9 +192,9 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
     std::vector<std::string> words;
     for (const auto& number : given.numbers) words.push_back(number.path);
     const Varied varied = parse_varied(words, loaded.scene);
+    const auto scene = scene_at(request.scene, request.settings, varied.numbers);
     const compare::Figures figures =
-        compare::solved_figures(scene_at(request.scene, request.settings, varied.numbers),
-                                varied.numbers, figures_of(named), threads_of(request.running));
+        compare::solved_figures(scene, varied.numbers, figures_of(named), threads_of(request.running));
     const VectorXd nominal = figures.value(varied.start);
     const compare::FigureGradient gradient = figures.gradient(varied.start);
     const auto scatter = compare::scatter(gradient.rate, given.numbers, given.correlation);
@@ -204,9 +204,13 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
         const auto i = static_cast<Index>(k);
         if (!std::isfinite(nominal[i]) || !gradient.rate.row(i).allFinite()) {
             if (request.of.empty()) continue;
-            print_error("{}: no {} here{}{}\n", request.of[k],
-                        std::isfinite(nominal[i]) ? "rate" : "value",
-                        gradient.why_not.empty() ? "" : ": ", gradient.why_not);
+            const bool has_value = std::isfinite(nominal[i]);
+            print_error("{}: no {} here: {}\n", request.of[k], has_value ? "rate" : "value",
+                        has_value ? gradient.why_not
+                                  : compare::figure_values(scene(varied.start),
+                                                           std::span(&named[k].figure, 1),
+                                                           compare::Leg::equilibrium)
+                                        .why_not);
             code = could_not_judge;
             continue;
         }

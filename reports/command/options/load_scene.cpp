@@ -146,6 +146,7 @@ std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
     }
     std::ranges::move(compare::characteristics(model), std::back_inserter(all));
     std::ranges::move(compare::element_channels(model), std::back_inserter(all));
+    std::ranges::move(compare::sums(model), std::back_inserter(all));
     std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
     return chosen(all, patterns);
 }

@@ -266,6 +266,7 @@ std::optional<Section> change_section(const JsonCursor& scene) {
                     .part = Part::change,
                     .mark = (*study)["conclusive"].truth() ? Mark::none : Mark::open};
     section.words = {{"conclusive", (*study)["conclusive"].truth()},
+                     {"reasons", (*study)["reasons"].texts()},
                      {"compared", whole_number((*study)["compared"].whole())},
                      {"apart", number((*study)["apart"].number(), 2)},
                      {"where", study->find("where") ? (*study)["where"].text() : ""},
