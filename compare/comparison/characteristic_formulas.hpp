@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -334,13 +335,6 @@ const MotionsOf<S>& held(const Wheels<S>& wheels, std::size_t w, int cause) {
     return wheels.response.held[w][static_cast<std::size_t>(cause)];
 }
 
-// The displacement of the loaded point along the load is a compliance.
-template <class S>
-S stiffness(const Wheels<S>& wheels, std::size_t w, int cause) {
-    const Placed<S> at = cause < moment_on ? wheels.centre(w) : wheels.patch(w);
-    return ratio<S>(S(1), wheels.moved_by(held(wheels, w, cause), at)[cause % 3], rigid);
-}
-
 // Longitudinal displacement of a point per wheel travel, all wheels raised together: tangent of the
 // angle at which the links, not the springs, carry a longitudinal force.
 template <class S>
@@ -392,9 +386,10 @@ enum class Owner {
     wheel_on_column,  // ... a rotation
     front_wheel,      // of a scene with a `vehicle`
     rear_wheel,
-    wheel_of_axle,  // one of a left and a right one
-    wheels,         // all wheels together
-    axle,           // both wheels of an axle together
+    wheel_of_axle,       // one of a left and a right one
+    wheel_without_axle,  // of another scene
+    wheels,              // all wheels together
+    axle,                // both wheels of an axle together
     spring,
     damper,
 };
@@ -402,8 +397,8 @@ enum class Owner {
 // One formula, evaluated with doubles and with duals; k: wheel, or spring in Model::elastics, or
 // damper; SI.
 struct Formula {
-    double (*value)(const Wheels<double>& wheels, std::size_t k);
-    Dual (*with_rate)(const Wheels<Dual>& wheels, std::size_t k);
+    std::function<double(const Wheels<double>& wheels, std::size_t k)> value;
+    std::function<Dual(const Wheels<Dual>& wheels, std::size_t k)> with_rate;
 
     template <class Generic>
     Formula(const Generic& formula) : value(formula), with_rate(formula) {}  // NOLINT: of a lambda
@@ -417,9 +412,9 @@ S in(const Wheels<S>&, double value) {
 
 struct Entry {
     Owner of;
-    const char* name;
+    std::string name;
     Unit unit;
-    const char* definition;
+    std::string definition;
     const char* undefined;
     Formula formula;
     bool swing_arm = false;
@@ -429,6 +424,13 @@ struct Entry {
 
 // The figures of characteristics() by other definitions, "wheel_rate@patch".
 std::span<const Entry> by_other_definitions();
+
+// Those of characteristics(), of which the tests of an axle have an "@" too, then the others.
+struct Catalogue {
+    std::vector<Entry> entries{};
+    std::size_t own = 0;
+};
+const Catalogue& catalogue();
 
 inline constexpr const char* never = "";
 inline constexpr const char* no_vertical = "the wheel does not rise";
