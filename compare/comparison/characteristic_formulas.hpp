@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -234,12 +235,6 @@ inline const Motions& held(const Wheels& wheels, std::size_t w, int cause) {
     return wheels.response.held[w][static_cast<std::size_t>(cause)];
 }
 
-// The displacement of the loaded point along the load is a compliance.
-inline double stiffness(const Wheels& wheels, std::size_t w, int cause) {
-    const Placed at = cause < moment_on ? wheels.centre(w) : wheels.patch(w);
-    return ratio(1, wheels.moved_by(held(wheels, w, cause), at)[cause % 3], rigid);
-}
-
 // Longitudinal displacement of a point per wheel travel, all wheels raised together: tangent of the
 // angle at which the links, not the springs, carry a longitudinal force.
 inline double forward_per_travel(const Wheels& wheels, const Placed& at) {
@@ -282,21 +277,22 @@ enum class Owner {
     wheel_on_column,  // ... a rotation
     front_wheel,      // of a scene with a `vehicle`
     rear_wheel,
-    wheel_of_axle,  // one of a left and a right one
-    wheels,         // all wheels together
-    axle,           // both wheels of an axle together
+    wheel_of_axle,       // one of a left and a right one
+    wheel_without_axle,  // of another scene
+    wheels,              // all wheels together
+    axle,                // both wheels of an axle together
     spring,
     damper,
 };
 
 // A formula; k: wheel, or spring in Model::elastics, or damper; SI.
-using Formula = double (*)(const Wheels& wheels, std::size_t k);
+using Formula = std::function<double(const Wheels& wheels, std::size_t k)>;
 
 struct Entry {
     Owner of;
-    const char* name;
+    std::string name;
     Unit unit;
-    const char* definition;
+    std::string definition;
     const char* undefined;
     Formula formula;
     bool swing_arm = false;
@@ -306,6 +302,13 @@ struct Entry {
 
 // The figures of characteristics() by other definitions, "wheel_rate@patch".
 std::span<const Entry> by_other_definitions();
+
+// Those of characteristics(), of which the tests of an axle have an "@" too, then the others.
+struct Catalogue {
+    std::vector<Entry> entries{};
+    std::size_t own = 0;
+};
+const Catalogue& catalogue();
 
 inline constexpr const char* never = "";
 inline constexpr const char* no_vertical = "the wheel does not rise";

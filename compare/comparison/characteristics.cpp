@@ -22,7 +22,7 @@ using namespace characteristic;
 
 // ---- Catalogue.
 
-const std::array table{
+const Entry travel_figures[] = {
     Entry{Owner::every_wheel, "bump_steer", Unit::deg_per_m,
           "change of toe over travel of the wheel centre, all wheels rising by the same amount; "
           "positive towards toe-in in jounce",
@@ -67,65 +67,9 @@ const std::array table{
           "vertical force at the contact patch over vertical displacement of the wheel centre, all "
           "wheels with the same load",
           no_rate, [](const auto& x, std::size_t w) { return wheel_rate(x, w, Pattern::alike); }},
-    Entry{Owner::every_wheel, "lateral_force_steer", Unit::deg_per_kN,
-          "change of toe over a force at the contact patch towards the middle of the vehicle (as "
-          "on the "
-          "outer wheel in a "
-          "turn), wheel centres held at their height; positive towards toe-in",
-          never,
-          [](const auto& x, std::size_t w) {
-              return inward(x, w) * x.toe(w, held(x, w, at_patch + 1));
-          }},
-    Entry{Owner::every_wheel, "lateral_force_camber", Unit::deg_per_kN,
-          "change of camber over the same force, likewise; positive where the top leans out", never,
-          [](const auto& x, std::size_t w) {
-              return inward(x, w) * x.camber(w, held(x, w, at_patch + 1));
-          }},
-    Entry{Owner::every_wheel, "lateral_stiffness", Unit::newton_per_mm,
-          "lateral force at the contact patch over its lateral displacement, wheel centres held at "
-          "their "
-          "height",
-          gives_nothing,
-          [](const auto& x, std::size_t w) { return stiffness(x, w, at_patch + 1); }},
-    Entry{Owner::every_wheel, "braking_force_steer", Unit::deg_per_kN,
-          "change of toe over a force to the back at the contact patch, wheel centres held at "
-          "their height; "
-          "positive towards "
-          "toe-in",
-          never, [](const auto& x, std::size_t w) { return -x.toe(w, held(x, w, at_patch)); }},
-    Entry{Owner::every_wheel, "braking_force_camber", Unit::deg_per_kN,
-          "change of camber over the same force, likewise; positive where the top leans out", never,
-          [](const auto& x, std::size_t w) { return -x.camber(w, held(x, w, at_patch)); }},
-    Entry{Owner::every_wheel, "longitudinal_stiffness", Unit::newton_per_mm,
-          "longitudinal force at the contact patch over its longitudinal displacement, wheel "
-          "centres held at "
-          "their height",
-          gives_nothing, [](const auto& x, std::size_t w) { return stiffness(x, w, at_patch); }},
-    Entry{Owner::every_wheel, "traction_force_steer", Unit::deg_per_kN,
-          "change of toe over a force forward at the wheel centre, wheel centres held at their "
-          "height; "
-          "positive towards toe-in",
-          never, [](const auto& x, std::size_t w) { return x.toe(w, held(x, w, at_centre)); }},
-    Entry{Owner::every_wheel, "longitudinal_stiffness_at_centre", Unit::newton_per_mm,
-          "longitudinal force at the wheel centre over its longitudinal displacement, wheel "
-          "centres held at "
-          "their height",
-          gives_nothing, [](const auto& x, std::size_t w) { return stiffness(x, w, at_centre); }},
-    Entry{Owner::every_wheel, "aligning_torque_steer", Unit::deg_per_100Nm,
-          "change of toe over a moment about the vertical that turns the wheel towards toe-in, "
-          "wheel centres "
-          "held at their "
-          "height; positive towards toe-in",
-          never,
-          [](const auto& x, std::size_t w) {
-              return -x.side(w) * x.toe(w, held(x, w, moment_on + 2));
-          }},
-    Entry{Owner::every_wheel, "aligning_torque_camber", Unit::deg_per_100Nm,
-          "change of camber over the same moment, likewise; positive where the top leans out",
-          never,
-          [](const auto& x, std::size_t w) {
-              return -x.side(w) * x.camber(w, held(x, w, moment_on + 2));
-          }},
+};
+
+const Entry other_figures[] = {
     Entry{Owner::wheel_on_tyre, "ride_rate", Unit::newton_per_mm,
           "wheel rate and vertical rate of the tyre in series: 1 / (1/k_wheel + 1/k_tyre)", no_rate,
           [](const auto& x, std::size_t w) { return ride_rate(x, w); }},
@@ -254,6 +198,145 @@ const std::array table{
         }},
 };
 
+// ---- Compliance under forces and moments in the plane of the road, wheel centres held at their
+// height. Of an axle the tests of a rig, which loads both wheels; one wheel alone by a definition.
+
+enum class Seen { toe, camber, along_the_force };
+struct ForceFigure {
+    const char* name;
+    Unit unit;
+    Seen seen;
+    const char* stiffness = "";  // of Seen::along_the_force: force over displacement
+};
+struct Loading {
+    const char* name;  // after "@"
+    double other;      // on the other wheel, per unit on this one, ground axes
+    const char* cause;
+    const char* loaded;
+    const char* rig;  // what rigs call it
+};
+struct ForceTest {
+    int cause;
+    double sign;  // of the cause, ground axes; 0: towards the middle of the vehicle, or toe-in
+    Loading alone;
+    std::vector<Loading> on_a_rig;
+    std::vector<ForceFigure> figures;
+};
+
+constexpr const char* one_alone = "this wheel alone loaded";
+constexpr const char* alike = "both wheels loaded alike";
+constexpr const char* towards_each_other = "both wheels loaded towards the middle of the vehicle";
+
+const std::vector<ForceTest>& force_tests() {
+    static const std::vector<ForceTest> tests{
+        {at_patch + 1,
+         0,
+         {"alone", 0,
+          "a force at the contact patch towards the middle of the vehicle (as on the outer wheel "
+          "in "
+          "a turn)",
+          one_alone, "programs that load one wheel"},
+         {{"parallel", 1,
+           "a force at each contact patch, both to the same side, on this wheel towards the middle "
+           "of the vehicle (as on the outer wheel in a turn)",
+           alike, "rigs: lateral force, parallel"},
+          {"opposed", -1, "a force at each contact patch, both towards the middle of the vehicle",
+           towards_each_other, "rigs: lateral force, opposed"}},
+         {{"lateral_force_steer", Unit::deg_per_kN, Seen::toe},
+          {"lateral_force_camber", Unit::deg_per_kN, Seen::camber},
+          {"lateral_stiffness", Unit::newton_per_mm, Seen::along_the_force,
+           "lateral force at the contact patch over its lateral displacement"}}},
+        {at_patch,
+         -1,
+         {"alone", 0, "a force to the back at the contact patch", one_alone,
+          "programs that load one wheel"},
+         {{"both", 1, "a force to the back at each contact patch", alike,
+           "rigs: both wheels braked"}},
+         {{"braking_force_steer", Unit::deg_per_kN, Seen::toe},
+          {"braking_force_camber", Unit::deg_per_kN, Seen::camber},
+          {"longitudinal_stiffness", Unit::newton_per_mm, Seen::along_the_force,
+           "longitudinal force at the contact patch over its longitudinal displacement"}}},
+        {at_centre,
+         1,
+         {"alone", 0, "a force forward at the wheel centre", one_alone,
+          "programs that load one wheel"},
+         {{"both", 1, "a force forward at each wheel centre", alike, "rigs: both wheels driven"}},
+         {{"traction_force_steer", Unit::deg_per_kN, Seen::toe},
+          {"longitudinal_stiffness_at_centre", Unit::newton_per_mm, Seen::along_the_force,
+           "longitudinal force at the wheel centre over its longitudinal displacement"}}},
+        {moment_on + 2,
+         0,
+         {"alone", 0, "a moment about the vertical that turns the wheel towards toe-in", one_alone,
+          "programs that load one wheel"},
+         {{"parallel", 1,
+           "a moment about the vertical on each wheel, both the same way round, on this wheel "
+           "towards toe-in",
+           alike, "rigs: aligning torque, parallel"},
+          {"opposed", -1, "a moment about the vertical on each wheel, both towards toe-in", alike,
+           "rigs: aligning torque, opposed"}},
+         {{"aligning_torque_steer", Unit::deg_per_100Nm, Seen::toe},
+          {"aligning_torque_camber", Unit::deg_per_100Nm, Seen::camber}}}};
+    return tests;
+}
+
+Entry entry_of(Owner owner, const ForceTest& test, const Loading& loading,
+               const ForceFigure& figure) {
+    const bool axle = owner != Owner::wheel_without_axle;
+    const std::string at_height = ", wheel centres held at their height";
+    Entry entry{owner,
+                axle ? fmt::format("{}@{}", figure.name, loading.name) : figure.name,
+                figure.unit,
+                "",
+                never,
+                [cause = test.cause, sign = test.sign, other = loading.other, seen = figure.seen](
+                    const auto& x, std::size_t w) {
+                    const auto at = cause < moment_on ? x.centre(w) : x.patch(w);
+                    const auto by_force_on = [&](std::size_t k) {
+                        const auto& by = held(x, k, cause);
+                        return seen == Seen::toe      ? x.toe(w, by)
+                               : seen == Seen::camber ? x.camber(w, by)
+                                                      : x.moved_by(by, at)[cause % 3];
+                    };
+                    auto sum = by_force_on(w);
+                    for (std::size_t k = 0; other != 0 && k < x.model.wheels.size(); ++k)
+                        if (k != w) sum += other * by_force_on(k);
+                    return seen == Seen::along_the_force
+                               ? ratio(1, sum, rigid)
+                               : (sign != 0 ? sign : -x.side(w)) * sum;
+                }};
+    if (figure.seen == Seen::along_the_force) {
+        entry.definition =
+            figure.stiffness + (axle ? fmt::format(", {}", loading.loaded) : "") + at_height;
+        entry.undefined = gives_nothing;
+    } else {
+        const bool toe = figure.seen == Seen::toe;
+        entry.definition = fmt::format(
+            "change of {} over {}{}{}; positive {}", toe ? "toe" : "camber", loading.cause,
+            axle && loading.other == 0 ? fmt::format(", {}", loading.loaded) : "", at_height,
+            toe ? "towards toe-in" : "where the top leans out");
+    }
+    entry.used_by = loading.rig;
+    return entry;
+}
+
+Catalogue whole_catalogue() {
+    Catalogue all;
+    std::vector<Entry> alone;
+    std::ranges::copy(travel_figures, std::back_inserter(all.entries));
+    for (const ForceTest& test : force_tests())
+        for (const ForceFigure& figure : test.figures) {
+            all.entries.push_back(entry_of(Owner::wheel_without_axle, test, test.alone, figure));
+            for (const Loading& loading : test.on_a_rig)
+                all.entries.push_back(entry_of(Owner::wheel_of_axle, test, loading, figure));
+            alone.push_back(entry_of(Owner::wheel_of_axle, test, test.alone, figure));
+        }
+    std::ranges::copy(other_figures, std::back_inserter(all.entries));
+    all.own = all.entries.size();
+    std::ranges::copy(by_other_definitions(), std::back_inserter(all.entries));
+    std::ranges::copy(alone, std::back_inserter(all.entries));
+    return all;
+}
+
 bool turns(const Model& model, int joint) {
     const int driven = model.joints[static_cast<std::size_t>(joint)].driven;
     return driven >= 0 && is_angle(model.constraints[static_cast<std::size_t>(driven)].kind);
@@ -273,6 +356,7 @@ std::size_t count(const Model& model, Owner of) {
         case Owner::front_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::front);
         case Owner::rear_wheel: return if_so(model.vehicle && model.vehicle->axle == Axle::rear);
         case Owner::wheel_of_axle: return if_so(is_axle(model));
+        case Owner::wheel_without_axle: return if_so(!is_axle(model));
         case Owner::wheels: return 1;
         case Owner::axle: return is_axle(model) ? 1 : 0;
         case Owner::spring: return model.elastics.size();
@@ -293,7 +377,8 @@ std::optional<std::string> owner(const Model& model, Owner of, std::size_t k) {
         case Owner::wheel_on_column:
         case Owner::front_wheel:
         case Owner::rear_wheel:
-        case Owner::wheel_of_axle: return model.wheels[k].name;
+        case Owner::wheel_of_axle:
+        case Owner::wheel_without_axle: return model.wheels[k].name;
         case Owner::wheels:
         case Owner::axle: return "";
         case Owner::spring:
@@ -310,9 +395,7 @@ std::optional<std::string> owner(const Model& model, Owner of, std::size_t k) {
 
 namespace {
 
-const Entry& entry(std::size_t e) {
-    return e < table.size() ? table[e] : by_other_definitions()[e - table.size()];
-}
+const Entry& entry(std::size_t e) { return catalogue().entries[e]; }
 
 std::vector<Channel> outputs(const Model& model, std::size_t from, std::size_t to) {
     std::vector<Channel> list;
@@ -331,10 +414,20 @@ std::vector<Channel> outputs(const Model& model, std::size_t from, std::size_t t
 
 }  // namespace
 
-std::vector<Channel> characteristics(const Model& model) { return outputs(model, 0, table.size()); }
+const Catalogue& characteristic::catalogue() {
+    static const Catalogue all = whole_catalogue();
+    return all;
+}
+
+std::vector<Channel> characteristics(const Model& model) {
+    return outputs(model, 0, catalogue().own);
+}
 
 std::vector<Channel> characteristics_otherwise(const Model& model) {
-    return outputs(model, table.size(), table.size() + by_other_definitions().size());
+    auto list = outputs(model, catalogue().own, catalogue().entries.size());
+    for (auto& channel : characteristics(model))
+        if (channel.name.find('@') != channel.name.npos) list.push_back(std::move(channel));
+    return list;
 }
 
 double value_of(const Model& model, const Characteristic& what, const Equilibrium& state,

@@ -10,6 +10,7 @@
 
 #include "compare/comparison/characteristic_formulas.hpp"
 #include "compare/comparison/characteristics.hpp"
+#include "compare/definitions/figure_words.hpp"
 #include "compare/definitions/wishbones.hpp"
 #include "compare/outputs/positions.hpp"
 
@@ -266,12 +267,10 @@ std::vector<Definition> definitions() {
     std::vector<Definition> all;
     for (const auto& of : list)
         all.push_back({of.figure, of.name, of.unit, of.formula, of.used_by});
-    for (const auto& entry : characteristic::by_other_definitions()) {
-        const std::string_view name = entry.name;
-        const auto at = name.find('@');
-        all.push_back({std::string(name.substr(0, at)), std::string(name.substr(at + 1)),
-                       entry.unit, entry.definition, entry.used_by});
-    }
+    for (const auto& entry : characteristic::catalogue().entries)
+        if (const auto at = entry.name.find('@'); at != entry.name.npos)
+            all.push_back({entry.name.substr(0, at), entry.name.substr(at + 1), entry.unit,
+                           entry.definition.c_str(), entry.used_by});
     return all;
 }
 
@@ -330,12 +329,22 @@ std::string figure_of(std::string_view output) {
 
 std::vector<Channel> definitions_of(std::span<const Channel> defined, const std::string& figure) {
     std::vector<Channel> list_of_figure;
+    std::string own = figure;  // without the test of an axle
+    for (const char* test : {"@parallel", "@opposed", "@both"})
+        if (own.ends_with(test)) own.resize(own.rfind('@'));
     for (const Channel& channel : defined) {
         const std::string base = channel.name.substr(0, channel.name.find('@'));
         // a figure of the axle, "toe@axle", may stand for that of either wheel
-        if (base == figure || figure.ends_with("." + base)) list_of_figure.push_back(channel);
+        if (channel.name != figure && (base == own || own.ends_with("." + base)))
+            list_of_figure.push_back(channel);
     }
     return list_of_figure;
+}
+
+std::size_t end_of_output(std::string_view figure, std::span<const Channel> outputs) {
+    const auto first = std::min(figure.find('@'), figure.size()),
+               second = std::min(figure.find('@', first + 1), figure.size());
+    return find_channel(outputs, figure.substr(0, second)) >= 0 ? second : first;
 }
 
 }  // namespace elastocheck::compare

@@ -19,10 +19,6 @@ Motions of_axle(const std::vector<std::array<Motions, causes>>& by, std::size_t 
     }
     return sum(all, weights);
 }
-Motions held_axle(const Wheels& x, std::size_t w, int cause, double other) {
-    return of_axle(x.response.held, w, cause, other);
-}
-
 // A lateral force at the height of the road, `pneumatic_trail` behind the patch.
 Motions behind(const Wheels& x, std::size_t w) {
     return sum({held(x, w, at_patch + 1), held(x, w, moment_on + 2)}, {1, -pneumatic_trail});
@@ -307,38 +303,19 @@ const Entry list[] = {
      [](const auto& x, std::size_t w) { return anti_of_whole(x, driven_at(x, w), -1); }, false,
      false, "rear wheel drive: the same figure"},
     {Owner::every_wheel, "lateral_force_steer@centre", Unit::deg_per_kN,
-     "change of toe over a force at the wheel centre towards the middle of the vehicle, wheel "
-     "centres held at their height",
+     "change of toe over a force at the wheel centre of this wheel alone towards the middle of the vehicle, wheel centres held at their height",
      never,
      [](const auto& x, std::size_t w) {
          return inward(x, w) * x.toe(w, held(x, w, at_centre + 1));
      },
      false, false, "programs that load the spindle"},
     {Owner::every_wheel, "lateral_force_steer@trail", Unit::deg_per_kN,
-     "change of toe over a force towards the middle of the vehicle that acts on the road 30 mm "
-     "behind the contact patch, wheel centres held at their height",
+     "change of toe over a force towards the middle of the vehicle that acts on the road 30 mm behind the contact patch of this wheel alone, wheel centres held at their height",
      never,
      [](const auto& x, std::size_t w) { return inward(x, w) * x.toe(w, behind(x, w)); }, false,
      false, "rigs with a pneumatic trail of 30 mm"},
-    {Owner::wheel_of_axle, "lateral_force_steer@parallel", Unit::deg_per_kN,
-     "change of toe over a force at each contact patch, both to the same side, on this wheel towards "
-     "the middle of the vehicle, wheel centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) {
-         return inward(x, w) * x.toe(w, held_axle(x, w, at_patch + 1, 1));
-     },
-     false, false, "rigs: lateral force, parallel"},
-    {Owner::wheel_of_axle, "lateral_force_steer@opposed", Unit::deg_per_kN,
-     "change of toe over a force at each contact patch, both towards the middle of the vehicle, "
-     "wheel centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) {
-         return inward(x, w) * x.toe(w, held_axle(x, w, at_patch + 1, -1));
-     },
-     false, false, "rigs: lateral force, opposed"},
     {Owner::every_wheel, "lateral_force_steer@constant_load", Unit::deg_per_kN,
-     "change of toe over a force at the contact patch towards the middle of the vehicle, the wheel "
-     "loads unchanged and the wheels free to rise",
+     "change of toe over a force at the contact patch of this wheel alone towards the middle of the vehicle, the wheel loads unchanged and the wheels free to rise",
      "the travel of the wheel is unresisted",
      [](const auto& x, std::size_t w) {
          const auto* by = unheld(x, w, at_patch + 1);
@@ -346,65 +323,21 @@ const Entry list[] = {
      },
      false, true, "programs whose wheels are free"},
     {Owner::wheel_on_tyre, "lateral_force_steer@on_tyres", Unit::deg_per_kN,
-     "change of toe over a force at the contact patch towards the middle of the vehicle, the wheels "
-     "on their tyres",
+     "change of toe over a force at the contact patch of this wheel alone towards the middle of the vehicle, the wheels on their tyres",
      "the travel of the wheel is unresisted",
      [](const auto& x, std::size_t w) {
          const auto by = on_tyres(x, w, at_patch + 1);
          return by ? inward(x, w) * x.toe(w, *by) : nothing(x);
      },
      false, true, "rigs that load the tyre"},
-    {Owner::wheel_of_axle, "lateral_force_camber@parallel", Unit::deg_per_kN,
-     "change of camber over a force at each contact patch, both to the same side, on this wheel "
-     "towards the middle of the vehicle, wheel centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) {
-         return inward(x, w) * x.camber(w, held_axle(x, w, at_patch + 1, 1));
-     },
-     false, false, "rigs: lateral force, parallel"},
-    {Owner::wheel_of_axle, "lateral_force_camber@opposed", Unit::deg_per_kN,
-     "change of camber over a force at each contact patch, both towards the middle of the vehicle, "
-     "wheel centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) {
-         return inward(x, w) * x.camber(w, held_axle(x, w, at_patch + 1, -1));
-     },
-     false, false, "rigs: lateral force, opposed"},
     {Owner::every_wheel, "braking_force_steer@inboard", Unit::deg_per_kN,
-     "change of toe over a force to the back at the wheel centre, wheel centres held at their "
-     "height: the car body carries the brake torque",
+     "change of toe over a force to the back at the wheel centre of this wheel alone, wheel centres held at their height: the car body carries the brake torque",
      never, [](const auto& x, std::size_t w) { return -x.toe(w, held(x, w, at_centre)); }, false,
      false, "inboard brakes; wheel free to roll"},
-    {Owner::wheel_of_axle, "braking_force_steer@both", Unit::deg_per_kN,
-     "change of toe over a force to the back at each contact patch, wheel centres held at their "
-     "height",
-     never, [](const auto& x, std::size_t w) { return -x.toe(w, held_axle(x, w, at_patch, 1)); },
-     false, false, "rigs: both wheels braked"},
     {Owner::every_wheel, "traction_force_steer@patch", Unit::deg_per_kN,
-     "change of toe over a force forward at the contact patch, wheel centres held at their height: "
-     "the carrier carries the drive torque",
+     "change of toe over a force forward at the contact patch of this wheel alone, wheel centres held at their height: the carrier carries the drive torque",
      never, [](const auto& x, std::size_t w) { return x.toe(w, held(x, w, at_patch)); }, false,
      false, "wheel hub motors; rigs with the wheel locked"},
-    {Owner::wheel_of_axle, "traction_force_steer@both", Unit::deg_per_kN,
-     "change of toe over a force forward at each wheel centre, wheel centres held at their height",
-     never, [](const auto& x, std::size_t w) { return x.toe(w, held_axle(x, w, at_centre, 1)); },
-     false, false, "rigs: both wheels driven"},
-    {Owner::wheel_of_axle, "aligning_torque_steer@parallel", Unit::deg_per_100Nm,
-     "change of toe over a moment about the vertical on each wheel, both the same way round, on this "
-     "wheel towards toe-in, wheel centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) {
-         return -x.side(w) * x.toe(w, held_axle(x, w, moment_on + 2, 1));
-     },
-     false, false, "rigs: aligning torque, parallel"},
-    {Owner::wheel_of_axle, "aligning_torque_steer@opposed", Unit::deg_per_100Nm,
-     "change of toe over a moment about the vertical on each wheel, both towards toe-in, wheel "
-     "centres held at their height",
-     never,
-     [](const auto& x, std::size_t w) {
-         return -x.side(w) * x.toe(w, held_axle(x, w, moment_on + 2, -1));
-     },
-     false, false, "rigs: aligning torque, opposed"},
     {Owner::steered_wheel, "caster@instant_axis", Unit::deg,
      "angle to the vertical seen from the side of the axis about which the carrier turns when the "
      "steering moves, wheel centres held at their height",

@@ -17,7 +17,7 @@ std::optional<Worst> worst_of(const Comparison& comparison, Unit unit, auto&& re
         const Reading& found = reading(branch);
         for (std::size_t c = 0; c < found.channels.size(); ++c) {
             const Channel& channel = comparison.channels[c];
-            if (!channel.main || channel.unit != unit) continue;
+            if (!channel.main || channel.unit != unit || !branch.determined[c]) continue;
             const Deviation& d = found.channels[c];
             if (worst && (std::isnan(worst->max) || d.max <= worst->max)) continue;
             worst = Worst{.branch = branch.branch,

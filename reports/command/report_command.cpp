@@ -176,8 +176,9 @@ KeyOutputs key_outputs(const Model& model) {
             }
     };
     if (!model.wheels.empty()) {
-        for (const char* name : {"bump_steer", "bump_camber", "roll_centre_height", "wheel_rate",
-                                 "lateral_force_steer", "anti_dive"})
+        for (const char* name :
+             {"bump_steer", "bump_camber", "roll_centre_height", "wheel_rate",
+              "lateral_force_steer", "lateral_force_steer@parallel", "anti_dive"})
             add(key.at_design, name);
         for (const char* name : {"toe", "camber"}) add(key.at_ends, name);
     }

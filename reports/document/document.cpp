@@ -313,6 +313,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()},
              {"case", load_case(model, model.branches[b])},
+             {"pushes", pushes_json(model, model.branches[b])},
              {"efforts", efforts_json(model.branches[b], comparison.channels)},
              {"wheel_loads",
               wheel_loads_json(model, model.branches[b], comparison.channels,

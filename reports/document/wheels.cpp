@@ -17,18 +17,26 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// The wheel at this point: of several on one body, the one whose centre or patch is nearest.
-std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
+double away(const Wheel& wheel, const Point& point) {
+    return std::min((wheel.centre_local - point.s_local).norm(),
+                    (wheel.contact_local - point.s_local).norm());
+}
+
+// The wheel on this body: of several, the one whose centre or patch is nearest to the point.
+std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
     std::optional<std::size_t> found;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t w = 0; w < model.wheels.size(); ++w) {
-        const Wheel& wheel = model.wheels[w];
-        if (wheel.body != point.body) continue;
-        const double away = std::min((wheel.centre_local - point.s_local).norm(),
-                                     (wheel.contact_local - point.s_local).norm());
-        if (away < nearest) nearest = away, found = w;
-    }
+    for (std::size_t w = 0; w < model.wheels.size(); ++w)
+        if (model.wheels[w].body == point.body &&
+            (!found || away(model.wheels[w], point) < away(model.wheels[*found], point)))
+            found = w;
     return found;
+}
+
+// The wheel whose centre or patch is at this point.
+std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
+    constexpr double same = 1e-6;  // [m]
+    const auto wheel = wheel_near(model, point);
+    return wheel && away(model.wheels[*wheel], point) < same ? wheel : std::nullopt;
 }
 
 // The wheel that a joint lifts or holds, if it is a jack.
@@ -41,12 +49,9 @@ std::optional<std::size_t> wheel_on_jack(const Model& model, int joint) {
 // The wheel on this element, if it is a tyre.
 std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
     const Elastic& e = model.elastics[static_cast<std::size_t>(elastic)];
-    if (!e.active_only_where_driven) return std::nullopt;
-    for (std::size_t w = 0; w < model.wheels.size(); ++w)
-        if (const auto [i, j] = ends(e.kind);
-            i == model.wheels[w].body || j == model.wheels[w].body)
-            return w;
-    return std::nullopt;
+    if (e.written_as != WrittenAs::tyre) return std::nullopt;
+    const Marker& on = std::get<Bushing>(e.kind).j;
+    return wheel_at(model, {on.body, on.s_local});
 }
 
 bool is_effort_of(const compare::Channel& channel, int joint) {
@@ -57,7 +62,10 @@ bool is_effort_of(const compare::Channel& channel, int joint) {
 // What the parameter does to the wheels.
 struct Effects {
     std::vector<double> lift;  // per wheel, vertical motion or force per unit of the parameter
-    bool steers = false, across = false, along = false, turns = false, other = false;
+    // likewise, force in the road plane or moment, as the figures of a K&C test count it
+    std::vector<double> push;
+    bool steers = false, across = false, turns = false, other = false;
+    bool along_centre = false, along_patch = false;
 };
 
 void add(Effects& effects, const Model& model, const LoadKind& load, double rate) {
@@ -65,21 +73,32 @@ void add(Effects& effects, const Model& model, const LoadKind& load, double rate
         effects.other = true;
     } else if (is_moment(load)) {
         effects.turns = true;
+        for (std::size_t w = 0; w < model.wheels.size(); ++w)
+            if (model.wheels[w].body == body_of(load) &&
+                std::ranges::count(model.wheels, model.wheels[w].body, &Wheel::body) == 1)
+                effects.push[w] -= rate * model.wheels[w].side * load_vector(load).z();
     } else {
-        const auto wheel = wheel_at(model, *member<Point>(load));
-        const Eigen::Vector3d f = load_vector(load).cwiseAbs();
+        const auto wheel = wheel_near(model, *member<Point>(load));
+        const Eigen::Vector3d v = load_vector(load), f = v.cwiseAbs();
         if (!wheel)
             effects.other = true;
         else if (f.z() > f.x() && f.z() > f.y())
-            effects.lift[*wheel] += rate * load_vector(load).z();
-        else
-            (f.y() > f.x() ? effects.across : effects.along) = true;
+            effects.lift[*wheel] += rate * v.z();
+        else if (f.y() > f.x()) {
+            effects.across = true;
+            effects.push[*wheel] -= rate * model.wheels[*wheel].side * v.y();
+        } else {
+            const bool at_centre =
+                (model.wheels[*wheel].centre_local - member<Point>(load)->s_local).norm() < 1e-6;
+            (at_centre ? effects.along_centre : effects.along_patch) = true;
+            effects.push[*wheel] += (at_centre ? rate : -rate) * v.x();
+        }
     }
 }
 
 Effects effects_of(const Model& model, const Branch& branch) {
     Effects effects;
-    effects.lift.assign(model.wheels.size(), 0);
+    effects.lift.assign(model.wheels.size(), 0), effects.push = effects.lift;
     for (const auto& driver : branch.drivers) {
         if (driver.rate == 0) continue;
         const auto raise = [&](std::optional<std::size_t> wheel, bool& otherwise) {
@@ -92,41 +111,72 @@ Effects effects_of(const Model& model, const Branch& branch) {
             add(effects, model, load->kind, driver.rate);
         else if (const int joint = driven_joint(driver.what); joint >= 0)
             raise(wheel_on_jack(model, joint), effects.steers);
+        else if (const int element = driven_element(driver.what); element >= 0)
+            raise(wheel_on_tyre(model, element), effects.other);
         else
-            raise(wheel_on_tyre(model, driven_element(driver.what)), effects.other);
+            effects.other = true;
     }
     return effects;
 }
 
-// Part of the ground's force on a wheel: force + slope · a, and efforts of jacks.
+// Force of the road on a wheel: force + slope · a, efforts of jacks, and tyres of this rate under the
+// rise of the contact patch. Weights are loads of their bodies, not of the road.
 struct WheelForce {
-    bool known = true;
-    double force = 0, slope = 0;       // [N], [N per unit of a]
-    std::vector<std::size_t> efforts;  // channels
+    bool known = true;                   // no other force on the wheel's body may be the road's
+    double force = 0, slope = 0;         // [N], [N per unit of a]
+    double tyre_rate = 0;                // [N/m], of the tyres that stand on the branch
+    std::vector<std::size_t> efforts{};  // channels
+    std::size_t patch = 0;               // channel of the height of the patch [mm]
+    double drawn_patch = 0;              // [mm]
 };
+
+void add_load(std::vector<WheelForce>& wheels, const Model& model, const LoadKind& load,
+              double start, double rate) {
+    if (is_moment(load)) return;
+    const Point& at = *member<Point>(load);
+    const double up = load_vector(load).z();
+    const auto w = wheel_at(model, at);
+    for (std::size_t k = 0; k < wheels.size(); ++k)
+        if (model.wheels[k].body == at.body && (is_follower(load) || (!w && up != 0)))
+            wheels[k].known = false;
+    if (w) wheels[*w].force += start * up, wheels[*w].slope += rate * up;
+}
 
 std::vector<WheelForce> wheel_forces(const Model& model, const Branch& branch,
                                      const std::vector<compare::Channel>& channels) {
     std::vector<WheelForce> wheels(model.wheels.size());
-    const auto add = [&](const LoadKind& load, double start, double rate) {
-        if (is_moment(load)) return;
-        const auto w = wheel_at(model, *member<Point>(load));
-        if (!w) return;
-        wheels[*w].known = wheels[*w].known && !is_follower(load);
-        wheels[*w].force += start * load_vector(load).z();
-        wheels[*w].slope += rate * load_vector(load).z();
-    };
-    for (const auto& load : model.static_loads) add(load.kind, 1, 0);
+    for (const auto& load : model.static_loads)
+        if (!load.name.starts_with("gravity.")) add_load(wheels, model, load.kind, 1, 0);
+    std::vector<int> tyres;  // standing
     for (const auto& driver : branch.drivers) {
         if (const Load* load = driven_load(driver.what)) {
-            add(load->kind, driver.start, driver.rate);
+            add_load(wheels, model, load->kind, driver.start, driver.rate);
         } else if (const int joint = driven_joint(driver.what); joint >= 0) {
             if (const auto w = wheel_on_jack(model, joint))
                 for (std::size_t c = 0; c < channels.size(); ++c)
                     if (is_effort_of(channels[c], joint)) wheels[*w].efforts.push_back(c);
-        } else if (const auto w = wheel_on_tyre(model, driven_element(driver.what))) {
-            wheels[*w].known = false;
+        } else if (const int e = driven_element(driver.what);
+                   const auto w = wheel_on_tyre(model, e)) {
+            // the road pushes up by -(preload + k d_z), d_z the rise of the patch
+            const auto& tyre = std::get<Bushing>(model.elastics[static_cast<std::size_t>(e)].kind);
+            const double road = preload(driver.what)->z();
+            if (std::ranges::find(tyres, e) == tyres.end()) {
+                tyres.push_back(e);
+                wheels[*w].force -= tyre.preload.z();
+                wheels[*w].tyre_rate += std::get<LinearStiffness>(tyre.law).K(2, 2);
+            }
+            wheels[*w].force -= driver.start * road, wheels[*w].slope -= driver.rate * road;
         }
+    }
+    const auto drawn = compare::evaluate(model, channels, compare::design_state(model));
+    for (std::size_t w = 0; w < wheels.size(); ++w) {
+        const std::string& name = model.wheels[w].name;
+        const int patch =
+            compare::find_channel(channels, name + (name.empty() ? "" : ".") + "contact_patch_z");
+        wheels[w].known = wheels[w].known && patch >= 0;
+        if (patch >= 0)
+            wheels[w].patch = static_cast<std::size_t>(patch),
+            wheels[w].drawn_patch = drawn[wheels[w].patch];
     }
     return wheels;
 }
@@ -135,7 +185,8 @@ std::vector<double> loads_of(const WheelForce& wheel, const compare::Curve& curv
     std::vector<double> loads;
     const double unit = compare::in_unit(curve.unit);
     for (std::size_t k = 0; wheel.known && k < curve.a.size(); ++k) {
-        double sum = wheel.force + wheel.slope * curve.a[k] / unit;
+        double sum = wheel.force + wheel.slope * curve.a[k] / unit -
+                     wheel.tyre_rate * 1e-3 * (curve.values[k][wheel.patch] - wheel.drawn_patch);
         for (const auto c : wheel.efforts) sum += curve.values[k][c];
         loads.push_back(sum);
     }
@@ -158,15 +209,35 @@ bool holds_a_wheel(const Model& model, const Branch& branch) {
 const char* load_case(const Model& model, const Branch& branch) {
     const Effects e = effects_of(model, branch);
     const bool lifts = std::ranges::any_of(e.lift, [](double v) { return v != 0; });
-    if (e.other || model.wheels.empty() || lifts + e.steers + e.across + e.along + e.turns != 1)
+    if (e.other || model.wheels.empty() ||
+        lifts + e.steers + e.across + (e.along_centre || e.along_patch) + e.turns != 1)
         return "other";
     if (e.steers) return "steering";
     if (e.across) return "lateral force";
-    if (e.along) return "longitudinal force";
+    if (e.along_centre || e.along_patch) return "longitudinal force";
     if (e.turns) return "moment";
     const double first = e.lift.front();
     if (std::ranges::all_of(e.lift, [&](double v) { return v == first; })) return "heave";
     return e.lift.size() == 2 && e.lift[1] == -first ? "roll" : "travel";
+}
+
+json pushes_json(const Model& model, const Branch& branch) {
+    const Effects e = effects_of(model, branch);
+    const std::string kind = load_case(model, branch);
+    const bool known = kind == "lateral force" || kind == "moment" ||
+                       (kind == "longitudinal force" && e.along_centre != e.along_patch);
+    if (!known || std::ranges::all_of(e.push, [](double push) { return push == 0; }))
+        return nullptr;
+    const bool forward = e.along_centre;
+    return {{"per_unit", e.push},
+            {"positive", kind == "moment"          ? "towards toe-in"
+                         : kind == "lateral force" ? "inwards"
+                         : forward                 ? "forward"
+                                                   : "to the back"},
+            {"negative", kind == "moment"          ? "towards toe-out"
+                         : kind == "lateral force" ? "outwards"
+                         : forward                 ? "to the back"
+                                                   : "forward"}};
 }
 
 json efforts_json(const Branch& branch, const std::vector<compare::Channel>& channels) {

@@ -13,12 +13,18 @@ namespace elastocheck::reports {
 // wheels), or "other".
 const char* load_case(const Model& model, const Branch& branch);
 
+// Force or moment on each wheel in the plane of the road per unit of the parameter, and its
+// directions, as the K&C figures count it: inwards, to the back at the patch, forward at the wheel
+// centre, towards toe-in. Null where the branch is no such test.
+nlohmann::ordered_json pushes_json(const Model& model, const Branch& branch);
+
 // Outputs with the force or moment of the joints that the parameter moves: "rack.drive_force".
 nlohmann::ordered_json efforts_json(const Branch& branch,
                                     const std::vector<compare::Channel>& channels);
 
-// Vertical force of the ground on each wheel [N] at the points of the curve: jacks and loads, static
-// ones included; by the wheel's name. null for a wheel on a tyre or under a follower load.
+// Vertical force of the road on each wheel [N] at the points of the curve: of its tyre, its jacks, and
+// forces at its centre or contact patch, static ones included; weights are not part of it. By the
+// wheel's name. null where another force on the wheel's body may be the road's or not.
 nlohmann::ordered_json wheel_loads_json(const Model& model, const Branch& branch,
                                         const std::vector<compare::Channel>& channels,
                                         const compare::Curve& curve);

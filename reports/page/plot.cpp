@@ -10,6 +10,7 @@
 #include "reports/files/files.hpp"
 #include "reports/text/escape.hpp"
 #include "reports/text/labels.hpp"
+#include "reports/text/numbers.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -100,6 +101,31 @@ Range coordinates(const Figure& figure, std::size_t column, bool logarithmic) {
             else if (row.size() > column)
                 range.take(logarithmic ? std::log10(row[column]) : row[column]);
     return range;
+}
+
+// The range of y without what would flatten the rest: of a line whose range is several times that
+// of its middle half, as beside a pole or a steep stop, only what is near that half. Every line
+// keeps its own part.
+Range bulk_of(const Figure& figure, const Range& all) {
+    constexpr double fence = 2, flat = 0.05;  // of the middle half; of the median
+    Range bulk;
+    for (const auto& series : figure.series) {
+        std::vector<double> y;
+        for (const auto& row : series.rows)
+            if (row.size() == 2 && std::isfinite(row[1])) y.push_back(row[1]);
+        if (y.empty()) continue;
+        std::ranges::sort(y);
+        const auto at = [&](double share) {
+            return y[static_cast<std::size_t>(share * static_cast<double>(y.size() - 1))];
+        };
+        const double half = std::max(at(0.75) - at(0.25), flat * std::abs(at(0.5))),
+                     low = std::max(y.front(), at(0.25) - fence * half),
+                     high = std::min(y.back(), at(0.75) + fence * half);
+        const bool cut = y.size() >= 9 && half > 1e-6 * (all.high - all.low) &&
+                         y.back() - y.front() > 3 * (high - low);
+        bulk.take(cut ? low : y.front()), bulk.take(cut ? high : y.back());
+    }
+    return all.high - all.low > 3 * (bulk.high - bulk.low) ? bulk : all;
 }
 
 // ---- Series
@@ -296,9 +322,12 @@ Svg draw_plot(const Figure& figure) {
     Svg svg{width, static_cast<int>(std::lround(height * figure.height))};
     const double right = width - 23, bottom = svg.height - 52.8;
     const auto end = [&](double value) { return figure.log_y ? std::log10(value) : value; };
+    const Range all = coordinates(figure, 1, figure.log_y);
+    const bool free = !figure.log_y && std::isnan(figure.y_low) && std::isnan(figure.y_high);
+    const Range shown = free ? bulk_of(figure, all) : all;
     const auto vertical = [&](double top) {
-        Axis axis = ticked(figure.log_y, coordinates(figure, 1, figure.log_y), end(figure.y_low),
-                           end(figure.y_high), figure.log_y ? 7 : (bottom - top) / 20);
+        Axis axis = ticked(figure.log_y, shown, end(figure.y_low), end(figure.y_high),
+                           figure.log_y ? 7 : (bottom - top) / 20);
         if (!figure.y_ticks.empty()) axis.ticks.clear();
         for (const auto& [at, text] : figure.y_ticks) axis.ticks.push_back({at, text, ""});
         axis.start = bottom, axis.stop = top;
@@ -361,6 +390,10 @@ Svg draw_plot(const Figure& figure) {
             top, bottom);
         svg.elements += "</g>";
     }
+    if (shown.low != all.low || shown.high != all.high)
+        svg.text({left + 6, top + 12},
+                 fmt::format("axis cut: values from {} to {}", number(all.low), number(all.high)),
+                 slate, "start", " font-size=\"10\"");
     // for the script of the page: pixels and coordinates of the ends of the axes, and their names
     const auto add_axis = [&](char name, const Axis& axis, const std::string& words) {
         svg.of_image += fmt::format(" data-{0}=\"{1} {2} {3:.8g} {4:.8g} {5:d}\" data-{0}n=\"{6}\"",

@@ -13,6 +13,7 @@
 
 #include "compare/comparison/compliance.hpp"
 #include "compare/comparison/elements.hpp"
+#include "compare/definitions/figure_words.hpp"
 #include "compare/design/figures.hpp"
 #include "compare/variants/openturns.hpp"
 #include "compare/variants/sampler.hpp"
@@ -361,7 +362,7 @@ struct Reading {
         for (const auto& [word, over] :
              {std::pair("min ", Over::least), std::pair("max ", Over::largest)})
             if (words.starts_with(word)) result.over = over, words.erase(0, 4);
-        const auto place = words.find('@');
+        const auto place = compare::end_of_output(words, outputs);
         result.output = words.substr(0, place);
         std::vector<std::string> names;
         for (const auto& output : outputs) names.push_back(output.name);
@@ -371,7 +372,7 @@ struct Reading {
                                 reader::did_you_mean(result.output, names, "outputs")));
         result.unit = outputs[static_cast<std::size_t>(output - names.begin())].unit;
         const Branch* branch = &model.branches.front();
-        if (place == words.npos) {
+        if (place == words.size()) {
             result.branch = branch->name;
             return result;
         }

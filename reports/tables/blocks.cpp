@@ -41,15 +41,31 @@ constexpr Quantity quantities[] = {
      "displacement of the wheel centre along the y axis of this file from the design position"},
     {"wheel_rate", "wheel_rate", Component::none},
 };
-constexpr const char* coefficients[] = {
-    "lateral_force_steer",           "lateral_force_steer@opposed",
-    "lateral_force_steer@parallel",  "lateral_force_camber",
-    "lateral_force_camber@opposed",  "lateral_force_camber@parallel",
-    "braking_force_steer",           "braking_force_camber",
-    "traction_force_steer",          "aligning_torque_steer",
-    "aligning_torque_steer@opposed", "aligning_torque_steer@parallel",
-    "aligning_torque_camber",        "lateral_stiffness",
-    "longitudinal_stiffness",        "longitudinal_stiffness_at_centre"};
+constexpr const char* coefficients[] = {"lateral_force_steer",
+                                        "lateral_force_steer@opposed",
+                                        "lateral_force_steer@parallel",
+                                        "lateral_force_camber",
+                                        "lateral_force_camber@opposed",
+                                        "lateral_force_camber@parallel",
+                                        "braking_force_steer",
+                                        "braking_force_steer@both",
+                                        "braking_force_camber",
+                                        "braking_force_camber@both",
+                                        "traction_force_steer",
+                                        "traction_force_steer@both",
+                                        "aligning_torque_steer",
+                                        "aligning_torque_steer@opposed",
+                                        "aligning_torque_steer@parallel",
+                                        "aligning_torque_camber",
+                                        "aligning_torque_camber@opposed",
+                                        "aligning_torque_camber@parallel",
+                                        "lateral_stiffness",
+                                        "lateral_stiffness@opposed",
+                                        "lateral_stiffness@parallel",
+                                        "longitudinal_stiffness",
+                                        "longitudinal_stiffness@both",
+                                        "longitudinal_stiffness_at_centre",
+                                        "longitudinal_stiffness_at_centre@both"};
 
 const char* si_symbol(Unit unit) {
     switch (unit) {

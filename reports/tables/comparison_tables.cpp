@@ -23,6 +23,7 @@ std::string share(double value, double range) {
     if (value < 1e-9) return "0";
     const double percent = 100 * value / range;
     if (percent < 0.001) return "<0.001 %";
+    if (percent > 1000) return ">1000 %";
     return percent < 10 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 

@@ -51,7 +51,7 @@ std::string other_of(const Assessment& j) {
 }
 
 // "5.1 mm (wheel centre z, branch vertical) and 0.11 deg (camber, branch vertical)", by the worse
-// reading.
+// reading; empty where all is rounding.
 std::string worst_of(const Assessment& j) {
     std::vector<std::string> parts;
     for (const auto& [at, across, limit] :
@@ -67,7 +67,7 @@ std::string worst_of(const Assessment& j) {
                                     crosswise ? ", at equal position" : ""));
     }
     if (auto other = other_of(j); !other.empty()) parts.push_back(std::move(other));
-    return parts.empty() ? "nothing" : enumerated(parts);
+    return enumerated(parts);
 }
 
 std::string rate_of(const Assessment& j) {
@@ -87,9 +87,14 @@ std::string compared(const Assessment& j) {
 
 // The deviations without a verdict.
 std::string deviations(const Assessment& j) {
-    const std::string text = j.exact ? fmt::format("{} is exact to round-off", subject(j))
-                                     : fmt::format("{} is off from the full solution by up to {}{}",
-                                                   subject(j), worst_of(j), rate_of(j));
+    const std::string worst = worst_of(j);
+    const std::string text = j.exact || (worst.empty() && !j.wheel_rate)
+                                 ? fmt::format("{} is exact to round-off", subject(j))
+                             : worst.empty()
+                                 ? fmt::format("{} is exact to round-off but for the wheel rate{}",
+                                               subject(j), rate_of(j))
+                                 : fmt::format("{} is off from the full solution by up to {}{}",
+                                               subject(j), worst, rate_of(j));
     return fmt::format("{}{}; {}. No verdict was requested: --within gives a tolerance.",
                        static_cast<char>(std::toupper(static_cast<unsigned char>(text.front()))),
                        text.substr(1), compared(j));
@@ -151,7 +156,8 @@ std::string sentence(const Assessment& j) {
                                    subject(j), tolerance_of(j), compared(j));
             return fmt::format(
                 "Pass: {} is within {} of the full solution everywhere, off by at most {}{}; {}.",
-                subject(j), tolerance_of(j), worst_of(j), rate_of(j), compared(j));
+                subject(j), tolerance_of(j), worst_of(j).empty() ? "round-off" : worst_of(j),
+                rate_of(j), compared(j));
         case Grade::fail:
             return fmt::format(
                 "Fail: {} is off from the full solution by up to {}{}. The tolerance is {}.",

@@ -67,6 +67,7 @@ std::string percent(double share) {
     const double size = 100 * std::abs(share);
     if (size == 0) return fmt::format("0{}%", solid_space);
     if (size < 0.001) return fmt::format("< 0.001{}%", solid_space);
+    if (size > 1000) return fmt::format("{}1000{}%", share < 0 ? "< −" : "> ", solid_space);
     return fmt::format("{}{}{}%", share < 0 ? minus : "",
                        size < 100 ? number(size, 2) : fmt::format("{:.0f}", size), solid_space);
 }

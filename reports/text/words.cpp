@@ -17,6 +17,7 @@ std::string counted(std::size_t count, const std::string& noun) {
 
 std::string as_words(std::string name) {
     std::ranges::replace(name, '_', ' ');
+    if (const auto at = name.find('@'); at != name.npos) name.replace(at, 1, ", ");
     return name;
 }
 

@@ -24,6 +24,20 @@ std::size_t channel(const std::string& name) {
     return static_cast<std::size_t>(find_channel(compared().channels, name));
 }
 
+// As of a definition that a scene asks for and that has no value at some point of a branch.
+TEST(WorstDisagreement, IsOfTheOutputsThatAreCompared) {
+    Comparison comparison = compared();
+    const auto camber = channel("camber");
+    auto& branch = comparison.branches[0];
+    branch.determined[camber] = false;
+    for (Pair* pair : {&branch.uncertainty, &branch.deviation})
+        pair->equal_parameter.channels[camber].max = NAN;
+    EXPECT_LT(worst_disagreement(comparison, Unit::deg)->max, 1e-6);
+    EXPECT_LT(worst_deviation(comparison, ReadingKind::equal_parameter, Unit::deg)->max, 90);
+    branch.determined[camber] = true;
+    EXPECT_TRUE(std::isnan(worst_disagreement(comparison, Unit::deg)->max));
+}
+
 // ---- Wheel rates
 
 TEST(RateErrors, AreSaidPerBranchWithTheirSign) {

@@ -155,6 +155,12 @@ TEST(Against, TheSectionDrawsBothOnCommonAxesAndSaysNothingOfAVerdict) {
     ASSERT_GE(section->tables.size(), 2u);
     EXPECT_EQ(section->tables[0].rows[0][0], "points.tie_rod_inner.z");
     EXPECT_GT(section->tables[1].rows.size(), 5u);
+    // variants of one scene have its name
+    json twin = with;
+    twin["against"]["name"] = with["name"], twin["against"]["source"] = "cars/stiffer.yaml";
+    const auto named = against_section({&twin, "", &file});
+    EXPECT_EQ(named->title, "Differences of stiffer.yaml");
+    expect_parts(named->figures[0].caption, {"Thin line: stiffer.yaml."});
     EXPECT_FALSE(against_section({&base(), "", &file}));
     EXPECT_EQ(sections_of({&with, "", &file}).front().id, "against") << "the page begins with it";
     expect_parts(

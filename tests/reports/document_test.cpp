@@ -4,14 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <set>
 
-#include <cmath>
-
 #include "compare/comparison/elements.hpp"
+#include "compare/comparison/legs.hpp"
 #include "compare/tables/rows.hpp"
 #include "elastocheck/compile.hpp"
+#include "elastocheck/equilibrium.hpp"
+#include "elastocheck/read_scene.hpp"
+#include "elastocheck/trim.hpp"
 #include "reports/document/curves.hpp"
+#include "reports/document/wheels.hpp"
 #include "reports/json/json.hpp"
 #include "reports/tables/csv.hpp"
 #include "reports/tables/render.hpp"
@@ -163,6 +168,136 @@ TEST(Json, WhatWouldTakeMoreMemoryThanThereIsIsRefusedBeforeItIsParsed) {
     std::string text = "[\"";  // brackets within a string are text
     text += many.substr(0, 20'000'000) + "\"]";
     EXPECT_EQ(parse_json(text).size(), 1u);
+}
+
+// ---- Wheel loads: what the road exerts.
+
+const std::string trailing_arm = R"(
+elastocheck: 1
+name: Semi-trailing arm with a heavy hub
+units: {length: mm, angle: deg, force: N}
+points: {outer: [500, 900, 0], inner: [420, 600, -50], seat: [150, 800, 0], top: [150, 800, 300],
+         centre: [0, 1100, 0], patch: [0, 1100, -320]}
+bodies: {arm: {origin: seat, mass: 12}, hub: {origin: centre, mass: 40}}
+gravity: [0, 0, -9.81]
+joints: {axis: {type: revolute, bodies: [arm, ground], at: outer, axis: [inner, outer]}, hub: {type: fixed, bodies: [arm, hub], at: centre}}
+springs: {coil: {bodies: [arm, ground], from: seat, to: top, rate: 90, preload: 3000}}
+tyres: {tyre: {rate: 200, preload: 4000}}
+loads:
+  vertical: {on: hub, at: patch, force: [0, 0, 1]}
+  brake: {on: hub, at: patch, force: [-1, 0, 0]}
+  spindle: {on: hub, at: centre, force: [0, 0, 1]}
+trim: {adjust: [springs.coil.preload], until: {travel: 0}, under: {vertical: 4000}}
+branches:
+  travel: {drive: travel, from: -60, to: 60, steps: 12}
+  patch: {drive: patch_travel, from: -60, to: 60, steps: 12}
+  load: {load: vertical, from: -1000, to: 1500, steps: 10}
+  held: {load: brake, to: 2000, steps: 4, hold: {travel: 0}}
+  spindle: {load: spindle, to: 800, steps: 4, static_loads: {vertical: 200}}
+  road: {drive: tyres.tyre.road, from: -15, to: 60, steps: 5, static_loads: {vertical: -4000}}
+wheel: {body: hub, centre: centre, contact_patch: patch, spin_axis: y, side: left}
+)";
+
+std::string scene_text(const std::string& name) {
+    std::ifstream file(ELASTOCHECK_SCENES "/" + name + ".yaml");
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A scene of models/scenes with masses.
+std::string heavy(const std::string& name, const std::vector<std::string>& bodies) {
+    std::string text = scene_text(name);
+    for (const auto& body : bodies) {
+        const auto at = text.find("\n  " + body + ": {origin: ") + 4 + body.size();
+        text.insert(text.find('}', at), ", mass: 25");
+    }
+    return text + "\ngravity: [0, 0, -9.81]\n";
+}
+
+// Forces on all bodies together but those of the road: weights, and the car body's by joints and
+// elements, these by the work of lifting the whole suspension.
+double lift_without_road(const Model& model, const Branch& branch, const Equilibrium& state) {
+    const auto all = compare::element_channels(model);
+    const auto is_jack = [&](const ModelJoint& joint) {
+        return joint.active_only_where_driven && joint.name.ends_with("jack");
+    };
+    double sum = 0;
+    for (const auto& load : model.static_loads)
+        if (load.name.starts_with("gravity.")) sum += std::get<DeadForce>(load.kind).f.z();
+    for (std::size_t k = 0; k < model.joints.size(); ++k)
+        if (const ModelJoint& joint = model.joints[k]; !is_jack(joint))
+            sum += (joint.j == ground   ? 1
+                    : joint.i == ground ? -1
+                                        : 0) *
+                   state.reactions[k].force.z();
+    constexpr double h = 1e-5;
+    Equilibrium up = state, down = state;
+    for (std::size_t b = 0; b < state.poses.size(); ++b)
+        up.poses[b].r.z() += h, down.poses[b].r.z() -= h;
+    const auto values = compare::evaluate(model, branch, all, state),
+               above = compare::evaluate(model, branch, all, up),
+               below = compare::evaluate(model, branch, all, down);
+    for (std::size_t c = 0; c < all.size(); ++c) {
+        const auto* of = std::get_if<compare::OfElement>(&all[c].reads);
+        if (of == nullptr || of->component < 6 ||
+            model.elastics[static_cast<std::size_t>(of->element)].written_as == WrittenAs::tyre)
+            continue;
+        std::size_t d = c;  // the deformation along the same axis
+        while (std::get<compare::OfElement>(all[d].reads).component != of->component - 6) --d;
+        sum -= values[c] * (above[d] - below[d]) / compare::in_unit(all[d].unit) / (2 * h);
+    }
+    return sum;
+}
+
+void expect_road_to_carry_the_scene(const std::string& text, double at_rest) {
+    const Scene scene = compare::trim(parse_scene(text, "scene.yaml")).scene;
+    const Model model = compile(scene);
+    const auto channels = compare::channels(model);
+    for (const auto& branch : model.branches)
+        for (const auto& side : compare::sides_of(model, branch, 4)) {
+            const std::vector<double> ends{0, side.branch.to / 2, side.branch.to};
+            const auto path = reference::equilibrium::solve(side.model, side.branch, ends);
+            ASSERT_EQ(path.points.size(), 3u) << side.name << ": " << path.detail;
+            compare::Curve curve;
+            curve.unit = compare::unit_of(branch.unit);
+            for (const auto& state : path.points) {
+                curve.a.push_back(compare::in_unit(curve.unit) * state.load);
+                curve.values.push_back(compare::evaluate(model, channels, state));
+            }
+            const json loads = wheel_loads_json(model, branch, channels, curve);
+            for (std::size_t k = 0; k < 3; ++k) {
+                double road = 0;
+                for (const auto& load : loads) road += load.at(k).get<double>();
+                EXPECT_NEAR(road + lift_without_road(model, branch, path.points[k]), 0, 1e-4)
+                    << scene.name << ", " << side.name << " at " << path.points[k].load;
+            }
+            if (branch.name != model.branches.front().name) continue;
+            for (const auto& load : loads) EXPECT_NEAR(load[0].get<double>(), at_rest, 1e-6);
+        }
+}
+
+TEST(WheelLoads, AndWeightsAndTheCarBodyAreInBalance) {
+    expect_road_to_carry_the_scene(trailing_arm, 4000);
+    expect_road_to_carry_the_scene(
+        heavy("front_axle", {"wheel_left", "lower_arm_left", "drop_link_left", "rack"}), 3800);
+    expect_road_to_carry_the_scene(heavy("solid_axle", {"axle", "lower_left"}), 4000);
+    expect_road_to_carry_the_scene(scene_text("tyre_on_road"), 3892.4);
+}
+
+TEST(WheelLoads, AreUnknownUnderAForceThatMayBeTheRoadsOrNot) {
+    const Model model = compile(parse_scene(trailing_arm, "scene.yaml"));
+    const Wheel& wheel = model.wheels[0];
+    const Point centre{wheel.body, wheel.centre_local},
+        beside{wheel.body, wheel.centre_local + Eigen::Vector3d(0.1, 0, 0)};
+    const auto unknown_under = [&](const LoadKind& other) {
+        Model with = model;
+        with.static_loads.push_back({"other", other});
+        return wheel_loads_json(with, with.branches[0], compare::channels(with), {})
+            .front()
+            .is_null();
+    };
+    EXPECT_TRUE(unknown_under(DeadForce{beside, Eigen::Vector3d::UnitZ()}));
+    EXPECT_TRUE(unknown_under(FollowerForce{centre, Eigen::Vector3d::UnitX()}));
+    EXPECT_FALSE(unknown_under(DeadForce{beside, Eigen::Vector3d::UnitY()}));
 }
 
 }  // namespace

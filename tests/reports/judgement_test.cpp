@@ -32,6 +32,18 @@ const compare::Comparison& compared() {
     return comparison;
 }
 
+TEST(Assessment, IsExactToRoundOffWhereNothingIsOff) {
+    auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
+    j.requested = false, j.verdict = Grade::pass, j.wheel_rate.reset();
+    for (auto* worst : {&j.position, &j.angle}) (*worst)->max = 1e-12;
+    for (auto* worst : {&j.position_across, &j.angle_across, &j.other, &j.other_across})
+        worst->reset();
+    expect_parts(sentence(j), {"The linear recursion as published is exact to round-off; "},
+                 {"nothing"});
+    j.requested = true;
+    expect_parts(sentence(j), {"off by at most round-off; "}, {"nothing"});
+}
+
 TEST(Assessment, PassesWhatIsWithinTheToleranceAndFailsTheRest) {
     const auto j = compare::assess(mcpherson(), compared(), compare::default_tolerance, false);
     EXPECT_EQ(j.verdict, Grade::fail);

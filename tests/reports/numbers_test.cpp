@@ -34,6 +34,7 @@ TEST(Numbers, SharesAndCounts) {
     EXPECT_EQ(percent(-0.5), "−50\u00a0%");
     EXPECT_EQ(percent(2.34), "234\u00a0%");
     EXPECT_EQ(percent(1e-9), "< 0.001\u00a0%");
+    EXPECT_EQ(percent(21521251.35), "> 1000\u00a0%");
     EXPECT_EQ(percent(0), "0\u00a0%");
     EXPECT_EQ(whole_number(999), "999");
     EXPECT_EQ(whole_number(104313), "104\u202f313");

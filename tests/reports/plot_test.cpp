@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <regex>
 
@@ -63,6 +64,44 @@ TEST(Plot, ALineIsClippedAtFixedLimitsAndBrokenAtAGap) {
     ASSERT_EQ(found.size(), 2u);  // legend and curve
     EXPECT_EQ(std::ranges::count(found[1], 'M'), 2) << found[1];
     EXPECT_EQ(std::ranges::count(found[1], 'L'), 3) << found[1];
+}
+
+// A steep stop at the end of a wheel rate, and a pole of Ackermann's figure.
+TEST(Plot, TheAxisFitsTheBulkOfALineAndSaysWhatItCuts) {
+    std::vector<std::vector<double>> stop, pole, smooth;
+    for (int k = -20; k <= 20; ++k) {
+        stop.push_back({4.0 * k, 30 + 0.05 * k + (k > 16 ? 400.0 * (k - 16) : 0)});
+        if (k != 0)
+            pole.push_back({1.0 * k, 60 + 30.0 / k * std::abs(k) + (std::abs(k) < 2 ? 9e4 : 0)});
+        smooth.push_back({1.0 * k, std::exp(0.1 * k)});
+    }
+    const auto highest = [](const Svg& svg) {
+        double most = -INFINITY;
+        for (const auto& word : texts(svg)) {
+            double value = 0;
+            const auto [end, error] =
+                std::from_chars(word.data(), word.data() + word.size(), value);
+            if (error == std::errc{} && end == word.data() + word.size())
+                most = std::max(most, value);
+        }
+        return most;
+    };
+    const auto cut = [](const Svg& svg) {
+        const auto words = texts(svg);
+        const auto found = std::ranges::find_if(
+            words, [](const std::string& word) { return word.starts_with("axis cut"); });
+        return found == words.end() ? std::string() : *found;
+    };
+    EXPECT_LE(highest(draw(line(stop))), 100);
+    EXPECT_EQ(cut(draw(line(stop))), "axis cut: values from 29.0 to 1631");
+    EXPECT_LE(highest(draw(line(pole))), 500);
+    EXPECT_NE(cut(draw(line(pole))), "");
+    EXPECT_GE(highest(draw(line(smooth))), 7) << "a curve that grows is shown whole";
+    EXPECT_EQ(cut(draw(line(smooth))), "");
+    // a line that is elsewhere keeps its own place
+    Figure both = line(stop);
+    both.series.push_back({"t", Series::Style::line, blue, 0, {{0, 900}, {40, 905}}});
+    EXPECT_GE(highest(draw(both)), 900);
 }
 
 TEST(Plot, DegenerateDataHaveAxes) {

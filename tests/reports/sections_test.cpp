@@ -14,6 +14,7 @@
 #include "reports/page/common.hpp"
 #include "reports/page/report/report.hpp"
 #include "reports/tables/render.hpp"
+#include "reports/text/numbers.hpp"
 #include "tests/reports/command.hpp"
 #include "tests/reports/result.hpp"
 
@@ -464,6 +465,63 @@ TEST(Sections, RatesRollStiffnessFollowsFromTheWheelRates) {
     EXPECT_NEAR(std::stod(found[1]), stiffness, 0.002 * stiffness);
     ASSERT_TRUE(std::regex_search(text, found, std::regex("anti-roll bar . ([\\d.]+)")));
     EXPECT_NEAR(std::stod(found[1]), 100 * (1 - heave / roll), 0.1);
+}
+
+// Both wheels loaded; one alone only by name. And one sign for a curve and its figure: inwards.
+TEST(Sections, RatesOfAnAxleAreTheTestsOfARigInOneDirection) {
+    const json& result = compared_result("front_axle");
+    expect_parts(said(result, "first"),
+                 {"| lateral force steer, parallel | ", "| lateral force steer, opposed | ",
+                  "| braking force steer, both | ", "forces towards the middle of the vehicle"},
+                 {"| lateral force steer | ", "alone"});
+    expect_parts(said(result, "rates"),
+                 {"| traction force steer, both | ", "| aligning torque steer, opposed | ",
+                  "| lateral stiffness, parallel | "},
+                 {"alone"});
+    double steer = NAN;
+    for (const auto& row : result["scenes"][0]["characteristics"]["design"]["rows"])
+        if (row[0] == "left.lateral_force_steer@parallel") steer = row[2];
+    const Figure toe = figure(result, "toe-force");
+    const auto named = [](const std::vector<Series>& list, const std::string& title) {
+        return std::ranges::any_of(list, [&](const Series& s) { return s.title == title; });
+    };
+    EXPECT_TRUE(named(toe.legend, "lateral, inwards"));
+    EXPECT_TRUE(named(toe.legend, "braking, to the back"));
+    EXPECT_TRUE(named(toe.legend, "traction, forward"));
+    for (const auto& series : toe.series) {
+        if (!series.title.starts_with("lateral")) continue;
+        double slope = 0, nearest = INFINITY;
+        for (const auto& row : series.rows)
+            if (row[0] > 0 && row[0] < nearest) nearest = row[0], slope = 1e3 * row[1] / row[0];
+        EXPECT_NEAR(slope, steer, 0.15 * std::abs(steer)) << series.title;
+    }
+    expect_parts(said(result, "compliance"), {"left, 3000 N outwards", "right, 3000 N inwards",
+                                              "left, 150 N·m towards toe-in"});
+}
+
+TEST(Sections, RatesOfASpringAreInTheColumnOfItsWheel) {
+    const std::string text = said(compared_result("front_axle"), "rates");
+    EXPECT_TRUE(
+        std::regex_search(text, std::regex("\\| coil motion ratio \\| 0\\.\\d+ \\| 0\\.\\d+ ")))
+        << text;
+    expect_parts(text, {}, {"coil right", "coil left"});
+}
+
+// In solve, on the page and in its figure: from the drawn position.
+TEST(Sections, FirstTheTrackChangeIsThatOfTheOutput) {
+    json result = compared_result("front_axle");
+    auto& branch = result["scenes"][0]["branches"][0];
+    auto& values = branch["legs"][1]["curve"]["values"]["left.track_change"];
+    for (auto& value : values)
+        value = value.get<double>() + 0.5;  // settled inwards of the drawn position
+    const double at_the_end = values.front();
+    expect_parts(said(result, "first"),
+                 {"| track change at −80\u00a0mm | " + number(at_the_end, 4) + " |",
+                  "track change from the drawn position"});
+    for (const auto& series : figure(result, "track-change-travel").series)
+        if (series.title.ends_with("left") && series.title.starts_with("parallel")) {
+            EXPECT_NEAR(series.rows.front()[1], at_the_end, 1e-9);
+        }
 }
 
 // A quotient of a rounding error and a value that is zero is no percentage.

@@ -287,13 +287,14 @@ TEST(ExportCommand, WritesBlocksOverTravelAndRackThatAreWhatSolveFinds) {
 
     // coefficients: solve's, in deg/kN and deg/(100 N·m)
     const auto solved = cells_of(
-        elastocheck_says("solve " + scene + few +
-                         "--channels left.lateral_force_steer,left.aligning_torque_steer@opposed")
+        elastocheck_says(
+            "solve " + scene + few +
+            "--channels left.lateral_force_steer@parallel,left.aligning_torque_steer@opposed")
             .out);
     for (const auto& row : solved)
         if (row[0] == "steering" && std::stod(row[2]) == 0) {
             const double lateral = std::stod(row[4]), aligning = std::stod(row[5]);
-            const auto& steer = iso.coefficients.at("lateral_force_steer left");
+            const auto& steer = iso.coefficients.at("lateral_force_steer@parallel left");
             EXPECT_NEAR(std::stod(steer[2]), lateral * degree / 1e3,
                         1e-6 * std::abs(lateral) / 1e3);
             EXPECT_EQ(steer[3], "rad/N");
@@ -302,7 +303,7 @@ TEST(ExportCommand, WritesBlocksOverTravelAndRackThatAreWhatSolveFinds) {
             const auto& torque = iso.coefficients.at("aligning_torque_steer@opposed left");
             EXPECT_NEAR(std::stod(torque[4]), aligning / 100, 1e-6 * std::abs(aligning) / 100);
             EXPECT_EQ(torque[5], "deg/(N·m)");
-            EXPECT_EQ(sae.coefficients.at("lateral_force_steer left"), steer);
+            EXPECT_EQ(sae.coefficients.at("lateral_force_steer@parallel left"), steer);
             ++compared;
         }
     EXPECT_EQ(compared, 3 * 5 * 14 * 2 + 1);

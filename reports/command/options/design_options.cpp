@@ -13,6 +13,7 @@
 #include "compare/candidate/candidate.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/comparison/points.hpp"
+#include "compare/definitions/figure_words.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
@@ -149,9 +150,10 @@ NamedFigure parse_figure(const std::string& word, const std::string& option, con
     NamedFigure named_figure;
     const Branch* branch = &model.branches.front();
     double at = 0;
-    const auto place = word.find('@');
+    const auto outputs = compare::figure_outputs(model);
+    const auto place = compare::end_of_output(word, outputs);
     const std::string name = word.substr(0, place);
-    if (place != word.npos) {
+    if (place < word.size()) {
         const std::string text = word.substr(place + 1);
         const auto colon = text.rfind(':');
         branch = &named(
@@ -162,8 +164,8 @@ NamedFigure parse_figure(const std::string& word, const std::string& option, con
     const compare::Unit unit = compare::unit_of(branch->unit);
     const double factor = compare::in_unit(unit);
     named_figure.output = named(
-        compare::figure_outputs(model), name, [](const compare::Channel& c) { return c.name; },
-        option, "output", "outputs");
+        outputs, name, [](const compare::Channel& c) { return c.name; }, option, "output",
+        "outputs");
     named_figure.figure = {.name = name, .branch = branch->name, .at = at / factor};
     named_figure.place = fmt::format("{} = {:g} {}", branch->name, at, symbol(unit));
     const double low = factor * std::min(branch->from, branch->to),

@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "compare/definitions/figure_words.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/yaml.hpp"
@@ -92,7 +93,7 @@ void add_curve(const Cursor& at, const Scene& scene, const Model& model, Goal& g
     for (int k = 0; k < points; ++k)
         // from a share on either side, so that ±80 has exactly 0 in its middle
         values.push_back((from * (points - 1 - k) + to * k) / (points - 1));
-    if (goal.output.find('@') != std::string::npos)
+    if (compare::end_of_output(goal.output, compare::figure_outputs(model)) < goal.output.size())
         at.require("figure").fail("of a curve without @; its place is branch, over, from and to");
     const auto branch = at.optional("branch");
     const std::string on =

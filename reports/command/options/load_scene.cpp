@@ -1,6 +1,7 @@
 #include "reports/command/options/load_scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fnmatch.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
                                         const Model& model, const std::string& file) {
     std::vector<compare::Channel> outputs;
     if (list.empty()) return outputs;
-    const auto all = compare::definition_channels(model);
+    const auto all = compare::definition_channels(model), own = compare::characteristics(model);
     const auto definitions = compare::definitions();
     // Adds those of every wheel; returns whether there is one.
     const auto add = [&](const std::string& figure, const std::string& name) {
@@ -32,7 +33,9 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
             if (compare::figure_of(channel.name) != figure || !channel.name.ends_with("@" + name))
                 continue;
             any = true;
-            if (compare::find_channel(outputs, channel.name) < 0) outputs.push_back(channel);
+            if (compare::find_channel(outputs, channel.name) < 0 &&
+                compare::find_channel(own, channel.name) < 0)
+                outputs.push_back(channel);
         }
         return any;
     };
@@ -78,11 +81,10 @@ std::vector<compare::Channel> requested(const std::vector<reader::RequestedDefin
     return outputs;
 }
 
-// The requested channels, in that order, each once. Throws std::invalid_argument for a pattern
-// without a match, with the nearest name.
-std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all,
+// The requested channels, in that order, each once; the first `own` are no other definitions.
+// Throws std::invalid_argument for a pattern without a match, with the nearest name.
+std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all, std::size_t own,
                                      const std::vector<std::string>& patterns) {
-    if (patterns.empty()) return all;
     std::vector<compare::Channel> list;
     std::vector<std::string> names;
     for (const auto& channel : all) names.push_back(channel.name);
@@ -90,18 +92,23 @@ std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all,
         // "suspension.*" does not mean suspension.motion_ratio@inverse; "suspension.*@*" does
         const bool with_definitions = pattern.find('@') != std::string::npos;
         bool fits = false;
-        for (const auto& channel : all) {
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const auto& channel = all[k];
             if (channel.name != pattern &&
-                ((!with_definitions && channel.name.find('@') != std::string::npos) ||
+                ((!with_definitions && k >= own) ||
                  ::fnmatch(pattern.c_str(), channel.name.c_str(), 0) != 0))
                 continue;
             fits = true;
             if (compare::find_channel(list, channel.name) < 0) list.push_back(channel);
         }
-        if (!fits)
-            throw std::invalid_argument(
-                fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
-                            reader::did_you_mean(pattern, names, "outputs")));
+        if (fits) continue;
+        std::vector<std::string> tests;  // of an axle, which has no figure without its test
+        for (const auto& name : names)
+            if (name.starts_with(pattern + "@")) tests.push_back(name);
+        throw std::invalid_argument(
+            fmt::format("--channels: there is no output {}{}", reader::quote(pattern),
+                        tests.empty() ? reader::did_you_mean(pattern, names, "outputs")
+                                      : fmt::format("; allowed: {}", fmt::join(tests, ", "))));
     }
     return list;
 }
@@ -147,8 +154,9 @@ std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,
     std::ranges::move(compare::characteristics(model), std::back_inserter(all));
     std::ranges::move(compare::element_channels(model), std::back_inserter(all));
     std::ranges::move(compare::sums(model), std::back_inserter(all));
+    const std::size_t own = all.size();
     std::ranges::move(compare::definition_channels(model), std::back_inserter(all));
-    return chosen(all, patterns);
+    return chosen(all, own, patterns);
 }
 
 nlohmann::ordered_json document_of(const LoadedScene& loaded, const std::string& file) {

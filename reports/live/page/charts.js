@@ -1,7 +1,7 @@
 // ---- Curves: one chart for each chosen output of the shown branch, or of every branch
 const wanted = ['toe', 'camber', 'track_change', 'wheelbase_change', 'wheel_rate', 'bump_steer', 'roll_centre_height', 'caster',
-  'lateral_force_steer', 'lateral_stiffness', 'braking_force_steer', 'ackermann', 'travel'];
-const words = name => name.replaceAll('_', ' ');
+  'lateral_force_steer', 'lateral_force_steer@parallel', 'lateral_force_steer@opposed', 'lateral_stiffness', 'braking_force_steer', 'braking_force_steer@both', 'ackermann', 'travel'];
+const words = name => name.replaceAll('_', ' ').replace('@', ', ');
 const last = name => name.slice(name.lastIndexOf('.') + 1);
 const range = curve => {
   const values = curve.map(p => p[1]).filter(Number.isFinite);
@@ -48,7 +48,8 @@ const chartOf = (branchName, name, withBranch) => {
   const sorted = both.map(p => p[1]).sort((a, b) => a - b), q = share => sorted[Math.round(share * (sorted.length - 1))];
   let [y0, y1] = [sorted[0], sorted.at(-1)];
   if (target) [y0, y1] = [Math.min(y0, ...target.filter(Number.isFinite)), Math.max(y1, ...target.filter(Number.isFinite))];
-  if (channel?.undefined && y1 - y0 > 8 * (q(.9) - q(.1))) [y0, y1] = [q(.05), q(.95)];
+  const whole = [y0, y1], cut = channel?.undefined && y1 - y0 > 8 * (q(.9) - q(.1));
+  if (cut) [y0, y1] = [q(.05), q(.95)];
   const least = 1e-3 * Math.max(Math.abs(y0), Math.abs(y1)) || 1e-3;
   if (y1 - y0 < least) [y0, y1] = [y0 - least, y1 + least];
   if (x1 === x0) x1 = x0 + 1;
@@ -63,6 +64,7 @@ const chartOf = (branchName, name, withBranch) => {
     const x = px(at([v, y0])[0]);
     svg.children.push(sketch('line', {class: 'grid', x1: x, x2: x, y1: headroom, y2: H - footroom}), sketch('text', {x, y: H - 17, 'text-anchor': 'middle'}, shown(v)));
   }
+  if (cut) svg.children.push(sketch('text', {x: W - right, y: headroom + 8, 'text-anchor': 'end'}, `axis cut: ${whole.map(shown).join(' to ')}`));
   svg.children.push(sketch('text', {x: W - right, y: H - 4, 'text-anchor': 'end'}, `${branchName} [${now?.unit ?? ''}]`));
   const lines = points => {
     const parts = [[]];

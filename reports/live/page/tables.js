@@ -3,8 +3,8 @@
 const staticFigures = ['toe', 'camber', 'caster', 'kingpin_inclination', 'scrub_radius', 'mechanical_trail', 'track'];
 // What a characteristic is a response to, by its name.
 const causes = [
-  ['lateral force at the contact patch', /^lateral_/], ['braking force at the contact patch', /^(braking_|longitudinal_stiffness$)/],
-  ['traction force at the wheel centre', /^(traction_|longitudinal_stiffness_at_centre$)/], ['aligning torque', /^aligning_/],
+  ['lateral force at the contact patch', /^lateral_/], ['braking force at the contact patch', /^(braking_|longitudinal_stiffness(@|$))/],
+  ['traction force at the wheel centre', /^(traction_|longitudinal_stiffness_at_centre)/], ['aligning torque', /^aligning_/],
   ['steering', /(^steer_|_steered$|^ackermann|^turning)/], ['roll', /(^roll_|_in_roll$)/], ['vertical travel and load', /./]];
 const causeOf = name => causes.find(([, pattern]) => pattern.test(last(name)))[0];
 const tableHead = (...columns) => sketch('thead', {}, sketch('tr', {}, ...columns.map(t => sketch('th', {scope: 'col'}, t))));

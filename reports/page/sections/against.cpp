@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "reports/page/common.hpp"
 #include "reports/page/sections.hpp"
@@ -14,6 +15,16 @@ namespace {
 
 std::string value_or_none(const std::optional<JsonCursor>& field, int digits) {
     return field ? number(field->number(), digits) : "none";
+}
+
+// Of the base and the variant: the scenes' names, or where these are the same, their files'.
+std::pair<std::string, std::string> names_of(const JsonCursor& scene, const JsonCursor& against) {
+    const std::string base = scene["name"].text(), variant = against["name"].text();
+    const auto file = [](const JsonCursor& of) {
+        return std::filesystem::path(of["source"].text()).filename().string();
+    };
+    if (base != variant) return {base, variant};
+    return {file(scene), file(against)};
 }
 
 Table numbers_table(const JsonCursor& against) {
@@ -99,8 +110,8 @@ std::string parameter_of(const JsonCursor& scene, const JsonCursor& compared) {
 // What an engineer notices: on the first branch every output, on the others the angles.
 FigureGroup figures(const JsonCursor& scene, const JsonCursor& against) {
     constexpr std::size_t most = 12;
-    FigureGroup group{.caption = fmt::format("Wide line: {}. Thin line: {}.", scene["name"].text(),
-                                             against["name"].text()),
+    const auto [base, variant] = names_of(scene, against);
+    FigureGroup group{.caption = fmt::format("Wide line: {}. Thin line: {}.", base, variant),
                       .table = curves_table(against)};
     std::string first;
     for (const auto& branch : against["branches"].items()) {
@@ -132,7 +143,7 @@ FigureGroup figures(const JsonCursor& scene, const JsonCursor& against) {
 std::optional<Section> against_section(const JsonCursor& scene) {
     const auto against = scene.find("against");
     if (!against) return std::nullopt;
-    Section section{.id = "against", .title = "Differences of " + (*against)["name"].text()};
+    Section section{.id = "against", .title = "Differences of " + names_of(scene, *against).second};
     section.words = {{"base", scene["source"].text()},
                      {"variant", (*against)["source"].text()},
                      {"numbers", counted((*against)["numbers"].items().size(), "number")},

@@ -171,6 +171,11 @@ std::optional<FigureGroup> group(const JsonCursor& scene, const Sweep& sweep,
 // 0 below 1e-9, which is rounding.
 std::string small(double value) { return value < 1e-9 ? "0" : number(value, 2); }
 
+// A dash for what does not move.
+std::string share_of(double deviation, double range) {
+    return range < 1e-9 ? "–" : percent(deviation / range);
+}
+
 // One row per main channel, and per joint for its worst force and moment component.
 Table deviations(const JsonCursor& scene, const JsonCursor& branch) {
     Table table{.caption = fmt::format(
@@ -219,11 +224,11 @@ Table deviations(const JsonCursor& scene, const JsonCursor& branch) {
                                      deviation_number(d["signed_max"].number()),
                                      number(d["at"].number(), 4),
                                      small(d["rms"].number()),
-                                     percent(max / d["range"].number())};
+                                     share_of(max, d["range"].number())};
         if (const auto t = travel.find(channel.name)) {
             row.insert(row.end(), {deviation_number((*t)["signed_max"].number()),
                                    number((*t)["at"].number(), 4), small((*t)["rms"].number()),
-                                   percent((*t)["max"].number() / (*t)["range"].number())});
+                                   share_of((*t)["max"].number(), (*t)["range"].number())});
         } else {
             row.insert(row.end(), {"–", "–", "–", "–"});
         }

@@ -18,7 +18,7 @@ namespace {
 // How a quantity of a wheel is shown.
 enum class Shown {
     as_is,
-    change,          // since the design position
+    change,          // since the start of the branch, where the suspension is settled
     outward_change,  // likewise, of a y coordinate
     steer_angle,     // toe, positive to the left
 };
@@ -32,11 +32,12 @@ struct Quantity {
 const std::vector<Quantity> over_travel{
     {"toe", "Toe angle", "toe-in positive"},
     {"camber", "Camber angle", "top outwards positive"},
-    {"track_change", "Lateral movement of the contact patch", "outwards positive", Shown::change},
-    {"wheel_centre_x", "Longitudinal movement of the wheel centre", "forward positive",
-     Shown::change},
+    {"track_change", "Lateral position of the contact patch",
+     "from its drawn position, outwards positive"},
+    {"wheel_centre_x", "Longitudinal movement of the wheel centre",
+     "since the start of the branch, forward positive", Shown::change},
     {"caster", "Caster angle", "top backwards positive"},
-    {"wheel_load", "Wheel load", "with the static load; negative: the wheel would lift off"},
+    {"wheel_load", "Wheel load", "the force of the road; negative: the wheel would lift off"},
     {"wheel_rate", "Wheel rate", "both wheels loaded alike, without the tyre"},
     {"roll_centre_height", "Roll centre height", "above the road"},
 };
@@ -88,12 +89,30 @@ struct Case {
     std::string legend() const { return as_words(sweep.name); }
 };
 
+// Force or moment on a wheel as the figures of a K&C test count it: the parameter times `factor`; of
+// a wheel that is not loaded that on the other one.
+struct Push {
+    double factor = 1;
+    std::string positive{}, negative{};  // "inwards", "outwards"; empty: the parameter as it stands
+};
+Push push_of(const Case& c, const std::vector<WheelInfo>& wheels, const WheelInfo& wheel) {
+    const auto pushes = c.sweep.branches.front().find("pushes");
+    if (!pushes || !pushes->value->is_object()) return {};
+    const auto factors = (*pushes)["per_unit"].numbers();
+    Push push{0, (*pushes)["positive"].text(), (*pushes)["negative"].text()};
+    for (std::size_t w = 0; w < std::min(wheels.size(), factors.size()); ++w)
+        if (factors[w] != 0 && (push.factor == 0 || wheels[w].name == wheel.name))
+            push.factor = factors[w];
+    return push;
+}
+
 // Load cases that share an abscissa, and what is drawn over it.
 struct Family {
     std::string id, x;         // "travel", "wheel travel [mm]"
     bool over_travel = false;  // each wheel over its own travel; else over the parameter
     std::vector<Case> cases{};
     std::vector<Quantity> quantities{};
+    bool over_push = false;  // each wheel over the force on it, not over the parameter
 };
 
 // Channel of a quantity of a wheel, or of the whole scene; empty if there is none.
@@ -122,8 +141,11 @@ std::vector<Found> find(const std::vector<ChannelInfo>& channels,
 std::vector<double> values_of(const Case& c, const Found& of) {
     return of.channel.empty() ? c.curve.wheel_load(of.wheel.name) : c.curve.channel(of.channel);
 }
-std::vector<double> abscissa_of(const Case& c, const Family& family, const WheelInfo& wheel) {
-    return family.over_travel ? c.curve.channel(wheel.channel("travel")) : c.curve.a;
+std::vector<double> abscissa_of(const Case& c, const Family& family, const WheelInfo& wheel,
+                                double push) {
+    auto x = family.over_travel ? c.curve.channel(wheel.channel("travel")) : c.curve.a;
+    for (double& value : x) value *= push;
+    return x;
 }
 
 constexpr double rest = 1e-9;  // mm, deg, N: less is rounding
@@ -189,6 +211,11 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
                                                                           : "change",
                                    found[0].unit)};
     const bool several = family.cases.size() > 1;
+    const auto direction = [&](std::size_t k) {
+        const Push push = family.over_push ? push_of(family.cases[k], wheels, wheels[0]) : Push{};
+        return push.positive.empty() ? "" : ", " + push.positive;
+    };
+    if (!several && family.over_push) figure.x += direction(0);
     double low = INFINITY, high = -INFINITY, moved = 0;
     bool apart = false;          // some wheels have curves of their own
     std::vector<Series> others;  // measured, candidates
@@ -196,7 +223,8 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
         const Case& c = family.cases[k];
         std::vector<Rows> drawn;
         for (const auto& of : found) {
-            const auto values = values_of(c, of), x = abscissa_of(c, family, of.wheel);
+            const double push = family.over_push ? push_of(c, wheels, of.wheel).factor : 1;
+            const auto values = values_of(c, of), x = abscissa_of(c, family, of.wheel, push);
             if (values.empty() || values.size() != x.size()) continue;
             const Scale scale = scale_of(quantity, of.wheel.side, values, c.curve.start);
             Rows rows;
@@ -212,15 +240,14 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
             }
             low = std::min(low, least), high = std::max(high, most);
             if (most > least) moved = std::max(moved, most - least);
-            const std::string channel = of.channel;
             const std::string by = family.over_travel ? of.wheel.channel("travel") : "";
-            if (!channel.empty()) {
-                if (auto points = measured_series(scene, c.sweep, by, channel)) {
-                    for (auto& row : points->rows) row[1] = scale(row[1]);
-                    others.push_back(std::move(*points));
-                }
-                for (auto& points : candidate_series(scene, c.sweep, by, channel)) {
-                    for (auto& row : points.rows) row[1] = scale(row[1]);
+            if (!of.channel.empty()) {
+                auto given = candidate_series(scene, c.sweep, by, of.channel);
+                if (auto points = measured_series(scene, c.sweep, by, of.channel))
+                    given.insert(given.begin(), std::move(*points));
+                for (auto& points : given) {
+                    for (auto& row : points.rows)
+                        if (!row.empty()) row[0] *= push, row[1] = scale(row[1]);
                     others.push_back(std::move(points));
                 }
             }
@@ -254,7 +281,7 @@ std::optional<FigureGroup> figure(const JsonCursor& scene, const Family& family,
     if (several || apart) {
         if (several)
             for (std::size_t k = 0; k < family.cases.size(); ++k)
-                figure.legend.push_back(entry(family.cases[k].legend(),
+                figure.legend.push_back(entry(family.cases[k].legend() + direction(k),
                                               k == 0 ? Series::Style::heavy : Series::Style::line,
                                               case_colours[k % std::size(case_colours)]));
         const std::size_t sides = figure.legend.size();
@@ -348,21 +375,26 @@ Table stations(const Case& c, const std::string& caption, const std::vector<Chan
 // Changes at the ends of a load case, a quantity a row.
 Table at_ends(const Case& c, const std::vector<ChannelInfo>& channels,
               const std::vector<WheelInfo>& wheels, const std::vector<Quantity>& quantities) {
-    Table table{.caption = fmt::format("{}: changes since the design position", c.legend()),
+    Table table{.caption = fmt::format("{}: changes since the start of the branch", c.legend()),
                 .columns = {{"change", true}}};
     std::vector<std::size_t> ends;
     for (const std::size_t k : {std::size_t{0}, c.curve.a.size() - 1})
         if (k != c.curve.start) ends.push_back(k);
     for (const auto k : ends)
-        for (const auto& wheel : wheels)
+        for (const auto& wheel : wheels) {
+            const Push push = push_of(c, wheels, wheel);
+            const double force = push.factor * c.curve.a[k];
+            const bool said = !push.positive.empty();
             table.columns.push_back(
-                {fmt::format("{}{}{} {}", wheel.name, wheel.name.empty() ? "at " : ", ",
-                             short_number(c.curve.a[k]), c.sweep.unit)});
+                {fmt::format("{}{}{} {}{}{}", wheel.name, wheel.name.empty() ? "at " : ", ",
+                             short_number(said ? std::abs(force) : force), c.sweep.unit,
+                             said ? " " : "", force < 0 ? push.negative : push.positive)});
+        }
     for (const auto& quantity : quantities) {
         const auto found = find(channels, wheels, quantity.name);
         if (found.size() != wheels.size()) continue;
         std::vector<std::string> row{
-            fmt::format("{} [{}], {}", as_words(quantity.name), found[0].unit, quantity.sign)};
+            fmt::format("{} [{}], {}", quantity.title, found[0].unit, quantity.sign)};
         for (const auto k : ends)
             for (const auto& of : found) {
                 const auto values = values_of(c, of);
@@ -513,6 +545,7 @@ std::optional<Section> compliance_section(const JsonCursor& scene) {
     for (const char* unit : {"N", "N·m"}) {
         Family family{unit == std::string("N") ? "force" : "moment",
                       fmt::format("{} [{}]", unit == std::string("N") ? "force" : "moment", unit)};
+        family.over_push = true;
         for (const auto& c : cases)
             if (c.sweep.unit == unit) family.cases.push_back(c);
         family.quantities = over_load;

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <optional>
 #include <set>
+#include <sstream>
 
 #include "compare/tables/rows.hpp"
 #include "reports/page/common.hpp"
@@ -19,25 +22,61 @@ using compare::CharacteristicRow;
 using compare::ComplianceRow;
 using Design = std::vector<CharacteristicRow>;
 
-// A rate of each wheel, or of a spring, or of the whole scene.
+// A rate of each wheel; of a spring or damper of each wheel, which has the wheel's name in its own;
+// or one, which all columns share.
 struct Rate {
     std::string name, unit, definition;
-    std::vector<CharacteristicRow> rows{};  // one a wheel in their order; else one
-    bool of_all = false;                    // of no wheel or element alone
+    std::vector<std::optional<CharacteristicRow>> rows{};  // one a wheel in their order
 };
+
+std::vector<std::string> words_in(std::string name) {
+    std::ranges::replace_if(
+        name, [](char c) { return c == '_' || c == '.' || c == '-'; }, ' ');
+    std::istringstream in(name);
+    return {std::istream_iterator<std::string>(in), {}};
+}
+
+// "coil motion ratio" of "coil_left.motion_ratio", and the wheel: the only one with a word of the
+// name in its own, "left"; none if there is no such wheel.
+std::optional<std::pair<std::string, std::size_t>> of_wheel(const ChannelInfo& channel,
+                                                            const std::vector<WheelInfo>& wheels) {
+    const std::string owner = channel.owner(), quantity = as_words(channel.quantity());
+    std::optional<std::size_t> found;
+    std::string others;
+    for (const auto& word : words_in(owner)) {
+        std::vector<std::size_t> with;
+        for (std::size_t w = 0; w < wheels.size(); ++w) {
+            if (wheels[w].name == owner) return std::pair{quantity, w};
+            const auto own = words_in(wheels[w].name);
+            if (std::ranges::find(own, word) != own.end()) with.push_back(w);
+        }
+        if (with.size() != 1) {
+            others += word + " ";
+            continue;
+        }
+        if (found && *found != with[0]) return std::nullopt;
+        found = with[0];
+    }
+    if (!found) return std::nullopt;
+    return std::pair{others + quantity, *found};
+}
 
 std::vector<Rate> rates_of(const Design& design, const std::vector<WheelInfo>& wheels) {
     std::vector<Rate> rates;
     for (const auto& r : design) {
         const ChannelInfo channel{r.output, r.unit};
-        const bool of_wheel =
-            std::ranges::find(wheels, channel.owner(), &WheelInfo::name) != wheels.end();
-        const std::string name = as_words(of_wheel ? channel.quantity() : channel.name);
-        const auto known = of_wheel ? std::ranges::find(rates, name, &Rate::name) : rates.end();
-        if (known != rates.end())
-            known->rows.push_back(r);
+        const auto mine = of_wheel(channel, wheels);
+        const std::string name = mine ? mine->first : as_words(channel.name);
+        auto known = mine ? std::ranges::find(rates, name, &Rate::name) : rates.end();
+        if (known == rates.end()) {
+            rates.push_back({name, r.unit, r.definition, {}});
+            known = rates.end() - 1;
+            known->rows.resize(std::max<std::size_t>(1, wheels.size()));
+        }
+        if (mine)
+            known->rows[mine->second] = r;
         else
-            rates.push_back({name, r.unit, r.definition, {r}, channel.owner().empty()});
+            std::ranges::fill(known->rows, r);
     }
     return rates;
 }
@@ -96,12 +135,12 @@ Table rates_table(const JsonCursor& scene, const Design& design,
     const std::size_t width = table.columns.size() - 3;
     for (const auto& rate : rates_of(design, wheels)) {
         std::vector<std::string> row{rate.name};
-        for (std::size_t k = 0; k < width; ++k)
-            row.push_back(k < rate.rows.size() ? value_at(rate.rows[k])
-                          : rate.of_all        ? row.back()
-                                               : "");
+        std::string undefined;
+        for (std::size_t k = 0; k < width; ++k) {
+            row.push_back(rate.rows[k] ? value_at(*rate.rows[k]) : "");
+            if (rate.rows[k]) undefined = rate.rows[k]->undefined;
+        }
         row.push_back(rate.unit == "-" ? "" : rate.unit);
-        const std::string& undefined = rate.rows[0].undefined;
         row.push_back(undefined.empty() ? rate.definition
                                         : fmt::format("{}. Here: {}", rate.definition, undefined));
         table.rows.push_back(std::move(row));
@@ -161,13 +200,27 @@ Design design_of(const JsonCursor& scene) {
 }  // namespace
 
 Table key_rates(const JsonCursor& scene) {
-    Table table{.caption = "Key figures at the design position"};
+    Table table{.caption =
+                    "Key figures at the design position (lateral forces towards the middle "
+                    "of the vehicle, braking to the back, traction forward; toe-in positive)"};
     const auto design = design_of(scene);
     if (design.empty()) return table;
-    const std::set<std::string> wanted{
-        "wheel rate",  "ride rate",  "roll centre height",  "bump steer",
-        "bump camber", "roll steer", "lateral force steer", "braking force steer",
-        "anti dive",   "anti squat", "steer gradient",      "roll stiffness at the wheels"};
+    const std::set<std::string> wanted{"wheel rate",
+                                       "ride rate",
+                                       "roll centre height",
+                                       "bump steer",
+                                       "bump camber",
+                                       "roll steer",
+                                       "lateral force steer",
+                                       "lateral force steer, parallel",
+                                       "lateral force steer, opposed",
+                                       "braking force steer",
+                                       "braking force steer, both",
+                                       "traction force steer, both",
+                                       "anti dive",
+                                       "anti squat",
+                                       "steer gradient",
+                                       "roll stiffness at the wheels"};
     const Table all = rates_table(scene, design, wheels_of(scene));
     table.columns.assign(all.columns.begin(), all.columns.end() - 1);
     for (const auto& row : all.rows)

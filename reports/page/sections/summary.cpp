@@ -70,20 +70,24 @@ void add_changes(Table& table, const JsonCursor& scene) {
     if (!sweep || !sweep->lifts() || wheels.empty()) return;
     const SweepCurve curve = sweep_curve(*sweep);
     if (curve.a.size() < 2) return;
-    table.caption += fmt::format(", and changes over the branch {}", sweep->name);
+    table.caption += fmt::format(
+        ", and over the branch {}: changes since its start, track change from the drawn position",
+        sweep->name);
     for (const char* quantity : {"toe", "camber", "track_change"})
         for (const std::size_t end : {std::size_t{0}, curve.a.size() - 1}) {
             if (end == curve.start) continue;
+            const bool from_drawn = quantity == std::string("track_change");
             std::vector<std::string> row{
-                fmt::format("{}{} at {}{}\u00a0{}", as_words(quantity),
-                            quantity == std::string("track_change") ? "" : " change",
+                fmt::format("{}{} at {}{}\u00a0{}", as_words(quantity), from_drawn ? "" : " change",
                             curve.a[end] > 0 ? "+" : "", short_number(curve.a[end]), sweep->unit)};
             for (const auto& wheel : wheels) {
                 const auto values = curve.channel(wheel.channel(quantity));
-                row.push_back(values.empty() ? "–"
-                                             : static_number(values[end] - values[curve.start]));
+                row.push_back(
+                    values.empty()
+                        ? "–"
+                        : static_number(values[end] - (from_drawn ? 0 : values[curve.start])));
             }
-            row.emplace_back(quantity == std::string("track_change") ? "mm" : "deg");
+            row.emplace_back(from_drawn ? "mm" : "deg");
             if (row.size() == table.columns.size()) table.rows.push_back(std::move(row));
         }
 }

@@ -50,7 +50,8 @@ Table beside_the_recursion(const JsonCursor& scene, const std::string& who,
         if (!channel["judged"].truth() && some["max"].number() < 1e-6) continue;
         table.rows.push_back(
             {fmt::format("{} [{}]", output, channel["unit"].text()), cell(mine), cell(across),
-             percent(some["max"].number() / some["range"].number()),
+             some["range"].number() < 1e-9 ? "–"
+                                           : percent(some["max"].number() / some["range"].number()),
              cell(recursion ? of(*recursion, "at_equal_parameter") : std::nullopt),
              cell(recursion ? of(*recursion, "at_equal_abscissa") : std::nullopt)});
     }
