@@ -16,6 +16,7 @@
 #include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/diagnosis/length.hpp"
+#include "recursive/diagnosis/motion.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
 #include "recursive/linear_algebra/rank.hpp"
 
@@ -375,7 +376,36 @@ IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
     return mode;
 }
 
+// Δq = physical · (Δr, L Δπ)
+VectorXd physical_of(Eigen::Index n, double length) {
+    VectorXd physical = VectorXd::Ones(n);
+    for (Eigen::Index k = 3; k < n; k += 6) physical.segment<3>(k).setConstant(1 / length);
+    return physical;
+}
+
+// Describes the motion mode.dq of mode.body.
+void name_motion(const Model& model, const State<double>& q,
+                 const std::vector<std::vector<Attachment>>& attached, double length,
+                 IdleMode& mode) {
+    Vector6<double> twist;
+    for (int k = 0; k < 6; ++k) twist[k] = mode.dq.coeff(6 * mode.body + k);
+    const auto at = static_cast<std::size_t>(mode.body);
+    mode.description = describe(model.bodies[at].name, q[mode.body], attached[at], twist.head<3>(),
+                                twist.tail<3>(), length);
+    mode.spins = is_spin(q[mode.body], attached[at], twist.head<3>(), twist.tail<3>(), length);
+    mode.outputs = outputs_moved(model, q, mode.dq, length);
+}
+
 }  // namespace
+
+IdleMode motion_of(const Model& model, const std::vector<Pose>& poses, const VectorXd& dq,
+                   double length) {
+    const VectorXd physical = physical_of(dq.size(), length);
+    const Columns scaled = VectorXd(dq.cwiseQuotient(physical)).sparseView();
+    IdleMode mode = idle_mode(scaled, 0, physical);
+    name_motion(model, state_of<double>(poses), attachments(model), length, mode);
+    return mode;
+}
 
 double characteristic_length(const Model& model) {
     double sum = 0;
@@ -410,9 +440,7 @@ Diagnosis diagnose(const Model& model) {
         return result;
     }
 
-    VectorXd physical = VectorXd::Ones(n);  // Δq = physical · (Δr, L Δπ)
-    for (int b = 0; b < nb; ++b) physical.segment<3>(6 * b + 3).setConstant(1 / L);
-
+    const VectorXd physical = physical_of(n, L);
     const VectorXd Phi = constraint_values<double>(model, inputs, q);
     result.constraint_error = m > 0 ? Phi.cwiseAbs().maxCoeff() : 0;
     Rows Phi_q = constraint_rows_of(model, inputs, q) * physical.asDiagonal();
@@ -439,14 +467,8 @@ Diagnosis diagnose(const Model& model) {
     for (const Columns* modes : {&single, &several})
         for (int c = 0; c < modes->outerSize(); ++c) {
             IdleMode& mode = result.idle.emplace_back(idle_mode(*modes, c, physical));
-            Vector6<double> twist;
-            for (int k = 0; k < 6; ++k) twist[k] = mode.dq.coeff(6 * mode.body + k);
-            const auto at = static_cast<std::size_t>(mode.body);
-            mode.description = describe(model.bodies[at].name, q[mode.body], attached[at],
-                                        twist.head<3>(), twist.tail<3>(), L);
-            mode.spins = modes == &single &&
-                         is_spin(q[mode.body], attached[at], twist.head<3>(), twist.tail<3>(), L);
-            mode.outputs = outputs_moved(model, q, mode.dq, L);
+            name_motion(model, q, attached, L, mode);
+            mode.spins = mode.spins && modes == &single;
         }
 
     std::vector<Eigen::Triplet<double>> held;
@@ -489,6 +511,34 @@ std::string body_of(const IdleMode& mode) {
 }
 
 }  // namespace
+
+std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diagnosis) {
+    std::vector<std::string> lines;
+    if (diagnosis.redundant.empty()) return lines;
+    Rows Phi_q =
+        constraint_rows_of(model, inputs_as_drawn<double>(model), design_state<double>(model)) *
+        physical_of(diagnosis.coordinates, diagnosis.length).asDiagonal();
+    normalise(Phi_q);
+    const Rows free = Rows(null_space(without(Phi_q, repeated(Phi_q).rows)).transpose());
+    std::vector<bool> moves(model.bodies.size());
+    for (int k = 0; k < free.outerSize(); ++k)
+        for (Rows::InnerIterator e(free, k); e; ++e)
+            if (std::abs(e.value()) > part_threshold)
+                moves[static_cast<std::size_t>(e.col() / 6)] = true;
+    for (const auto& set : diagnosis.redundant_sets)
+        for (BodyId b = 0; b < static_cast<BodyId>(moves.size()); ++b) {
+            std::vector<std::string> joints;
+            for (const int joint : set) {
+                const ModelJoint& one = model.joints[static_cast<std::size_t>(joint)];
+                if (one.i == b || one.j == b) joints.push_back(one.name);
+            }
+            if (!moves[static_cast<std::size_t>(b)] && joints.size() > 1)
+                lines.push_back(fmt::format("body '{}' cannot move: the joints {} lock it",
+                                            model.bodies[static_cast<std::size_t>(b)].name,
+                                            listed(joints)));
+        }
+    return lines;
+}
 
 std::string undecided(const Model& model, const Diagnosis& diagnosis) {
     const auto in_doubt = std::ranges::find_if(diagnosis.redundant, &Redundancy::undecided);
