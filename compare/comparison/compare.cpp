@@ -14,6 +14,7 @@
 #include "compare/jobs/jobs.hpp"
 #include "compare/outputs/not_a_number.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/soft_motion.hpp"
 #include "reference/certificate/certificate.hpp"
 
 namespace elastocheck::compare {
@@ -274,6 +275,46 @@ std::vector<std::string> Objections::texts() const {
     return list;
 }
 
+namespace {
+
+// The motion that is softest at the last point of a side that the run did not finish.
+std::string ending_motion(const Model& model, const Branch& requested, const LegRun& run) {
+    for (const BranchSide& side : sides_of(model, requested))
+        for (const auto* last : {&run.landmarks.front, &run.landmarks.back}) {
+            if (!*last || (*last)->load * side.branch.to < 0) continue;
+            if (std::abs((*last)->load) < (1 - 1e-9) * std::abs(side.branch.to))
+                return recursive::softest_motion(side.model, side.branch, **last);
+        }
+    return {};
+}
+
+// Why legs ended before the end of the branch. Where several ended after the same point it is one
+// place, described once, by the first of them.
+void add_ends(const Model& model, const Branch& requested, std::vector<const LegRun*> ended,
+              Objections& objections) {
+    while (!ended.empty()) {
+        const LegRun& first = *ended.front();
+        const auto ends_here = [&](const LegRun* run) {
+            return run == &first || (!first.curve.a.empty() && run->curve.a == first.curve.a);
+        };
+        std::string others;
+        for (const LegRun* run : ended)
+            if (ends_here(run) && run != &first)
+                others += fmt::format("{}{} leg: {}", others.empty() ? " (" : ", ", name(run->leg),
+                                      elastocheck::name(run->outcome));
+        std::string what =
+            fmt::format("{} leg: {}{}: {}", name(first.leg), elastocheck::name(first.outcome),
+                        others.empty() ? "" : others + ")", first.detail);
+        if (!others.empty())
+            if (const auto motion = ending_motion(model, requested, first); !motion.empty())
+                what += "; the softest motion before it is " + motion;
+        objections.add(std::move(what));
+        std::erase_if(ended, ends_here);
+    }
+}
+
+}  // namespace
+
 bool energy_judges_states(const BranchComparison& branch) {
     return branch.second != Leg::energy && branch.run(Leg::energy).outcome == Outcome::too_large;
 }
@@ -281,14 +322,15 @@ bool energy_judges_states(const BranchComparison& branch) {
 Objections disagreements(const Model& model, const std::vector<Channel>& channels,
                          const Branch& requested, const BranchComparison& branch, Of of) {
     Objections objections;
-    for (const auto& run : branch.runs) {
-        if (run.leg == Leg::recursive && of == Of::references) continue;
-        if (run.leg == Leg::energy && branch.second != Leg::energy)
-            continue;  // does not apply, and is not needed
-        if (run.outcome != Outcome::converged)
-            objections.add(fmt::format("{} leg: {}: {}", name(run.leg),
-                                       elastocheck::name(run.outcome), run.detail));
-    }
+    std::vector<const LegRun*> ended;
+    for (const Leg leg : {Leg::equilibrium, Leg::series, Leg::energy, Leg::recursive})
+        for (const auto& run : branch.runs) {
+            if (run.leg != leg || (leg == Leg::recursive && of == Of::references)) continue;
+            if (leg == Leg::energy && branch.second != Leg::energy)
+                continue;  // does not apply, and is not needed
+            if (run.outcome != Outcome::converged) ended.push_back(&run);
+        }
+    add_ends(model, requested, ended, objections);
     if (!objections.empty()) return objections;
     const LegRun &equilibrium = branch.run(Leg::equilibrium), &second = branch.run(branch.second);
     if (const auto why = nothing_drives(model, requested); !why.empty()) objections.add(why);

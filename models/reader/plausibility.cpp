@@ -95,12 +95,84 @@ void check_bushings(const Cursor& scene, const Units& units, const Scene& read,
     if (!first.empty()) warnings.push_back(std::move(first));
 }
 
+// Lengths of a car [m].
+struct Length {
+    const char* field;
+    double from, to;
+};
+constexpr Length lengths_of_vehicle[] = {{"wheelbase", 0.5, 10}, {"cg_height", 0.05, 4}};
+
+void check_vehicle(const Cursor& scene, const Units& units, std::vector<std::string>& warnings) {
+    const auto vehicle = scene.optional("vehicle");
+    if (!vehicle) return;
+    for (const auto& [field, from, to] : lengths_of_vehicle) {
+        const Cursor given = vehicle->require(field);
+        const Real value = units.length.si(given.number());
+        if (value >= from && value <= to) continue;
+        warnings.push_back(
+            at(given,
+               fmt::format("{:.6g} {} is {:.6g} m, plausible: {} to {} m; `units` says the "
+                           "length is in {}",
+                           given.number(), units.length.name, value, from, to, units.length.name)));
+    }
+}
+
+// The entry of that name under `trim.under` or `static_loads`; the section for a mirrored one.
+Cursor place_of_load(const Cursor& scene, const std::string& name) {
+    Cursor place = scene;
+    if (const auto trim = scene.optional("trim"))
+        if (const auto under = trim->optional("under"))
+            place = under->optional(name).value_or(*under);
+    if (const auto section = scene.optional("static_loads"))
+        if (const auto own = section->optional(name)) return *own;
+    return place;
+}
+
+// Static vertical loads on a wheel without the weight of its body: what the road exerts [N].
+constexpr double lightest_wheel = 50, heaviest_wheel = 1e5;
+
+void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
+                  std::vector<std::string>& warnings) {
+    for (const Wheel& wheel : read.wheels) {
+        if (wheel.contact_local.z() > wheel.centre_local.z()) {
+            const Cursor section =
+                wheel.name.empty() ? scene.require("wheel") : scene.require("wheels");
+            warnings.push_back(at(section.optional(wheel.name).value_or(section),
+                                  "the contact patch is above the wheel centre; does z point up?"));
+            return;
+        }
+        Real up = 0;
+        std::string name;
+        for (const Load& load : read.static_loads) {
+            const Point* point = member<Point>(load.kind);
+            if (point == nullptr || is_moment(load.kind) || point->body != wheel.body ||
+                load.name.starts_with("gravity."))
+                continue;
+            up += load_vector(load.kind).z();
+            name = load.name;
+        }
+        if (up == 0 || (up >= lightest_wheel && up <= heaviest_wheel)) continue;
+        warnings.push_back(
+            at(place_of_load(scene, name),
+               up < 0 ? fmt::format("the static load pulls wheel{} down with {:.6g} {}; the road "
+                                    "pushes it up, which is +z",
+                                    wheel.name.empty() ? "" : " '" + wheel.name + "'",
+                                    units.force.written(-up), units.force.name)
+                      : fmt::format("a static wheel load of {:.6g} N, plausible: {} to {} N; is it "
+                                    "in another unit than {}?",
+                                    up, lightest_wheel, heaviest_wheel, units.force.name)));
+        return;  // one for all wheels
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> implausible(const Cursor& scene, const Units& units, const Scene& read) {
     std::vector<std::string> warnings;
     check_size(scene, units, read, warnings);
     check_bushings(scene, units, read, warnings);
+    check_vehicle(scene, units, warnings);
+    check_wheels(scene, units, read, warnings);
     return warnings;
 }
 

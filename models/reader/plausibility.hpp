@@ -23,6 +23,11 @@ namespace elastocheck::reader {
 //             an element of stiffness k_trans would resist a rotation like that. For rubber
 //             bushings it is some millimetres, of the order of their radius; below 0.4 mm the
 //             rotational rates are probably in N·m where N·mm is declared, or left to be the unit.
+//   vehicle   a wheelbase or height of the centre of gravity that no car has
+//   wheels    static loads that pull a wheel down, or press it up with less than 50 N or more than
+//             100 kN; a contact patch above the wheel centre
+//
+// What needs a settled state is in compare/warnings/plausibility.hpp.
 std::vector<std::string> implausible(const Cursor& scene, const Units& units, const Scene& read);
 
 struct SceneAndWarnings {

@@ -16,6 +16,7 @@
 #include "models/eigen/dense.hpp"
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/diagnosis/length.hpp"
+#include "recursive/diagnosis/motion.hpp"
 #include "recursive/diagnosis/self_stress.hpp"
 #include "recursive/formula/reactions.hpp"
 #include "recursive/linear_algebra/assembly.hpp"
@@ -85,9 +86,16 @@ Rows without(const Rows& rows, const std::vector<int>& omitted) {
     return stack.rows(rows.cols());
 }
 
+// Δq = physical · (Δr, L Δπ)
+VectorXd physical_of(Eigen::Index n, double length) {
+    VectorXd physical = VectorXd::Ones(n);
+    for (Eigen::Index k = 3; k < n; k += 6) physical.segment<3>(k).setConstant(1 / length);
+    return physical;
+}
+
 // Φ_q by (Δr, L Δπ), and of rows of unit length.
 struct ConstraintRows {
-    VectorXd physical;  // Δq = physical · (Δr, L Δπ)
+    VectorXd physical;
     Rows Phi_q;
     VectorXd length;  // of the rows before they were scaled
 };
@@ -99,8 +107,7 @@ ConstraintRows constraint_rows_of(const Model& model, const Inputs<double>& inpu
         stack.put(row.j, row.on_j());
         stack.next();
     });
-    ConstraintRows result{VectorXd::Ones(coordinates(model)), {}, {}};
-    for (int b = 0; b < q.bodies(); ++b) result.physical.segment<3>(6 * b + 3).setConstant(1 / L);
+    ConstraintRows result{physical_of(coordinates(model), L), {}, {}};
     result.Phi_q = stack.rows(coordinates(model)) * result.physical.asDiagonal();
     result.length = normalise(result.Phi_q);
     return result;
@@ -388,7 +395,29 @@ IdleMode idle_mode(const Columns& modes, int column, const VectorXd& physical) {
     return mode;
 }
 
+// Describes the motion mode.dq of mode.body.
+void name_motion(const Model& model, const State<double>& q,
+                 const std::vector<std::vector<Attachment>>& attached, double length,
+                 IdleMode& mode) {
+    Vector6<double> twist;
+    for (int k = 0; k < 6; ++k) twist[k] = mode.dq.coeff(6 * mode.body + k);
+    const auto at = static_cast<std::size_t>(mode.body);
+    mode.description = describe(model.bodies[at].name, q[mode.body], attached[at], twist.head<3>(),
+                                twist.tail<3>(), length);
+    mode.spins = is_spin(q[mode.body], attached[at], twist.head<3>(), twist.tail<3>(), length);
+    mode.outputs = outputs_moved(model, q, mode.dq, length);
+}
+
 }  // namespace
+
+IdleMode motion_of(const Model& model, const std::vector<Pose>& poses, const VectorXd& dq,
+                   double length) {
+    const VectorXd physical = physical_of(dq.size(), length);
+    const Columns scaled = VectorXd(dq.cwiseQuotient(physical)).sparseView();
+    IdleMode mode = idle_mode(scaled, 0, physical);
+    name_motion(model, state_of<double>(poses), attachments(model), length, mode);
+    return mode;
+}
 
 double characteristic_length(const Model& model) {
     double sum = 0;
@@ -484,14 +513,8 @@ Diagnosis diagnose(const Model& model) {
     for (const Columns* modes : {&single, &several})
         for (int c = 0; c < modes->outerSize(); ++c) {
             IdleMode& mode = result.idle.emplace_back(idle_mode(*modes, c, physical));
-            Vector6<double> twist;
-            for (int k = 0; k < 6; ++k) twist[k] = mode.dq.coeff(6 * mode.body + k);
-            const auto at = static_cast<std::size_t>(mode.body);
-            mode.description = describe(model.bodies[at].name, q[mode.body], attached[at],
-                                        twist.head<3>(), twist.tail<3>(), L);
-            mode.spins = modes == &single &&
-                         is_spin(q[mode.body], attached[at], twist.head<3>(), twist.tail<3>(), L);
-            mode.outputs = outputs_moved(model, q, mode.dq, L);
+            name_motion(model, q, attached, L, mode);
+            mode.spins = mode.spins && modes == &single;
         }
 
     std::vector<Eigen::Triplet<double>> held;
@@ -534,6 +557,33 @@ std::string body_of(const IdleMode& mode) {
 }
 
 }  // namespace
+
+std::vector<std::string> locked_bodies(const Model& model, const Diagnosis& diagnosis) {
+    std::vector<std::string> lines;
+    if (diagnosis.redundant.empty()) return lines;
+    const Rows Phi_q = constraint_rows_of(model, inputs_as_drawn<double>(model),
+                                          design_state<double>(model), diagnosis.length)
+                           .Phi_q;
+    const Rows free = Rows(null_space(without(Phi_q, repeated(Phi_q).rows)).transpose());
+    std::vector<bool> moves(model.bodies.size());
+    for (int k = 0; k < free.outerSize(); ++k)
+        for (Rows::InnerIterator e(free, k); e; ++e)
+            if (std::abs(e.value()) > part_threshold)
+                moves[static_cast<std::size_t>(e.col() / 6)] = true;
+    for (const auto& set : diagnosis.redundant_sets)
+        for (BodyId b = 0; b < static_cast<BodyId>(moves.size()); ++b) {
+            std::vector<std::string> joints;
+            for (const int joint : set) {
+                const ModelJoint& one = model.joints[static_cast<std::size_t>(joint)];
+                if (one.i == b || one.j == b) joints.push_back(one.name);
+            }
+            if (!moves[static_cast<std::size_t>(b)] && joints.size() > 1)
+                lines.push_back(fmt::format("body '{}' cannot move: the joints {} lock it",
+                                            model.bodies[static_cast<std::size_t>(b)].name,
+                                            listed(joints)));
+        }
+    return lines;
+}
 
 std::string undecided(const Model& model, const Diagnosis& diagnosis) {
     const auto in_doubt = std::ranges::find_if(diagnosis.redundant, &Redundancy::undecided);

@@ -11,6 +11,7 @@
 #include "compare/outputs/rates.hpp"
 #include "elastocheck/channels.hpp"
 #include "recursive/series/path.hpp"
+#include "recursive/soft_motion.hpp"
 #include "reports/command/delivery.hpp"
 #include "reports/command/grammar/command.hpp"
 #include "reports/command/grammar/exit_code.hpp"
@@ -116,13 +117,14 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
         compare::Analyses analyses;
         compare::PathCurve whole;
         whole.curve.unit = compare::unit_of(branch.unit);
-        std::vector<std::optional<Equilibrium>> ends(sides.size());
+        std::vector<std::optional<Equilibrium>> last(sides.size());
         const EquilibriumPath path = compare::walk(
             sides, solver,
             [&](const Equilibrium& state) {
                 if (states) states->add(state_line(model, branch.name, state)), has_states = true;
-                for (std::size_t w = 0; approximate && w < sides.size(); ++w)
-                    if (is_end(sides[w].branch, state.load)) ends[w] = state;
+                const auto w =
+                    static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
+                if (!last[w] || state.load != 0) last[w] = state;
                 return compare::row_of(model, channels, sides.front(), solver, state, analyses);
             },
             [&](const compare::Row& row) {
@@ -140,11 +142,16 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
             kept.push_back(std::move(whole));
         }
         for (std::size_t w = 0; w < sides.size(); ++w)
-            if (ends[w])
+            if (approximate && last[w] && is_end(sides[w].branch, last[w]->load))
                 print_error("{}: {}: {}\n", who, branch.name,
-                            error_at_end(model, sides[w], *ends[w]));
+                            error_at_end(model, sides[w], *last[w]));
         if (path.outcome == Outcome::converged) continue;
-        print_error("{}: {}: {}\n", who, name(path.outcome), path.detail);
+        std::string motion;
+        for (std::size_t w = 0; motion.empty() && w < sides.size(); ++w)
+            if (last[w] && !is_end(sides[w].branch, last[w]->load))
+                motion = recursive::softest_motion(sides[w].model, sides[w].branch, *last[w]);
+        print_error("{}: {}: {}{}\n", who, name(path.outcome), path.detail,
+                    motion.empty() ? "" : "; the softest motion before it is " + motion);
         code = could_not_judge;
     }
     if (const auto why =

@@ -111,8 +111,9 @@ compare::Study study_of(const CandidateRequest& request, const std::string& file
 }
 
 int inspect(const InspectRequest& request, const Delivery& delivery) {
+    std::exception_ptr not_trimmed;
     const LoadedScene loaded =
-        load_scene(request.scene, request.settings, detail(request.keep_all));
+        load_scene(request.scene, request.settings, detail(request.keep_all), &not_trimmed);
     if (delivery.as_json) {
         json part = document_of(loaded, request.scene);
         add_inspection(part, loaded.scene, loaded.model);
@@ -123,6 +124,7 @@ int inspect(const InspectRequest& request, const Delivery& delivery) {
                           .trim = loaded.trim,
                           .verbose = request.verbose}));
     }
+    if (not_trimmed) std::rethrow_exception(not_trimmed);
     return fine;
 }
 

@@ -9,6 +9,7 @@
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
 #include "compare/tables/rows.hpp"
+#include "compare/warnings/plausibility.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
 #include "reports/document/drawing.hpp"
@@ -397,6 +398,7 @@ void add_inspection(json& scene_document, const Scene& scene, const Model& model
     scene_document["inspection"] = {{"bodies", bodies},
                                     {"elements", list},
                                     {"branches", branches},
+                                    {"misplaced", compare::misplaced_points(scene)},
                                     {"numbers", numbers_json(scene)}};
 }
 

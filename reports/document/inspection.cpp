@@ -8,10 +8,12 @@
 #include <span>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/warnings/plausibility.hpp"
 #include "elastocheck/channels.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/analysis.hpp"
+#include "recursive/diagnosis/motion.hpp"
 #include "reports/document/document.hpp"
 #include "reports/tables/elements.hpp"
 
@@ -178,6 +180,7 @@ std::string inspection(const Inspected& inspected) {
         line("    among {}{}", among, shown(r.shares.size()) < r.shares.size() ? ", ..." : "");
     }
     rest(d.redundant.size(), "joints");
+    for (const auto& locked : recursive::locked_bodies(model, d)) line("  {}", locked);
     if (d.redundant.empty()) line("  none");
     line(
         "\nidle modes (as drawn no joint and no rate resists them; they are held, and reported "
@@ -186,6 +189,11 @@ std::string inspection(const Inspected& inspected) {
     for (const auto& mode : std::span(idle).first(shown(idle.size()))) line("  {}", mode);
     rest(idle.size(), "modes");
     if (d.idle.empty()) line("  none");
+    if (const auto notes = compare::misplaced_points(inspected.scene); !notes.empty()) {
+        line("\npoints that may belong to another body");
+        for (const auto& note : std::span(notes).first(shown(notes.size()))) line("  {}", note);
+        rest(notes.size(), "points");
+    }
     line("\nleft out or condensed, because no output depends on it");
     std::map<std::string, std::size_t> omitted;
     for (const auto& o : model.omitted)

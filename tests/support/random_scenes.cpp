@@ -485,8 +485,9 @@ std::string random_scene(std::uint64_t seed, Family family) {
         const std::string body = random.one_of(at.bodies);
         const At centre = at.point(), patch = at.other_than(centre);
         at.text.wheels = fmt::format(
-            "  wheel: {{body: {}, centre: {}, contact_patch: {}, spin_axis: y, side: left}}\n",
-            body, centre.name, patch.name);
+            "  wheel: {{body: {}, centre: {}, contact_patch: {}, spin_axis: {}, side: {}}}\n", body,
+            centre.name, patch.name, centre.position.y() < 0 ? "-y" : "y",
+            centre.position.y() < 0 ? "right" : "left");
         at.drivables.push_back({"wheel.travel", 0.05});
         at.drivables.push_back({"wheel.patch_travel", 0.05});
         if (random.chance(0.4)) {

@@ -45,12 +45,20 @@ Wheel read_wheel(const Cursor& at, const Definitions& defs) {
     const auto local = [&](const Cursor& field) {
         return point_of(body, hardpoint(field, defs), defs).s_local;
     };
+    const Cursor side = at.require("side");
     Wheel wheel{.name = {},
                 .body = body,
                 .centre_local = local(centre),
                 .contact_local = local(contact ? *contact : centre),
                 .spin_axis_local = direction(spin_axis, defs),
-                .side = at.require("side").one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
+                .side = side.one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
+    if (const Real y = hardpoint(centre, defs).y(); wheel.side * y < 0)
+        side.fail(
+            fmt::format("a {} wheel with its centre at y = {:.6g} {}; y points left from the "
+                        "middle of the car: "
+                        "allowed: {}, or points with y to the left and x forward",
+                        wheel.side > 0 ? "left" : "right", defs.units.length.written(y),
+                        defs.units.length.name, wheel.side > 0 ? "right" : "left"));
     if (!(wheel.side * wheel.spin_axis_local.y() > 0))
         spin_axis.fail(fmt::format("does not point outboard, which is {}y for a {} wheel",
                                    wheel.side > 0 ? '+' : '-', wheel.side > 0 ? "left" : "right"));

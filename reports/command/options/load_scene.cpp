@@ -9,7 +9,12 @@
 #include "compare/comparison/characteristics.hpp"
 #include "compare/comparison/elements.hpp"
 #include "compare/definitions/definitions.hpp"
+#include "compare/warnings/plausibility.hpp"
+#include "models/branch.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "models/reader/document/text_file.hpp"
+#include "models/reader/document/yaml.hpp"
+#include "recursive/soft_motion.hpp"
 #include "reports/document/document.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
@@ -113,6 +118,37 @@ std::vector<compare::Channel> chosen(const std::vector<compare::Channel>& all, s
     return list;
 }
 
+// "FILE:LINE: place: what"; of an entry that a mirror made the line of its section.
+std::vector<std::string> placed(const std::vector<compare::Implausible>& list,
+                                const std::string& file) {
+    std::vector<std::string> lines;
+    if (list.empty()) return lines;
+    const reader::TextFile read = reader::read_text(file, reader::Pipes::refused);
+    const reader::Value tree =
+        read.trouble.empty() ? reader::parse_yaml(read.text, file) : reader::Value{};
+    for (const auto& [place, what] : list) {
+        const reader::Value* at = &tree;
+        std::string path;
+        for (const auto& key : place) {
+            path += (path.empty() ? "" : ".") + key;
+            const auto found = std::ranges::find(at->keys, key);
+            if (found == at->keys.end()) break;
+            at = &at->items[static_cast<std::size_t>(found - at->keys.begin())];
+        }
+        const std::string line = at == &tree ? "" : fmt::format("{}:", at->line);
+        lines.push_back(fmt::format("{}:{} {}: {}", file, line, path, what));
+    }
+    return lines;
+}
+
+// What leaves the drawn scene free or locks it, before the reason why it is not trimmed.
+std::string cause(const Scene& scene, const std::string& reason) {
+    std::string text;
+    for (const auto& line : recursive::free_or_locked(on_branch(compile(scene), {})))
+        text += line + "; ";
+    return text.empty() ? reason : text + "so the trim fails: " + reason;
+}
+
 }  // namespace
 
 LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
@@ -127,20 +163,37 @@ LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::strin
     try {
         trimmed = compare::trim(scene);
     } catch (const std::invalid_argument& error) {
-        throw SceneError(fmt::format("{}: {}", where(), error.what()));
+        throw SceneError(fmt::format("{}: {}", where(), cause(scene, error.what())));
     }
     if (trimmed.record && !trimmed.record->reached())
-        throw NotTrimmed(fmt::format("{}: {}", where(), trimmed.record->detail));
+        throw NotTrimmed(fmt::format("{}: {}", where(), cause(scene, trimmed.record->detail)));
     Model model = compile(trimmed.scene, detail);
+    std::ranges::move(placed(compare::implausible(model), file), std::back_inserter(warnings));
     auto outputs = requested(definitions, model, file);
     return {std::move(trimmed.scene), std::move(model), std::move(trimmed.record),
             std::move(warnings), std::move(outputs)};
 }
 
-LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail) {
+LoadedScene load_scene(const std::string& file, const Settings& settings, Detail detail,
+                       std::exception_ptr* not_trimmed) {
     auto read = reader::read_scene_with_warnings(file, settings);
-    for (const auto& warning : read.warnings) print_error("{} (warning)\n", warning);
-    return trimmed_and_compiled(std::move(read), file, detail);
+    std::size_t printed = 0;
+    const auto print_from = [&](const std::vector<std::string>& warnings) {
+        for (; printed < warnings.size(); ++printed)
+            print_error("{} (warning)\n", warnings[printed]);
+    };
+    print_from(read.warnings);
+    LoadedScene loaded;
+    try {
+        loaded = trimmed_and_compiled(read, file, detail);
+    } catch (...) {
+        if (not_trimmed == nullptr || !read.scene.trim) throw;
+        *not_trimmed = std::current_exception();
+        read.scene.trim.reset();
+        loaded = trimmed_and_compiled(read, file, detail);
+    }
+    print_from(loaded.warnings);
+    return loaded;
 }
 
 std::vector<compare::Channel> requested_channels(const LoadedScene& loaded,

@@ -1,6 +1,7 @@
 // Loads a scene for a command: reads, trims, compiles.
 #pragma once
 
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -27,7 +28,8 @@ struct LoadedScene {
     Scene scene;  // trimmed
     Model model;
     std::optional<compare::TrimRecord> trim;
-    std::vector<std::string> warnings = {};  // of the reader: "FILE:LINE: field: ..."
+    // of the reader and of the settled state: "FILE:LINE: field: ..."
+    std::vector<std::string> warnings = {};
     // outputs by the definitions that the scene asks for, "camber@kingpin", after its own outputs
     std::vector<compare::Channel> definitions = {};
 };
@@ -36,9 +38,10 @@ struct LoadedScene {
 // NotTrimmed.
 LoadedScene trimmed_and_compiled(reader::SceneAndWarnings read, const std::string& file,
                                  Detail detail = Detail::required);
-// Reads the file too, and prints the reader's warnings to standard error. Throws SceneError.
+// Reads the file too, and prints the warnings to standard error. Throws SceneError. With a place for
+// it, the exception of a trim is kept there, and the scene is that without the trim.
 LoadedScene load_scene(const std::string& file, const Settings& settings,
-                       Detail detail = Detail::required);
+                       Detail detail = Detail::required, std::exception_ptr* not_trimmed = nullptr);
 
 // A scene of result.json without results: the compiled model, the trim, the reader's warnings.
 // `file` is the scene's.
