@@ -44,7 +44,7 @@ std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
 
 // Σ w_k ΔG_k into s.upper and s.lower. Points and lengths that change together keep a row closed: what
 // is left is rounding.
-void difference(SteppingState<double>& s, double a, const Residual& here,
+void difference(SteppingState& s, double a, const Residual& here,
                 const Neighbours& stencil) {
     s.upper.setZero(), s.lower.setZero();
     for (const Neighbour& k : stencil) {
@@ -66,7 +66,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
     check(model, branch);
     if (state.poses.size() != model.bodies.size())
         throw std::invalid_argument("the state belongs to another model");
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     s.q = state_of<double>(state.poses);
     go_to(s, {1, state.load});
     ResponseOrders orders;
@@ -107,7 +107,7 @@ std::vector<NeighbourStates> neighbour_states(const Model& model, const Branch& 
             }
             Equilibrium& there = result.states.emplace_back(state);
             const auto inputs = inputs_at<double>(*k.model, k.model->branches.front(), state.load);
-            record<double>(*k.model, inputs, q, q, lambda, state.load, there);
+            record(*k.model, inputs, q, q, lambda, state.load, there);
         }
     }
     return all;

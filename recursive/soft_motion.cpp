@@ -17,7 +17,7 @@ namespace elastocheck::recursive {
 namespace {
 
 // The matrix above at the state, dense; empty where it is too large or not finite.
-Eigen::MatrixXd scaled_matrix(SteppingState<double>& s, const Equilibrium& state) {
+Eigen::MatrixXd scaled_matrix(SteppingState& s, const Equilibrium& state) {
     constexpr Eigen::Index most = 1200;
     const Eigen::Index n = s.n(), m = s.m();
     if (n + m > most) return {};
@@ -59,7 +59,7 @@ std::string softest_motion(const Model& model, const Branch& branch, const Equil
                            bool moves_output) {
     constexpr double no_motion = 1e-6;  // of an eigenvector of length one
     const Analysis analysis = analyse(model);
-    SteppingState<double> s(model, branch, analysis);
+    SteppingState s(model, branch, analysis);
     const Eigen::MatrixXd M = scaled_matrix(s, state);
     if (M.size() == 0) return {};
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M);

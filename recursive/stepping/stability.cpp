@@ -133,7 +133,7 @@ Reduced reduced(const SteppingState& s) {
 }
 
 // The motion of least stiffness: an eigenvector of the symmetric part of ZᵀKZ.
-std::string softest_motion(const SteppingState<double>& s) {
+std::string softest_motion(const SteppingState& s) {
     if (s.n() > most_reduced) return "a motion of a model too large to say which bodies move";
     const Reduced at = reduced(s);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
@@ -143,7 +143,7 @@ std::string softest_motion(const SteppingState<double>& s) {
 
 // Whether ZᵀKZ has a negative real eigenvalue where a dead moment makes it unsymmetric. Statics does
 // not decide on complex ones.
-bool is_unstable_under_moments(const SteppingState<double>& s) {
+bool is_unstable_under_moments(const SteppingState& s) {
     constexpr double rounding = 1e-12;  // of the largest eigenvalue
     if (s.free <= 0 || s.n() > most_reduced || s.system.held.idle > 0) return false;
     const Eigen::EigenSolver<Eigen::MatrixXd> solver(reduced(s).K, false);

@@ -269,7 +269,6 @@ std::optional<Section> change_section(const JsonCursor& scene) {
                      {"reasons", (*study)["reasons"].texts()},
                      {"compared", whole_number((*study)["compared"].whole())},
                      {"apart", number((*study)["apart"].number(), 2)},
-                     {"where", study->find("where") ? (*study)["where"].text() : ""},
                      {"trim", scene.find("trim").has_value()},
                      {"branch", rows.front().branch}};
     if (auto group = arrows(scene, figures.front(), rows))
