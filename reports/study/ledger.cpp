@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "reports/files/files.hpp"
@@ -45,20 +44,26 @@ std::string text_of_meta(const Database& database, const std::string& key) {
     return meta.step() ? meta.text(0) : "";
 }
 
-void check_identity(const Database& database, const StudyIdentity& identity) {
+// Rows of several versions of the program are not added to each other.
+void check_identity(const Database& database, const StudyIdentity& identity,
+                    Ledger::Access access) {
     Statement tables(database,
                      "SELECT count(*) FROM sqlite_master WHERE name IN ('meta', 'variants')");
     if (!tables.step() || tables.whole(0) != 2 || text_of_meta(database, "format") != format)
         throw FileError(database.file().string() + ": not a ledger of a study");
-    for (const auto& [key, value] :
-         {std::pair("scene", identity.scene), std::pair("study", identity.study)}) {
-        const std::string found = text_of_meta(database, key);
-        if (found == value) continue;
+    struct Part {
+        const char *key, *what;
+        const std::string& here;
+    };
+    for (const auto& [key, what, here] :
+         {Part{"scene", "scene", identity.scene}, Part{"study", "study file", identity.study},
+          Part{"version", "version of the program", identity.version}}) {
+        const std::string there = text_of_meta(database, key);
+        if (there == here || (&here == &identity.version && access == Ledger::Access::read))
+            continue;
         throw FileError(
-            fmt::format("{}: is of another {}: {} there, {} here; another study needs "
-                        "another folder",
-                        database.file().string(), key == std::string("study") ? "study file" : key,
-                        found, value));
+            fmt::format("{}: is of another {}: {} there, {} here; another {} needs another folder",
+                        database.file().string(), what, there, here, what));
     }
 }
 
@@ -167,7 +172,7 @@ Ledger::Ledger(const std::filesystem::path& file, const StudyIdentity& identity,
         is_empty = tables.step() && tables.whole(0) == 0;
     }
     if (access == Access::write && is_empty) create(database, identity, figures);
-    check_identity(database, identity);
+    check_identity(database, identity, access);
 }
 Ledger::~Ledger() = default;
 
@@ -193,39 +198,12 @@ void Ledger::add(std::span<const LedgerRow> rows) {
     database.run("COMMIT");
 }
 
-std::set<std::string> Ledger::versions() const {
-    Statement found(state_->database, "SELECT value FROM meta WHERE key LIKE 'version%'");
-    std::set<std::string> versions;
-    while (found.step()) versions.insert(found.text(0));
-    return versions;
-}
-
-void Ledger::add_version(const std::string& version) {
-    if (versions().contains(version)) return;
-    Statement insert(state_->database, "INSERT INTO meta VALUES ('version ' || ?1, ?1)");
-    insert.bind(1, version);
-    insert.execute();
-}
-
-std::vector<LedgerRow> Ledger::sample(std::uint64_t most) const {
-    Statement found(
-        state_->database,
-        fmt::format(
-            "{0} FROM (SELECT *, row_number() OVER (ORDER BY k) - 1 AS place FROM variants) "
-            "WHERE place % (SELECT 1 + count(*) / ? FROM variants) = 0",
-            state_->selected()));
-    found.bind(1, most);
-    std::vector<LedgerRow> rows;
-    while (found.step()) rows.push_back(row_of(found, state_->figures));
-    return rows;
-}
-
 void Ledger::merge(const std::filesystem::path& other) {
     const Database& database = state_->database;
     {
         if (!std::filesystem::exists(other)) throw FileError(other.string() + ": no such ledger");
         const Database checked(other, Database::Access::existing);
-        check_identity(checked, state_->identity);
+        check_identity(checked, state_->identity, Access::write);
     }
     Statement attach(database, "ATTACH ? AS other");
     attach.bind(1, other.string());
@@ -246,9 +224,6 @@ void Ledger::merge(const std::filesystem::path& other) {
     database.run("BEGIN IMMEDIATE");
     for (const char* table : {"variants", "witnesses"})
         database.run(fmt::format("INSERT OR IGNORE INTO main.{0} SELECT * FROM other.{0}", table));
-    database.run(
-        "INSERT OR IGNORE INTO main.meta SELECT 'version ' || value, value FROM other.meta "
-        "WHERE key LIKE 'version%' AND value NOT IN (SELECT value FROM main.meta)");
     database.run("COMMIT");
     database.run("DETACH other");
 }
@@ -327,34 +302,11 @@ std::vector<LedgerRow> Ledger::failed(std::uint64_t count, std::size_t most) con
     return rows;
 }
 
-namespace {
-const char* table_of(Ledger::Rows which) {
-    return which == Ledger::Rows::variants ? "variants" : "witnesses";
-}
-}  // namespace
-
-void Ledger::each_row(Rows which, std::uint64_t first, std::uint64_t end,
+void Ledger::each_row(std::uint64_t count,
                       const std::function<void(const LedgerRow&)>& visit) const {
-    Statement found(state_->database, fmt::format("{} FROM {} WHERE k >= ? AND k < ? ORDER BY k",
-                                                  state_->selected(), table_of(which)));
-    found.bind(1, first), found.bind(2, end);
+    Statement found(state_->database, state_->selected() + " FROM variants WHERE k < ? ORDER BY k");
+    found.bind(1, count);
     while (found.step()) visit(row_of(found, state_->figures));
-}
-
-std::uint64_t Ledger::size(Rows which, std::uint64_t count) const {
-    Statement found(state_->database,
-                    fmt::format("SELECT count(*) FROM {} WHERE k < ?", table_of(which)));
-    found.bind(1, count);
-    return found.step() ? found.whole(0) : 0;
-}
-
-std::uint64_t Ledger::longest_reason(Rows which, std::uint64_t count) const {
-    Statement found(
-        state_->database,
-        fmt::format("SELECT coalesce(max(length(CAST(reason AS BLOB))), 0) FROM {} WHERE k < ?",
-                    table_of(which)));
-    found.bind(1, count);
-    return found.step() ? found.whole(0) : 0;
 }
 
 std::string Ledger::content_hash(std::uint64_t count) const {
@@ -373,17 +325,13 @@ std::string Ledger::content_hash(std::uint64_t count) const {
     return bytes;
 }
 
-LedgerLock::LedgerLock(const std::filesystem::path& ledger, std::chrono::seconds patience) {
+LedgerLock::LedgerLock(const std::filesystem::path& ledger) {
     // Beside the ledger: SQLite loses its own locks where the file itself is opened once more.
     const std::string file = ledger.string() + ".lock";
     file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0)
         throw FileError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-    const auto end = std::chrono::steady_clock::now() + patience;
-    do {
-        if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-        std::this_thread::sleep_for(std::chrono::milliseconds(patience.count() > 0 ? 50 : 0));
-    } while (std::chrono::steady_clock::now() < end);
+    if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(file_);
     throw FileError(ledger.string() + ": another process is computing this study here");
 }

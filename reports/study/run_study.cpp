@@ -69,13 +69,6 @@ std::vector<LedgerRow> solve_rows(const StudyFile& file, const Sampler& sampler,
     return rows;
 }
 
-bool is_same(const VariantFigures& a, const VariantFigures& b) {
-    return a.outcome == b.outcome && a.reason == b.reason &&
-           std::ranges::equal(a.values, b.values, [](double x, double y) {
-               return x == y || (std::isnan(x) && std::isnan(y));
-           });
-}
-
 std::int64_t nanoseconds() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
 
 }  // namespace
@@ -112,15 +105,14 @@ std::optional<Range> OpenRanges::next(std::uint64_t finished) {
     return ranges_[next_++];
 }
 
-std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& next, int threads) {
+void run_study(const StudyFile& file, Ledger& ledger, OpenRanges& open, int threads) {
     const Sampler sampler(file.study);
     std::atomic<bool> has_failed = false;
-    std::atomic<std::uint64_t> variants = 0;
     std::mutex recording;
     const auto work = [&] {
         std::uint64_t finished = 0;
         while (!has_failed) {
-            const auto range = next(finished);
+            const auto range = open.next(finished);
             if (!range) return;
             const auto rows = solve_rows(file, sampler, *range);
             {
@@ -128,7 +120,6 @@ std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& 
                 ledger.add(rows);
             }
             finished = rows.size();
-            variants += finished;
         }
     };
     // A failure of one ends the others after their batches.
@@ -143,38 +134,6 @@ std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& 
     compare::run_jobs(std::vector<compare::Job>(static_cast<std::size_t>(threads),
                                                 compare::Job{"variants", guarded}),
                       threads, {});
-    return variants;
-}
-
-std::vector<VariantFigures> solve_values(const StudyFile& file, const Eigen::MatrixXd& values) {
-    std::vector<VariantFigures> all(static_cast<std::size_t>(values.rows()));
-    std::vector<Model> models;
-    std::vector<std::size_t> at;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        auto model = model_of(file, values.row(static_cast<Index>(i)), all[i]);
-        if (!model) continue;
-        models.push_back(std::move(*model));
-        at.push_back(i);
-    }
-    auto solved = file.solver.solve(models);
-    for (std::size_t m = 0; m < models.size(); ++m) all[at[m]] = std::move(solved[m]);
-    return all;
-}
-
-std::size_t check_version(const StudyFile& file, Ledger& ledger) {
-    constexpr std::uint64_t most = 64;
-    const auto versions = ledger.versions();
-    if (versions.contains(file.identity.version) && file.identity.is_released) return 0;
-    const Sampler sampler(file.study);
-    const auto rows = ledger.sample(most);
-    for (const LedgerRow& row : rows)
-        if (!is_same(solve_rows(file, sampler, {row.k, row.k + 1}).front().figures, row.figures))
-            throw FileError(fmt::format(
-                "{}: variant {} was computed by version {}, and this version, {}, finds another "
-                "result; go on with that version, or begin again in another folder",
-                ledger.file().string(), row.k, fmt::join(versions, " or "), file.identity.version));
-    ledger.add_version(file.identity.version);
-    return versions.contains(file.identity.version) ? 0 : rows.size();
 }
 
 }  // namespace elastocheck::reports

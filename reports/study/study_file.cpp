@@ -568,8 +568,7 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
         .scene = input_hash(text + std::string(reinterpret_cast<const char*>(numbers.data()),
                                                numbers.size() * sizeof(double))),
         .study = input_hash(essence(reading.study)),
-        .version = made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : ""),
-        .is_released = !made.dirty && made.commit != "unknown"};
+        .version = made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : "")};
     return {file,
             std::move(reading.study),
             scene_file.string(),
@@ -585,9 +584,9 @@ std::vector<Setting> settings_of(const Study& study, const Eigen::VectorXd& valu
     for (std::size_t j = 0; j < study.variables.size(); ++j) {
         const Variable& variable = study.variables[j];
         const double x = values[static_cast<Index>(j)];
-        if (variable.scaled.empty()) settings.push_back(setting(variable.name, x));
+        if (variable.scaled.empty()) settings.push_back(elastocheck::setting(variable.name, x));
         for (const Scaled& scaled : variable.scaled)
-            settings.push_back(setting(scaled.path, x * scaled.nominal));
+            settings.push_back(elastocheck::setting(scaled.path, x * scaled.nominal));
     }
     return settings;
 }
