@@ -1,13 +1,13 @@
 // Ledger of a study: one row for every variant that was computed, in a file of SQLite that the
 // program `sqlite3` reads.
 //
-//   variants   k, outcome, method, reason, f1, f2, ...   a figure without a value is NULL
+//   variants   k, outcome, method, reason, f1, f2, ..., checksum   a figure without a value is NULL
 //   witnesses  the same by the reference, of every so many variants
 //   results    a view of `variants` with the names of outcomes and figures
 //   meta, figures, outcomes, methods   what the study is, and what the numbers mean
 //
 // Rows are added in transactions, so that a process that is killed leaves a ledger without the rows
-// of its open transaction.
+// of its open transaction. A row whose checksum is not that of its content is an error.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct LedgerRow {
 };
 
 struct LedgerSummary {
-    std::uint64_t rows = 0;
+    std::uint64_t rows = 0, by_equilibrium = 0;
     std::vector<std::uint64_t> by_outcome;  // per VariantOutcome
 };
 
@@ -50,10 +50,10 @@ struct WitnessDifference {
 
 class Ledger {
   public:
-    enum class Access { write, read };
+    enum class Access { write, merge, read };
     // Opens or, to write, creates it. Throws FileError for a file that is no ledger, a ledger of
-    // another scene, study or, to write, version of the program (what differs is named), and what
-    // SQLite reports.
+    // another scene, study or, but to read, version of the program (what differs is named), and what
+    // SQLite reports. Checks every row.
     Ledger(const std::filesystem::path& file, const StudyIdentity& identity,
            const std::vector<compare::variants::StudyFigure>& figures, Access access);
     ~Ledger();
@@ -66,7 +66,7 @@ class Ledger {
     void add(std::span<const LedgerRow> rows);
     // Rows of another ledger of this study that are not here yet. Throws FileError, also for a row
     // that both have with different content.
-    void merge(const std::filesystem::path& other);
+    void merge(const Ledger& other);
 
     // Numbers of rows by k / size, of k below `count`; the variants of the range that have a row.
     std::vector<std::uint64_t> rows_by_batch(std::uint64_t size, std::uint64_t count) const;

@@ -24,10 +24,10 @@ using namespace compare::variants;
 using Eigen::Index;
 
 // The model with these values; without one, the reason.
-std::optional<Model> model_of(const StudyFile& file, const Eigen::VectorXd& values,
-                              VariantFigures& figures) {
+std::optional<Model> model_of(const StudyFile& file, Variants& variants,
+                              const Eigen::VectorXd& values, VariantFigures& figures) {
     try {
-        Scene scene = file.parsed.read(settings_of(file.study, values));
+        const Scene scene = variants.scene(values);
         if (!scene.trim) return compile(scene);
         const compare::Trimmed trimmed = compare::trim(scene);
         if (!trimmed.record || trimmed.record->reached()) return compile(trimmed.scene);
@@ -44,22 +44,19 @@ std::optional<Model> model_of(const StudyFile& file, const Eigen::VectorXd& valu
     return std::nullopt;
 }
 
-std::vector<LedgerRow> solve_rows(const StudyFile& file, const Sampler& sampler,
+std::vector<LedgerRow> solve_rows(const StudyFile& file, Variants& variants, const Sampler& sampler,
                                   const Range& range) {
     const Eigen::MatrixXd values = sampler.values(range.first, range.end - range.first);
     std::vector<LedgerRow> rows;
     std::vector<Model> models;
     std::vector<std::size_t> at;  // row of each model
     for (std::uint64_t k = range.first; k < range.end; ++k) {
-        rows.push_back({.k = k, .figures = {}});
+        LedgerRow& row = rows.emplace_back(LedgerRow{.k = k, .figures = {}});
         auto model =
-            model_of(file, values.row(static_cast<Index>(k - range.first)), rows.back().figures);
-        const bool is_witness =
-            file.study.witness > 0 && k % static_cast<std::uint64_t>(file.study.witness) == 0;
-        if (is_witness)
-            rows.back().witness.push_back(
-                model ? file.solver.solve_alone(*model, compare::Leg::equilibrium)
-                      : rows.back().figures);
+            model_of(file, variants, values.row(static_cast<Index>(k - range.first)), row.figures);
+        if (file.study.witness > 0 && k % static_cast<std::uint64_t>(file.study.witness) == 0)
+            row.witness.push_back(model ? file.solver.solve_alone(*model, compare::Leg::equilibrium)
+                                        : row.figures);
         if (!model) continue;
         models.push_back(std::move(*model));
         at.push_back(rows.size() - 1);
@@ -111,10 +108,11 @@ void run_study(const StudyFile& file, Ledger& ledger, OpenRanges& open, int thre
     std::mutex recording;
     const auto work = [&] {
         std::uint64_t finished = 0;
+        Variants variants(file.parsed, file.study);
         while (!has_failed) {
             const auto range = open.next(finished);
             if (!range) return;
-            const auto rows = solve_rows(file, sampler, *range);
+            const auto rows = solve_rows(file, variants, sampler, *range);
             {
                 const std::scoped_lock guard(recording);
                 ledger.add(rows);

@@ -289,6 +289,43 @@ TEST_F(StudyCommand, TwoProcessesDoNotWriteOneLedger) {
                 2, {.err = {"another process is computing this study here"}});
 }
 
+// ---- A damaged ledger
+
+TEST_F(StudyCommand, RefusesADamagedRowByItsNumber) {
+    study(linear, "-o out --count 40");
+    const fs::path ledger = path / "out" / "ledger.sqlite";
+    const std::string good = text_of(ledger);
+    for (const auto& [change, says] : {
+             std::pair("variants SET f1 = f1 + 1e-12 WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET reason = 'x' WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET outcome = 99 WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET method = 1 WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET k = 99 WHERE k = 17", "row 99: its content is not"),
+             std::pair("witnesses SET f1 = 1 WHERE k = 0", "row 0: its content is not"),
+             std::pair("variants SET f1 = 'abc' WHERE k = 17",
+                       "row 17: f1 is 'abc'; expected a "
+                       "number"),
+         }) {
+        write("out/ledger.sqlite", good);
+        Database(ledger, Database::Access::existing).run(std::string("UPDATE ") + change);
+        for (const char* options : {"-o out --count 40 --show", "-o out --count 50"})
+            expect_said(run(options), 2, {.err = {std::string("out/ledger.sqlite: ") + says}});
+    }
+    // As the message says.
+    write("out/ledger.sqlite", good);
+    Database(ledger, Database::Access::existing).run("DELETE FROM variants WHERE k = 17");
+    expect_said(run("-o out --count 40"), 0, {.err = {"1 variants computed"}});
+    EXPECT_EQ(content(run("-o out --count 40")), content(run("-o whole --count 40")));
+}
+
+TEST_F(StudyCommand, FollowsNoLinkToALedger) {
+    study(linear, "-o out --count 40");
+    fs::create_directories(path / "linked");
+    fs::create_symlink(path / "out" / "ledger.sqlite", path / "linked" / "ledger.sqlite");
+    for (const char* options : {"-o linked --count 40 --show", "-o linked --count 50"})
+        expect_said(run(options), 2, {.err = {"linked/ledger.sqlite: is a symbolic link"}});
+}
+
 // Its rows are shown, and no rows are added to them.
 TEST_F(StudyCommand, RefusesToWriteTheLedgerOfAnotherVersion) {
     study(mcpherson, "-o out --count 300");

@@ -120,7 +120,8 @@ int study(const StudyRequest& request, const Delivery& delivery) {
     Ledger ledger(ledger_file, file.identity, file.study.figures,
                   request.show ? Ledger::Access::read : Ledger::Access::write);
     for (const std::string& shards : request.merge)
-        for (const std::string& other : ledgers_in(shards)) ledger.merge(other);
+        for (const std::string& other : ledgers_in(shards))
+            ledger.merge({other, file.identity, file.study.figures, Ledger::Access::merge});
     if (!request.show && request.merge.empty()) compute(request, file, ledger, shard);
     std::vector<std::string> ranges;
     const std::uint64_t open = missing(ledger, file.study.design.count, shard, ranges);

@@ -207,6 +207,9 @@ std::string outcomes_text(const StudyResult& result) {
         if (result.summary.by_outcome[o] > 0)
             parts.push_back(fmt::format("{} {}", result.summary.by_outcome[o],
                                         name(static_cast<VariantOutcome>(o))));
+    if (result.summary.by_equilibrium > 0)
+        parts.push_back(fmt::format("{} of all by the equilibrium leg, where series declines",
+                                    result.summary.by_equilibrium));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
