@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <tuple>
 
 #include "compare/comparison/characteristics.hpp"
@@ -516,6 +517,24 @@ GateVerdict judge(const Baseline& baseline, const Measurement& measurement, Tole
 
     std::ranges::stable_sort(verdict.offences, comes_before);
     return verdict;
+}
+
+std::vector<std::string> widened(const Baseline& baseline, ToleranceClass kind) {
+    std::set<std::string> wider;
+    const Tolerances usual = default_tolerances(kind);
+    const auto own = baseline.tolerances.find(kind);
+    if (own == baseline.tolerances.end()) return {};
+    for (const auto& series : baseline.accepted.series) {
+        const Allowance *is = tolerance_of(own->second, series), *was = tolerance_of(usual, series);
+        if (is == nullptr || was == nullptr) continue;
+        const auto of = std::ranges::find_if(
+            own->second, [&](const auto& entry) { return &entry.second == is; });
+        if (!(is->atol <= was->atol))
+            wider.insert(fmt::format("{}: atol {:g}", of->first, is->atol));
+        if (!(is->rtol <= was->rtol))
+            wider.insert(fmt::format("{}: rtol {:g}", of->first, is->rtol));
+    }
+    return {wider.begin(), wider.end()};
 }
 
 }  // namespace elastocheck::compare

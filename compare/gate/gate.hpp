@@ -169,4 +169,8 @@ struct GateVerdict {
 
 GateVerdict judge(const Baseline& baseline, const Measurement& measurement, ToleranceClass kind);
 
+// Tolerances of the baseline in this class, as edited by hand, that are wider than the default ones:
+// "mm: atol 1e+09", sorted.
+std::vector<std::string> widened(const Baseline& baseline, ToleranceClass kind);
+
 }  // namespace elastocheck::compare

@@ -1,9 +1,8 @@
 // What is taken from OpenTURNS: distributions, designs, intervals of confidence, Sobol indices.
 //
-// An optional component, the module elastocheck-openturns.so (openturns_module.cpp, where alone the
-// headers of OpenTURNS are included). It is loaded on first use: the library takes a tenth of a second
-// to load, ten times as long as the rest of the command. Without the module available() is false, and
-// every other function throws std::invalid_argument.
+// openturns.cpp, where alone its headers are included, is built where OpenTURNS is found; else
+// without_openturns.cpp, where available() is false and every other function throws
+// std::invalid_argument.
 #pragma once
 
 #include <Eigen/Core>
@@ -49,40 +48,5 @@ struct SobolIndices {  // per variable: value, lower and upper bound
 // By the estimators of Jansen and bootstrap. `outputs` [blocks × (variables + 2)]: rows as in
 // Design::indices.
 SobolIndices sobol_indices(const Eigen::MatrixXd& outputs, double level, std::uint64_t seed);
-
-// Probability that a function of independent standard normal variables is above or below a threshold.
-struct Rare {
-    // of the point of failure nearest to the origin: its distance, negative where the origin fails,
-    // and the probability beyond the tangent plane there (FORM)
-    double beta = 0, by_form = 0;
-    Eigen::VectorXd point = {};
-    bool is_found = false;  // on the threshold, and steepest towards the origin
-    // by importance sampling about that point, and its interval
-    double probability = 0, low = 0, high = 0;
-    std::uint64_t evaluations = 0;
-};
-struct Threshold {
-    bool above = true;  // else below
-    double at = 0;
-};
-// Values of the function at the rows of a matrix; what it throws is thrown again.
-using Values = std::function<Eigen::VectorXd(const Eigen::MatrixXd& u)>;
-// The gradient is by central differences. At most `most` evaluations of the importance sampling, in
-// blocks of `block`; fewer where the coefficient of variation is 0.02 before.
-Rare rare(const Values& values, std::size_t dimension, const Threshold& threshold, double level,
-          std::uint64_t seed, std::uint64_t most, std::uint64_t block);
-
-// What the module provides, by its only symbol.
-struct Functions {
-    decltype(&openturns::transformation) transformation;
-    decltype(&openturns::sobol_directions) sobol_directions;
-    decltype(&openturns::latin_hypercube) latin_hypercube;
-    decltype(&openturns::clopper_pearson) clopper_pearson;
-    decltype(&openturns::percentile_ranks) percentile_ranks;
-    decltype(&openturns::sobol_indices) sobol_indices;
-    decltype(&openturns::rare) rare;
-};
-inline constexpr const char* module_file = "elastocheck-openturns.so";
-inline constexpr const char* module_symbol = "elastocheck_openturns_functions";
 
 }  // namespace elastocheck::compare::variants::openturns

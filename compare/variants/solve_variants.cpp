@@ -16,10 +16,13 @@
 #include "compare/outputs/not_a_number.hpp"
 #include "elastocheck/recursive.hpp"
 #include "models/branch.hpp"
+#include "models/overloaded.hpp"
+#include "models/structure.hpp"
 
 namespace elastocheck::compare::variants {
 namespace {
 
+constexpr const char* other_outputs = "the variant has other outputs than the scene";
 constexpr int points_for_extremes = 20, most_points = 1000;
 
 // Whether the station is a recorded point of a way with so many increments: which one, or -1.
@@ -30,6 +33,33 @@ int point_at(double at, double to, int increments) {
 }
 
 bool is_extreme(const StudyFigure& figure) { return figure.over != Over::station; }
+
+// Whether the channel holds numbers of the design position, of which a variant has its own.
+bool holds_numbers(const Channel& channel) {
+    return std::visit(
+        overloaded{[](const Coordinate&) { return true; }, [](const Compression&) { return true; },
+                   [](const Ackermann&) { return true; }, [](const auto&) { return false; }},
+        channel.reads);
+}
+
+// Whether a leg ended a branch that another may follow further. At a limit point or a bifurcation the
+// branch itself ends.
+bool declines(Outcome outcome) {
+    return outcome != Outcome::converged && outcome != Outcome::limit_point &&
+           outcome != Outcome::bifurcation_point;
+}
+
+// What the numbers of channels depend on.
+Model without_joints(const Model& model) {
+    Model result;
+    result.bodies = model.bodies;
+    result.elastics = model.elastics;
+    result.wheels = model.wheels;
+    result.probes = model.probes;
+    result.dampers = model.dampers;
+    result.vehicle = model.vehicle;
+    return result;
+}
 
 }  // namespace
 
@@ -52,10 +82,12 @@ VariantSolver::VariantSolver(const Model& design, std::vector<StudyFigure> figur
         if (c < 0)
             throw std::invalid_argument(
                 fmt::format("{}: the scene has no output '{}'", figure.name, figure.output));
-        channel_.push_back(static_cast<std::size_t>(c));
-        only_motion_ = only_motion_ && all[channel_.back()].kinematic();
-        with_sums_ = with_sums_ || std::holds_alternative<Total>(all[channel_.back()].reads);
+        outputs_.push_back(all[static_cast<std::size_t>(c)]);
+        outputs_.back().definition.clear();
+        only_motion_ = only_motion_ && outputs_.back().kinematic();
+        with_sums_ = with_sums_ || std::holds_alternative<Total>(outputs_.back().reads);
     }
+    elastocheck::structure(design, structure_);
     place(design);
     for (Group& group : groups_) {
         group.design = followed(design, group.ways);
@@ -128,15 +160,21 @@ Model VariantSolver::followed(const Model& model, const std::vector<Way>& of) co
     return result;
 }
 
-std::vector<Channel> VariantSolver::outputs(const Model& model) const {
-    return only_motion_ ? channels(model) : figure_outputs(model, with_sums_);
-}
-
-bool VariantSolver::fits(const std::vector<Channel>& outputs) const {
-    for (std::size_t k = 0; k < figures_.size(); ++k)
-        if (channel_[k] >= outputs.size() || outputs[channel_[k]].name != figures_[k].output)
-            return false;
-    return true;
+// Those of the design with the numbers of the variant, one a figure; none where it has others.
+std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& variant) const {
+    std::vector<int> structure;
+    elastocheck::structure(variant, structure);
+    const bool same = structure == structure_;
+    std::vector<Channel> own = outputs_;
+    if (same && std::ranges::none_of(own, holds_numbers)) return own;
+    const auto all = same ? channels(without_joints(variant)) : figure_outputs(variant, with_sums_);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+        if (same && !holds_numbers(own[k])) continue;
+        const int c = find_channel(all, figures_[k].output);
+        if (c < 0) return std::nullopt;
+        own[k] = all[static_cast<std::size_t>(c)];
+    }
+    return own;
 }
 
 void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs, const Way& way,
@@ -166,7 +204,7 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
         for (const Reading& reading : way.readings) {
             if (reading.point >= 0 && reading.point != static_cast<int>(p)) continue;
             here.push_back(reading.figure);
-            wanted.push_back(outputs[channel_[reading.figure]]);
+            wanted.push_back(outputs[reading.figure]);
             responds = responds || wanted.back().kind() == ChannelKind::characteristic ||
                        !wanted.back().joints().empty();
         }
@@ -197,13 +235,13 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
 }
 
 // A figure without a value, of a branch that is complete.
-void VariantSolver::finish(const std::vector<Channel>& outputs, VariantFigures& figures) const {
+void VariantSolver::finish(VariantFigures& figures) const {
     if (figures.outcome != VariantOutcome::solved) return;
     for (std::size_t k = 0; k < figures_.size(); ++k) {
         if (!std::isnan(figures.values[k])) continue;
         figures.outcome = VariantOutcome::no_value;
-        figures.reason = fmt::format("{}: {} could not be computed", figures_[k].name,
-                                     outputs[channel_[k]].name);
+        figures.reason =
+            fmt::format("{}: {} could not be computed", figures_[k].name, figures_[k].output);
         return;
     }
 }
@@ -214,34 +252,44 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
     std::vector<std::vector<Channel>> all_outputs;
     std::vector<std::size_t> which;  // have these outputs
     for (std::size_t v = 0; v < variants.size(); ++v) {
-        all_outputs.push_back(outputs(variants[v]));
-        if (fits(all_outputs.back())) {
+        if (auto own = outputs(variants[v])) {
+            all_outputs.push_back(std::move(*own));
             which.push_back(v);
         } else {
             results[v].outcome = VariantOutcome::no_value;
-            results[v].reason = "the variant has other outputs than the scene";
+            results[v].reason = other_outputs;
         }
     }
+    std::vector<bool> declined(which.size(), false);
     for (const Group& group : groups_) {
         std::vector<Model> models;
         for (const std::size_t v : which) models.push_back(followed(variants[v], group.ways));
         recursive::solve_batch(group.design, group.analysis, models,
                                {.points = points_, .wrenches = !only_motion_},
                                [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
-                                   read(variants[which[v]], all_outputs[which[v]], group.ways[w],
+                                   declined[v] = declined[v] || declines(path.outcome);
+                                   read(variants[which[v]], all_outputs[v], group.ways[w],
                                         Leg::series, path, results[which[v]]);
                                });
     }
-    for (const std::size_t v : which) finish(all_outputs[v], results[v]);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+        VariantFigures& result = results[which[k]];
+        finish(result);
+        if (!declined[k] || result.outcome != VariantOutcome::ended_early) continue;
+        VariantFigures other = solve_alone(variants[which[k]], Leg::equilibrium);
+        if (other.outcome != VariantOutcome::solved) continue;
+        other.reason = "by the equilibrium leg, since series: " + result.reason;
+        result = std::move(other);
+    }
     return results;
 }
 
 VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
-    VariantFigures result{.values = std::vector<double>(figures_.size(), nan)};
-    const auto all = outputs(variant);
-    if (!fits(all)) {
+    VariantFigures result{.values = std::vector<double>(figures_.size(), nan), .leg = leg};
+    const auto own = outputs(variant);
+    if (!own) {
         result.outcome = VariantOutcome::no_value;
-        result.reason = "the variant has other outputs than the scene";
+        result.reason = other_outputs;
         return result;
     }
     for (const Group& group : groups_)
@@ -250,9 +298,9 @@ VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
             side.steps = points_;
             const EquilibriumPath path =
                 walk(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
-            read(variant, all, way, leg, path, result);
+            read(variant, *own, way, leg, path, result);
         }
-    finish(all, result);
+    finish(result);
     return result;
 }
 

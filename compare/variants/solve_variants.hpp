@@ -1,11 +1,12 @@
 // The figures of many variants of a scene by `series` in lockstep, and of a variant by the
-// equilibrium leg.
+// equilibrium leg, also of one that series declines.
 //
 // All branches that the figures read are followed together where every part of the model is active
 // on each of them, else one after the other. States are recorded in equal increments of the
 // parameter, as few as have all stations among them; extremes are those of at least 21 points.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,8 +31,10 @@ const char* name(VariantOutcome outcome);
 
 struct VariantFigures {
     VariantOutcome outcome = VariantOutcome::solved;
-    std::string reason = {};     // empty if solved
-    std::vector<double> values;  // per figure; NaN where there is none, infinite: undefined
+    // why it is not solved, or, of a variant that the equilibrium leg solved, why series did not
+    std::string reason = {};
+    std::vector<double> values = {};  // per figure; NaN where there is none, infinite: undefined
+    Leg leg = Leg::series;            // by which the values are
 };
 
 class VariantSolver {
@@ -64,16 +67,16 @@ class VariantSolver {
 
     void place(const Model& design);
     Model followed(const Model& model, const std::vector<Way>& ways) const;
-    std::vector<Channel> outputs(const Model& model) const;
-    bool fits(const std::vector<Channel>& outputs) const;
+    std::optional<std::vector<Channel>> outputs(const Model& model) const;
     void read(const Model& model, const std::vector<Channel>& outputs, const Way& way, Leg leg,
               const EquilibriumPath& path, VariantFigures& into) const;
-    void finish(const std::vector<Channel>& outputs, VariantFigures& figures) const;
+    void finish(VariantFigures& figures) const;
 
     std::vector<StudyFigure> figures_;
-    std::vector<std::size_t> channel_ = {};  // of each figure, among the outputs
-    bool only_motion_ = true;                // every output is a position or an angle
-    bool with_sums_ = false;                 // an output is a sum of redundant joints
+    std::vector<Channel> outputs_ = {};  // of the design, one a figure
+    std::vector<int> structure_ = {};    // of the design
+    bool only_motion_ = true;            // every output is a position or an angle
+    bool with_sums_ = false;             // an output is a sum of redundant joints
     bool together_ = true;
     int points_ = 1;
     std::vector<Group> groups_ = {};

@@ -271,6 +271,30 @@ Scene ParsedScene::read(std::span<const Setting> settings,
     return scene;
 }
 
+VariedScene::VariedScene(const ParsedScene& scene, std::vector<std::string> paths)
+    : scene_(scene), paths_(std::move(paths)), tree_(scene.tree_) {
+    for (const std::string& path : paths_)
+        places_.push_back(&apply(setting(path, 0), tree_, scene.name_));
+}
+
+Scene VariedScene::read(std::span<const double> values) {
+    for (std::size_t k = 0; k < places_.size(); ++k) places_[k]->number = values[k];
+    std::vector<Number> numbers;
+    try {
+        return read_tree({.value = &tree_,
+                          .path = "",
+                          .file = &scene_.name_,
+                          .numbers = &numbers,
+                          .has_path = false},
+                         scene_.folder_, nullptr);
+    } catch (const SceneError&) {  // again, to say where
+        std::vector<Setting> settings;
+        for (std::size_t k = 0; k < paths_.size(); ++k)
+            settings.push_back(setting(paths_[k], values[k]));
+        return scene_.read(settings);
+    }
+}
+
 std::vector<RequestedDefinition> ParsedScene::definitions(std::span<const Setting> settings) const {
     Value tree = tree_;
     apply(settings, tree, name_);

@@ -46,7 +46,9 @@ Reached follow(Value& value, std::string_view path) {
     return best;
 }
 
-void apply(const Setting& setting, Value& tree, const std::string& file) {
+}  // namespace
+
+Value& apply(const Setting& setting, Value& tree, const std::string& file) {
     const auto [value, rest] = follow(tree, setting.path);
     const std::string shown_path = shown(setting.path);
     const auto names = names_in(*value);
@@ -72,7 +74,10 @@ void apply(const Setting& setting, Value& tree, const std::string& file) {
                          quote(text), longest_value));
     if (value->is_set) fail(file, value->line, shown_path, "set twice");
     *value = {.kind = Value::Kind::scalar, .text = text, .line = value->line, .is_set = true};
+    return *value;
 }
+
+namespace {
 
 // A value in a line of the file, and its replacement.
 struct Edit {

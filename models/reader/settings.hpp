@@ -10,7 +10,8 @@
 namespace elastocheck::reader {
 
 // Throws SceneError for a path that does not lead to one value, a path set twice, or a value that
-// is not one line of plain text.
+// is not one line of plain text. Returns the value that is replaced.
+Value& apply(const Setting& setting, Value& tree, const std::string& file);
 void apply(std::span<const Setting> settings, Value& tree, const std::string& file);
 
 }  // namespace elastocheck::reader

@@ -154,6 +154,10 @@ std::optional<BaselineFile> accepted(const Task& task, GatedScene& scene) {
         scene.accepted = file.baseline.accepted;
         scene.reason = file.baseline.reason;
         return file;
+    } catch (const LimitError& error) {
+        scene.bad_input = true;
+        scene.verdict.reasons.emplace_back(error.what());
+        return std::nullopt;
         // BaselineError, FileError: fails this scene, not the whole run
     } catch (const std::runtime_error& error) {
         scene.verdict.reasons.emplace_back(error.what());
@@ -208,6 +212,7 @@ void judge(const BaselineFile& was, const BaselineFile& is, const std::string& f
         [&](const compare::Limit& limit) { return what_is_there(limit, is.baseline.accepted); });
     limits.erase(misnamed, limits.end());
     scene.verdict = compare::judge(baseline, is.baseline.accepted, kind);
+    scene.widened = compare::widened(baseline, kind);
     std::ranges::copy(unknown, std::back_inserter(scene.verdict.reasons));
     scene.changed = compare::changes(was.numbers, is.numbers);
     if (was.input_hash == is.input_hash) return;
@@ -270,7 +275,7 @@ int accept_scene(const Task& task, const GateOptions& options) {
             "elastocheck: {}\nRestore or delete it first: its tolerances and limits would be "
             "lost.\n",
             scene.verdict.reasons.front());
-        return could_not_judge;
+        return scene.bad_input ? bad_input : could_not_judge;
     }
     BaselineFile is = measured(task, options);
     const auto& now = is.baseline.accepted;

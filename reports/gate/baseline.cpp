@@ -342,6 +342,19 @@ BaselineFile parse_review(const JsonCursor& top, const JsonCursor& curves) {
     return file;
 }
 
+// That no limit has min above max. Limits have no objects in them: the k-th brace begins the k-th.
+void check_limits(const std::vector<compare::Limit>& limits, std::string_view review,
+                  const std::string& file) {
+    std::size_t at = review.find("\"limits\"");
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+        at = review.find('{', at + 1);
+        if (!(limits[k].min > limits[k].max)) continue;
+        throw LimitError(fmt::format("{}:{}: limits.{}: min {:g} is above max {:g}", file,
+                                     1 + std::ranges::count(review.substr(0, at), '\n'), k + 1,
+                                     limits[k].min, limits[k].max));
+    }
+}
+
 // Both files as JSON, handed to `use`.
 template <class Use>
 auto with_json(const BaselineText& text, const std::string& file_name, Use use) {
@@ -412,6 +425,7 @@ BaselineFile read_baseline(const fs::path& file) {
                             read_whole(curves_of(file), largest_baseline)};
     return with_json(text, file.string(), [&](const JsonCursor& top, const JsonCursor& curves) {
         BaselineFile read = parse_review(top, curves);
+        check_limits(read.baseline.limits, text.review, file.string());
         if (top["curves"]["hash"].text() != input_hash(text.curves))
             top["curves"]["hash"].fail(
                 fmt::format("{} is of another acceptance", curves_of(file).string()));

@@ -38,6 +38,11 @@ struct BaselineError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// A limit has min above max; what() names the file with the line.
+struct LimitError : BaselineError {
+    using BaselineError::BaselineError;
+};
+
 struct BaselineText {
     std::string review, curves;
 };
@@ -45,7 +50,7 @@ BaselineText baseline_text(const BaselineFile& file);
 
 // Strict: a missing, unknown or mistyped field is an error, so that a misspelt limit is not
 // silently ignored. A null among the numbers is NaN. The hash and the values of the figures are
-// checked by read_baseline alone.
+// checked by read_baseline alone. Throws BaselineError.
 BaselineFile parse_baseline(const BaselineText& text, const std::string& file_name);
 
 // Path of the second file of a baseline.

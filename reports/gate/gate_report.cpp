@@ -103,6 +103,9 @@ std::string headline(const GatedScene& scene) {
         line += fmt::format("{} of {} numbers out of tolerance", verdict.offences.size(),
                             verdict.compared);
     if (verdict.compared > 0) line += ", " + class_of(scene);
+    if (!scene.widened.empty())
+        line += fmt::format(", with tolerances wider than those of the class: {}",
+                            fmt::join(scene.widened, ", "));
     return line;
 }
 
@@ -353,6 +356,7 @@ json gate_document(const std::vector<GatedScene>& scenes, const Provenance& prov
                         {"verdict", verdict_of(scene)},
                         {"tolerance_class", name(scene.verdict.kind)},
                         {"because", scene.differs},
+                        {"widened", scene.widened},
                         {"last_acceptance", scene.reason},
                         {"compared", scene.verdict.compared},
                         {"changed", changed},

@@ -20,6 +20,7 @@ struct GatedScene {
     std::string reason;                    // of the last acceptance
     std::string differs;                   // build differences that exclude the class same-build
     std::vector<compare::Change> changed;  // numbers of the scene changed since the acceptance
+    std::vector<std::string> widened;      // tolerances beyond the default ones of the class
     std::vector<std::string> notes;        // remarks that do not affect the verdict
     bool bad_input = false;  // the scene could not be read; verdict.reasons has the reason
     compare::GateVerdict verdict;

@@ -184,12 +184,10 @@ Report study(const std::string& file, const std::string& folder, std::optional<s
     const reports::LedgerLock lock(ledger_file);
     reports::Ledger ledger(ledger_file, study.identity, study.study.figures,
                            reports::Ledger::Access::write);
-    reports::check_version(study, ledger);  // throws where another version has other values
     reports::OpenRanges open(
         ledger, study.study.design.count, {},
         progress ? progress : [](std::string_view, double) {});
-    const auto next = [&](std::uint64_t finished) { return open.next(finished); };
-    if (open.variants() > 0) reports::run_study(study, ledger, next, threads_of(threads));
+    if (open.variants() > 0) reports::run_study(study, ledger, open, threads_of(threads));
     const reports::StudyResult result = reports::evaluate_study(study, ledger);
     const bool judged = result.summary.by_outcome.front() > 0 && result.disagreements.empty();
     return {.text = reports::study_text(study, result),

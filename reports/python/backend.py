@@ -40,14 +40,11 @@ def _installed(build, prefix):
                         "-D", "CMAKE_REQUIRE_FIND_PACKAGE_pybind11=ON",
                         "-D", f"Python_EXECUTABLE={sys.executable}"], check=True)
     subprocess.run(["cmake", "--build", build, "--target", "elastocheck_python"], check=True)
-    for component in ("python", "study"):
-        subprocess.run(["cmake", "--install", build, "--component", component, "--prefix", prefix, "--strip"],
-                       check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--install", build, "--component", "python", "--prefix", prefix, "--strip"],
+                   check=True, stdout=subprocess.DEVNULL)
     package = prefix / "lib/python3/dist-packages/elastocheck"
     if not list(package.glob("_core*.so")):
         raise SystemExit(f"{build} has no Python module: pybind11-dev is not installed")
-    for study in prefix.glob("lib/**/elastocheck-openturns.so"):
-        study.rename(package / study.name)
     return package
 
 

@@ -11,6 +11,8 @@
 namespace elastocheck::reports {
 
 Database::Database(std::filesystem::path file, Access access) : file_(std::move(file)) {
+    if (std::error_code ignored; std::filesystem::is_symlink(file_, ignored))
+        throw FileError(file_.string() + ": is a symbolic link; a ledger is a regular file");
     const int flags = SQLITE_OPEN_READWRITE | (access == Access::create ? SQLITE_OPEN_CREATE : 0);
     if (sqlite3_open_v2(file_.c_str(), &handle_, flags, nullptr) != SQLITE_OK) {
         const std::string why = sqlite3_errmsg(handle_);
@@ -56,17 +58,28 @@ void Statement::bind(int at, const std::string& value) {
 }
 void Statement::bind_nothing(int at) { sqlite3_bind_null(handle_, at); }
 
+bool Statement::is_null(int column, int type, const char* expected) const {
+    const int found = sqlite3_column_type(handle_, column);
+    if (found == type || found == SQLITE_NULL) return found == SQLITE_NULL;
+    const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(handle_, column));
+    throw FileError(fmt::format("{}: row {}: {} is '{}'; expected {}", database_.file().string(),
+                                sqlite3_column_int64(handle_, 0),
+                                sqlite3_column_name(handle_, column), text == nullptr ? "" : text,
+                                expected));
+}
 std::uint64_t Statement::whole(int column) const {
-    return static_cast<std::uint64_t>(sqlite3_column_int64(handle_, column));
+    return is_null(column, SQLITE_INTEGER, "a whole number")
+               ? 0
+               : static_cast<std::uint64_t>(sqlite3_column_int64(handle_, column));
 }
 double Statement::number(int column) const {
-    return sqlite3_column_type(handle_, column) == SQLITE_NULL
-               ? std::numeric_limits<double>::quiet_NaN()
-               : sqlite3_column_double(handle_, column);
+    return is_null(column, SQLITE_FLOAT, "a number") ? std::numeric_limits<double>::quiet_NaN()
+                                                     : sqlite3_column_double(handle_, column);
 }
 std::string Statement::text(int column) const {
-    const auto* characters = sqlite3_column_text(handle_, column);
-    return characters == nullptr ? "" : reinterpret_cast<const char*>(characters);
+    return is_null(column, SQLITE_TEXT, "a text")
+               ? ""
+               : reinterpret_cast<const char*>(sqlite3_column_text(handle_, column));
 }
 
 }  // namespace elastocheck::reports

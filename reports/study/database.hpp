@@ -10,10 +10,11 @@ struct sqlite3_stmt;
 
 namespace elastocheck::reports {
 
-// Every function throws FileError with the message of SQLite.
+// Every function throws FileError with the message of SQLite, or with what a value is that is not of
+// the expected type.
 class Database {
   public:
-    // Both may write: what a killed process left in a file is undone when it is opened.
+    // Both may write, none a symbolic link: what a killed process left in a file is undone when it is opened.
     enum class Access { existing, create };
     Database(std::filesystem::path file, Access access);
     ~Database();
@@ -48,12 +49,15 @@ class Statement {
     void bind(int at, const std::string& value);
     void bind_nothing(int at);
 
-    // Columns from 0. NULL is NaN, or an empty text.
+    // Columns from 0. NULL is NaN, or an empty text; a column of another type is an error, which names
+    // the row by its first column.
     std::uint64_t whole(int column) const;
     double number(int column) const;
     std::string text(int column) const;
 
   private:
+    bool is_null(int column, int type, const char* expected) const;
+
     const Database& database_;
     sqlite3_stmt* handle_ = nullptr;
 };

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <thread>
 #include <utility>
 
 #include "reports/files/files.hpp"
@@ -23,8 +22,8 @@ using compare::variants::StudyFigure;
 using compare::variants::VariantFigures;
 using compare::variants::VariantOutcome;
 
-constexpr const char* format = "elastocheck/ledger/1";
-constexpr int method_series = 0, method_equilibrium = 1;
+constexpr const char* format = "elastocheck/ledger/2";
+constexpr int method_series = 0, method_equilibrium = 1;  // as summary() counts them
 
 // "f1, f2, ..." with something between.
 std::string listed_figures(std::size_t count, const char* written = "f{}") {
@@ -45,20 +44,26 @@ std::string text_of_meta(const Database& database, const std::string& key) {
     return meta.step() ? meta.text(0) : "";
 }
 
-void check_identity(const Database& database, const StudyIdentity& identity) {
+// Rows of several versions of the program are not added to each other.
+void check_identity(const Database& database, const StudyIdentity& identity,
+                    Ledger::Access access) {
     Statement tables(database,
                      "SELECT count(*) FROM sqlite_master WHERE name IN ('meta', 'variants')");
     if (!tables.step() || tables.whole(0) != 2 || text_of_meta(database, "format") != format)
         throw FileError(database.file().string() + ": not a ledger of a study");
-    for (const auto& [key, value] :
-         {std::pair("scene", identity.scene), std::pair("study", identity.study)}) {
-        const std::string found = text_of_meta(database, key);
-        if (found == value) continue;
+    struct Part {
+        const char *key, *what;
+        const std::string& here;
+    };
+    for (const auto& [key, what, here] :
+         {Part{"scene", "scene", identity.scene}, Part{"study", "study file", identity.study},
+          Part{"version", "version of the program", identity.version}}) {
+        const std::string there = text_of_meta(database, key);
+        if (there == here || (&here == &identity.version && access == Ledger::Access::read))
+            continue;
         throw FileError(
-            fmt::format("{}: is of another {}: {} there, {} here; another study needs "
-                        "another folder",
-                        database.file().string(), key == std::string("study") ? "study file" : key,
-                        found, value));
+            fmt::format("{}: is of another {}: {} there, {} here; another {} needs another folder",
+                        database.file().string(), what, there, here, what));
     }
 }
 
@@ -66,7 +71,7 @@ void create(const Database& database, const StudyIdentity& identity,
             const std::vector<StudyFigure>& figures) {
     const std::string columns = fmt::format(
         "(k INTEGER PRIMARY KEY, outcome INTEGER NOT NULL, method INTEGER NOT NULL, reason TEXT, "
-        "{})",
+        "{}, checksum TEXT NOT NULL)",
         listed_figures(figures.size(), "f{} REAL"));
     database.run("BEGIN");
     database.run("CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT)");
@@ -106,37 +111,58 @@ void create(const Database& database, const StudyIdentity& identity,
     database.run("COMMIT");
 }
 
-void bind_row(Statement& insert, std::uint64_t k, int method, const VariantFigures& figures) {
-    insert.bind(1, k);
-    insert.bind(2, static_cast<int>(figures.outcome));
-    insert.bind(3, method);
-    if (figures.reason.empty())
-        insert.bind_nothing(4);
-    else
-        insert.bind(4, figures.reason);
-    for (std::size_t j = 0; j < figures.values.size(); ++j)
-        insert.bind(static_cast<int>(j) + 5, figures.values[j]);
-}
+enum LedgerColumn { at_k, at_outcome, at_method, at_reason, at_figures };
 
-// Of a row k, outcome, reason, figures.
-LedgerRow row_of(const Statement& row, std::size_t figures) {
-    LedgerRow result{.k = row.whole(0), .figures = {}};
-    result.figures.outcome = static_cast<VariantOutcome>(row.whole(1));
-    result.figures.reason = row.text(2);
-    for (std::size_t j = 0; j < figures; ++j)
-        result.figures.values.push_back(row.number(static_cast<int>(j) + 3));
-    return result;
-}
-
+// What the checksum of a row and the hash of the content are made of.
 void append_bytes(std::string& bytes, const LedgerRow& row) {
     const auto add = [&](const auto& value) {
         bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
     add(row.k), add(static_cast<std::int32_t>(row.figures.outcome));
+    add(static_cast<std::int32_t>(row.figures.leg));
     bytes += row.figures.reason;
     bytes += '\0';
     for (const double value : row.figures.values)
         std::isnan(value) ? add(std::uint64_t{0x7ff8} << 48) : add(value);
+}
+std::string checksum(const LedgerRow& row) {
+    std::string bytes;
+    append_bytes(bytes, row);
+    return input_hash(bytes);
+}
+
+void bind_row(Statement& insert, const LedgerRow& row) {
+    const VariantFigures& figures = row.figures;
+    insert.bind(1 + at_k, row.k);
+    insert.bind(1 + at_outcome, static_cast<int>(figures.outcome));
+    insert.bind(1 + at_method,
+                figures.leg == compare::Leg::series ? method_series : method_equilibrium);
+    if (figures.reason.empty())
+        insert.bind_nothing(1 + at_reason);
+    else
+        insert.bind(1 + at_reason, figures.reason);
+    int at = 1 + at_figures;
+    for (const double value : figures.values) insert.bind(at++, value);
+    insert.bind(at, checksum(row));
+}
+
+// Of a row as Ledger::State::selected().
+LedgerRow row_of(const Statement& row, std::size_t figures, const Database& database) {
+    LedgerRow result{.k = row.whole(at_k), .figures = {}};
+    const std::uint64_t outcome = row.whole(at_outcome), method = row.whole(at_method);
+    result.figures.outcome = static_cast<VariantOutcome>(outcome);
+    result.figures.leg = method == method_series ? compare::Leg::series : compare::Leg::equilibrium;
+    result.figures.reason = row.text(at_reason);
+    int at = at_figures;
+    for (; at < at_figures + static_cast<int>(figures); ++at)
+        result.figures.values.push_back(row.number(at));
+    if (outcome >= compare::variants::variant_outcomes || method > method_equilibrium ||
+        row.text(at) != checksum(result))
+        throw FileError(fmt::format(
+            "{}: row {}: its content is not that of its checksum: the file is damaged or was "
+            "edited; `sqlite3 FILE 'DELETE FROM variants WHERE k = {}'` has it computed again",
+            database.file().string(), result.k, result.k));
+    return result;
 }
 
 }  // namespace
@@ -150,12 +176,18 @@ struct Ledger::State {
     std::size_t figures;
     StudyIdentity identity;
 
-    std::string selected() const { return "SELECT k, outcome, reason, " + listed_figures(figures); }
+    // The rows of a table of which the condition holds, in their order.
+    Statement rows(const char* table, const std::string& where) const {
+        return {database, fmt::format("SELECT k, outcome, method, reason, {}, checksum FROM {} "
+                                      "WHERE {} ORDER BY k",
+                                      listed_figures(figures), table, where)};
+    }
+    LedgerRow row(const Statement& statement) const { return row_of(statement, figures, database); }
 };
 
 Ledger::Ledger(const std::filesystem::path& file, const StudyIdentity& identity,
                const std::vector<StudyFigure>& figures, Access access) {
-    if (access == Access::read && !std::filesystem::exists(file))
+    if (access != Access::write && !std::filesystem::exists(file))
         throw FileError(file.string() + ": no such ledger; nothing has been computed");
     state_ = std::make_unique<State>(
         file, figures.size(), identity,
@@ -167,7 +199,9 @@ Ledger::Ledger(const std::filesystem::path& file, const StudyIdentity& identity,
         is_empty = tables.step() && tables.whole(0) == 0;
     }
     if (access == Access::write && is_empty) create(database, identity, figures);
-    check_identity(database, identity);
+    check_identity(database, identity, access);
+    for (const char* table : {"variants", "witnesses"})
+        for (Statement found = state_->rows(table, "true"); found.step();) (void)state_->row(found);
 }
 Ledger::~Ledger() = default;
 
@@ -176,16 +210,16 @@ const std::filesystem::path& Ledger::file() const { return state_->database.file
 void Ledger::add(std::span<const LedgerRow> rows) {
     const Database& database = state_->database;
     const std::string values =
-        fmt::format(" VALUES (?, ?, ?, ?, {})", listed_figures(state_->figures, "?"));
+        fmt::format(" VALUES (?, ?, ?, ?, {}, ?)", listed_figures(state_->figures, "?"));
     database.run("BEGIN IMMEDIATE");
     {
         Statement variant(database, "INSERT INTO variants" + values);
         Statement witness(database, "INSERT INTO witnesses" + values);
         for (const LedgerRow& row : rows) {
-            bind_row(variant, row.k, method_series, row.figures);
+            bind_row(variant, row);
             variant.execute();
             for (const VariantFigures& reference : row.witness) {
-                bind_row(witness, row.k, method_equilibrium, reference);
+                bind_row(witness, {row.k, reference});
                 witness.execute();
             }
         }
@@ -193,62 +227,23 @@ void Ledger::add(std::span<const LedgerRow> rows) {
     database.run("COMMIT");
 }
 
-std::set<std::string> Ledger::versions() const {
-    Statement found(state_->database, "SELECT value FROM meta WHERE key LIKE 'version%'");
-    std::set<std::string> versions;
-    while (found.step()) versions.insert(found.text(0));
-    return versions;
-}
-
-void Ledger::add_version(const std::string& version) {
-    if (versions().contains(version)) return;
-    Statement insert(state_->database, "INSERT INTO meta VALUES ('version ' || ?1, ?1)");
-    insert.bind(1, version);
-    insert.execute();
-}
-
-std::vector<LedgerRow> Ledger::sample(std::uint64_t most) const {
-    Statement found(
-        state_->database,
-        fmt::format(
-            "{0} FROM (SELECT *, row_number() OVER (ORDER BY k) - 1 AS place FROM variants) "
-            "WHERE place % (SELECT 1 + count(*) / ? FROM variants) = 0",
-            state_->selected()));
-    found.bind(1, most);
-    std::vector<LedgerRow> rows;
-    while (found.step()) rows.push_back(row_of(found, state_->figures));
-    return rows;
-}
-
-void Ledger::merge(const std::filesystem::path& other) {
+void Ledger::merge(const Ledger& other) {
     const Database& database = state_->database;
-    {
-        if (!std::filesystem::exists(other)) throw FileError(other.string() + ": no such ledger");
-        const Database checked(other, Database::Access::existing);
-        check_identity(checked, state_->identity);
-    }
     Statement attach(database, "ATTACH ? AS other");
-    attach.bind(1, other.string());
+    attach.bind(1, other.file().string());
     attach.execute();
     for (const char* table : {"variants", "witnesses"}) {
-        std::string differs = "o.outcome IS NOT m.outcome OR o.reason IS NOT m.reason";
-        for (std::size_t j = 1; j <= state_->figures; ++j)
-            differs += fmt::format(" OR o.f{0} IS NOT m.f{0}", j);
-        Statement conflict(database,
-                           fmt::format("SELECT k FROM other.{0} o JOIN main.{0} m USING (k) WHERE "
-                                       "{1} LIMIT 1",
-                                       table, differs));
+        Statement conflict(database, fmt::format("SELECT k FROM other.{0} o JOIN main.{0} m USING "
+                                                 "(k) WHERE o.checksum != m.checksum LIMIT 1",
+                                                 table));
         if (conflict.step())
             throw FileError(fmt::format("{}: variant {} has other values than in {}",
-                                        other.string(), conflict.whole(0),
+                                        other.file().string(), conflict.whole(0),
                                         database.file().string()));
     }
     database.run("BEGIN IMMEDIATE");
     for (const char* table : {"variants", "witnesses"})
         database.run(fmt::format("INSERT OR IGNORE INTO main.{0} SELECT * FROM other.{0}", table));
-    database.run(
-        "INSERT OR IGNORE INTO main.meta SELECT 'version ' || value, value FROM other.meta "
-        "WHERE key LIKE 'version%' AND value NOT IN (SELECT value FROM main.meta)");
     database.run("COMMIT");
     database.run("DETACH other");
 }
@@ -274,11 +269,13 @@ LedgerSummary Ledger::summary(std::uint64_t count) const {
     LedgerSummary summary{.by_outcome =
                               std::vector<std::uint64_t>(compare::variants::variant_outcomes, 0)};
     Statement found(state_->database,
-                    "SELECT outcome, count(*) FROM variants WHERE k < ? GROUP BY outcome");
+                    "SELECT outcome, count(*), total(method) FROM variants WHERE k < ? GROUP BY "
+                    "outcome");
     found.bind(1, count);
     while (found.step()) {
         summary.by_outcome.at(found.whole(0)) = found.whole(1);
         summary.rows += found.whole(1);
+        summary.by_equilibrium += static_cast<std::uint64_t>(found.number(2));
     }
     return summary;
 }
@@ -318,54 +315,28 @@ std::vector<WitnessDifference> Ledger::witnesses(std::uint64_t count) const {
 }
 
 std::vector<LedgerRow> Ledger::failed(std::uint64_t count, std::size_t most) const {
-    Statement found(
-        state_->database,
-        state_->selected() + " FROM variants WHERE outcome != 0 AND k < ? ORDER BY k LIMIT ?");
-    found.bind(1, count), found.bind(2, static_cast<std::uint64_t>(most));
+    Statement found = state_->rows("variants", "outcome != 0 AND k < ?");
+    found.bind(1, count);
     std::vector<LedgerRow> rows;
-    while (found.step()) rows.push_back(row_of(found, state_->figures));
+    while (rows.size() < most && found.step()) rows.push_back(state_->row(found));
     return rows;
 }
 
-namespace {
-const char* table_of(Ledger::Rows which) {
-    return which == Ledger::Rows::variants ? "variants" : "witnesses";
-}
-}  // namespace
-
-void Ledger::each_row(Rows which, std::uint64_t first, std::uint64_t end,
+void Ledger::each_row(std::uint64_t count,
                       const std::function<void(const LedgerRow&)>& visit) const {
-    Statement found(state_->database, fmt::format("{} FROM {} WHERE k >= ? AND k < ? ORDER BY k",
-                                                  state_->selected(), table_of(which)));
-    found.bind(1, first), found.bind(2, end);
-    while (found.step()) visit(row_of(found, state_->figures));
-}
-
-std::uint64_t Ledger::size(Rows which, std::uint64_t count) const {
-    Statement found(state_->database,
-                    fmt::format("SELECT count(*) FROM {} WHERE k < ?", table_of(which)));
+    Statement found = state_->rows("variants", "k < ?");
     found.bind(1, count);
-    return found.step() ? found.whole(0) : 0;
-}
-
-std::uint64_t Ledger::longest_reason(Rows which, std::uint64_t count) const {
-    Statement found(
-        state_->database,
-        fmt::format("SELECT coalesce(max(length(CAST(reason AS BLOB))), 0) FROM {} WHERE k < ?",
-                    table_of(which)));
-    found.bind(1, count);
-    return found.step() ? found.whole(0) : 0;
+    while (found.step()) visit(state_->row(found));
 }
 
 std::string Ledger::content_hash(std::uint64_t count) const {
     constexpr std::size_t at_once = std::size_t{1} << 20;
     std::string bytes;
     for (const char* table : {"variants", "witnesses"}) {
-        Statement found(state_->database, fmt::format("{} FROM {} WHERE k < ? ORDER BY k",
-                                                      state_->selected(), table));
+        Statement found = state_->rows(table, "k < ?");
         found.bind(1, count);
         while (found.step()) {
-            append_bytes(bytes, row_of(found, state_->figures));
+            append_bytes(bytes, state_->row(found));
             if (bytes.size() > at_once) bytes = input_hash(bytes);
         }
         bytes = input_hash(bytes);
@@ -373,17 +344,13 @@ std::string Ledger::content_hash(std::uint64_t count) const {
     return bytes;
 }
 
-LedgerLock::LedgerLock(const std::filesystem::path& ledger, std::chrono::seconds patience) {
+LedgerLock::LedgerLock(const std::filesystem::path& ledger) {
     // Beside the ledger: SQLite loses its own locks where the file itself is opened once more.
     const std::string file = ledger.string() + ".lock";
-    file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0)
         throw FileError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-    const auto end = std::chrono::steady_clock::now() + patience;
-    do {
-        if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-        std::this_thread::sleep_for(std::chrono::milliseconds(patience.count() > 0 ? 50 : 0));
-    } while (std::chrono::steady_clock::now() < end);
+    if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(file_);
     throw FileError(ledger.string() + ": another process is computing this study here");
 }

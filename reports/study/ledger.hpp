@@ -1,16 +1,15 @@
 // Ledger of a study: one row for every variant that was computed, in a file of SQLite that the
 // program `sqlite3` reads.
 //
-//   variants   k, outcome, method, reason, f1, f2, ...   a figure without a value is NULL
+//   variants   k, outcome, method, reason, f1, f2, ..., checksum   a figure without a value is NULL
 //   witnesses  the same by the reference, of every so many variants
 //   results    a view of `variants` with the names of outcomes and figures
 //   meta, figures, outcomes, methods   what the study is, and what the numbers mean
 //
 // Rows are added in transactions, so that a process that is killed leaves a ledger without the rows
-// of its open transaction.
+// of its open transaction. A row whose checksum is not that of its content is an error.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -26,9 +25,8 @@
 namespace elastocheck::reports {
 
 struct StudyIdentity {
-    std::string scene, study;  // hashes; they have to agree for rows to be of one study
+    std::string scene, study;  // hashes
     std::string version;       // of the program, with its commit
-    bool is_released = true;   // the version says which code it is: no uncommitted change
 };
 
 struct LedgerRow {
@@ -38,7 +36,7 @@ struct LedgerRow {
 };
 
 struct LedgerSummary {
-    std::uint64_t rows = 0;
+    std::uint64_t rows = 0, by_equilibrium = 0;
     std::vector<std::uint64_t> by_outcome;  // per VariantOutcome
 };
 
@@ -52,9 +50,10 @@ struct WitnessDifference {
 
 class Ledger {
   public:
-    enum class Access { write, read };
+    enum class Access { write, merge, read };
     // Opens or, to write, creates it. Throws FileError for a file that is no ledger, a ledger of
-    // another study (what differs is named), and what SQLite reports.
+    // another scene, study or, but to read, version of the program (what differs is named), and what
+    // SQLite reports. Checks every row.
     Ledger(const std::filesystem::path& file, const StudyIdentity& identity,
            const std::vector<compare::variants::StudyFigure>& figures, Access access);
     ~Ledger();
@@ -65,15 +64,9 @@ class Ledger {
 
     // In one transaction.
     void add(std::span<const LedgerRow> rows);
-    // Versions of the program whose rows it has or that have found themselves to give the same.
-    std::set<std::string> versions() const;
-    void add_version(const std::string& version);
-    // Up to `most` rows, evenly spread.
-    std::vector<LedgerRow> sample(std::uint64_t most) const;
-
-    // Rows of another ledger of this study that are not here yet, and its versions. Throws FileError, also for a row
+    // Rows of another ledger of this study that are not here yet. Throws FileError, also for a row
     // that both have with different content.
-    void merge(const std::filesystem::path& other);
+    void merge(const Ledger& other);
 
     // Numbers of rows by k / size, of k below `count`; the variants of the range that have a row.
     std::vector<std::uint64_t> rows_by_batch(std::uint64_t size, std::uint64_t count) const;
@@ -85,12 +78,8 @@ class Ledger {
     std::vector<WitnessDifference> witnesses(std::uint64_t count) const;
     // First failed variants, in their order.
     std::vector<LedgerRow> failed(std::uint64_t count, std::size_t most) const;
-    enum class Rows { variants, witnesses };
     // In their order.
-    void each_row(Rows which, std::uint64_t first, std::uint64_t end,
-                  const std::function<void(const LedgerRow&)>& visit) const;
-    std::uint64_t size(Rows which, std::uint64_t count) const;
-    std::uint64_t longest_reason(Rows which, std::uint64_t count) const;  // [bytes]
+    void each_row(std::uint64_t count, const std::function<void(const LedgerRow&)>& visit) const;
     // Of all rows and witnesses of variants below `count`: equal for equal content.
     std::string content_hash(std::uint64_t count) const;
 
@@ -100,10 +89,10 @@ class Ledger {
 };
 
 // Excludes other processes that would write the same ledger, for its lifetime. Throws FileError
-// where there is one after this time.
+// where there is one.
 class LedgerLock {
   public:
-    explicit LedgerLock(const std::filesystem::path& ledger, std::chrono::seconds patience = {});
+    explicit LedgerLock(const std::filesystem::path& ledger);
     ~LedgerLock();
     LedgerLock(const LedgerLock&) = delete;
     LedgerLock& operator=(const LedgerLock&) = delete;

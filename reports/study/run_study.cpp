@@ -24,10 +24,10 @@ using namespace compare::variants;
 using Eigen::Index;
 
 // The model with these values; without one, the reason.
-std::optional<Model> model_of(const StudyFile& file, const Eigen::VectorXd& values,
-                              VariantFigures& figures) {
+std::optional<Model> model_of(const StudyFile& file, Variants& variants,
+                              const Eigen::VectorXd& values, VariantFigures& figures) {
     try {
-        Scene scene = file.parsed.read(settings_of(file.study, values));
+        const Scene scene = variants.scene(values);
         if (!scene.trim) return compile(scene);
         const compare::Trimmed trimmed = compare::trim(scene);
         if (!trimmed.record || trimmed.record->reached()) return compile(trimmed.scene);
@@ -44,22 +44,19 @@ std::optional<Model> model_of(const StudyFile& file, const Eigen::VectorXd& valu
     return std::nullopt;
 }
 
-std::vector<LedgerRow> solve_rows(const StudyFile& file, const Sampler& sampler,
+std::vector<LedgerRow> solve_rows(const StudyFile& file, Variants& variants, const Sampler& sampler,
                                   const Range& range) {
     const Eigen::MatrixXd values = sampler.values(range.first, range.end - range.first);
     std::vector<LedgerRow> rows;
     std::vector<Model> models;
     std::vector<std::size_t> at;  // row of each model
     for (std::uint64_t k = range.first; k < range.end; ++k) {
-        rows.push_back({.k = k, .figures = {}});
+        LedgerRow& row = rows.emplace_back(LedgerRow{.k = k, .figures = {}});
         auto model =
-            model_of(file, values.row(static_cast<Index>(k - range.first)), rows.back().figures);
-        const bool is_witness =
-            file.study.witness > 0 && k % static_cast<std::uint64_t>(file.study.witness) == 0;
-        if (is_witness)
-            rows.back().witness.push_back(
-                model ? file.solver.solve_alone(*model, compare::Leg::equilibrium)
-                      : rows.back().figures);
+            model_of(file, variants, values.row(static_cast<Index>(k - range.first)), row.figures);
+        if (file.study.witness > 0 && k % static_cast<std::uint64_t>(file.study.witness) == 0)
+            row.witness.push_back(model ? file.solver.solve_alone(*model, compare::Leg::equilibrium)
+                                        : row.figures);
         if (!model) continue;
         models.push_back(std::move(*model));
         at.push_back(rows.size() - 1);
@@ -67,13 +64,6 @@ std::vector<LedgerRow> solve_rows(const StudyFile& file, const Sampler& sampler,
     auto solved = file.solver.solve(models);
     for (std::size_t m = 0; m < models.size(); ++m) rows[at[m]].figures = std::move(solved[m]);
     return rows;
-}
-
-bool is_same(const VariantFigures& a, const VariantFigures& b) {
-    return a.outcome == b.outcome && a.reason == b.reason &&
-           std::ranges::equal(a.values, b.values, [](double x, double y) {
-               return x == y || (std::isnan(x) && std::isnan(y));
-           });
 }
 
 std::int64_t nanoseconds() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
@@ -112,23 +102,22 @@ std::optional<Range> OpenRanges::next(std::uint64_t finished) {
     return ranges_[next_++];
 }
 
-std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& next, int threads) {
+void run_study(const StudyFile& file, Ledger& ledger, OpenRanges& open, int threads) {
     const Sampler sampler(file.study);
     std::atomic<bool> has_failed = false;
-    std::atomic<std::uint64_t> variants = 0;
     std::mutex recording;
     const auto work = [&] {
         std::uint64_t finished = 0;
+        Variants variants(file.parsed, file.study);
         while (!has_failed) {
-            const auto range = next(finished);
+            const auto range = open.next(finished);
             if (!range) return;
-            const auto rows = solve_rows(file, sampler, *range);
+            const auto rows = solve_rows(file, variants, sampler, *range);
             {
                 const std::scoped_lock guard(recording);
                 ledger.add(rows);
             }
             finished = rows.size();
-            variants += finished;
         }
     };
     // A failure of one ends the others after their batches.
@@ -143,38 +132,6 @@ std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& 
     compare::run_jobs(std::vector<compare::Job>(static_cast<std::size_t>(threads),
                                                 compare::Job{"variants", guarded}),
                       threads, {});
-    return variants;
-}
-
-std::vector<VariantFigures> solve_values(const StudyFile& file, const Eigen::MatrixXd& values) {
-    std::vector<VariantFigures> all(static_cast<std::size_t>(values.rows()));
-    std::vector<Model> models;
-    std::vector<std::size_t> at;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        auto model = model_of(file, values.row(static_cast<Index>(i)), all[i]);
-        if (!model) continue;
-        models.push_back(std::move(*model));
-        at.push_back(i);
-    }
-    auto solved = file.solver.solve(models);
-    for (std::size_t m = 0; m < models.size(); ++m) all[at[m]] = std::move(solved[m]);
-    return all;
-}
-
-std::size_t check_version(const StudyFile& file, Ledger& ledger) {
-    constexpr std::uint64_t most = 64;
-    const auto versions = ledger.versions();
-    if (versions.contains(file.identity.version) && file.identity.is_released) return 0;
-    const Sampler sampler(file.study);
-    const auto rows = ledger.sample(most);
-    for (const LedgerRow& row : rows)
-        if (!is_same(solve_rows(file, sampler, {row.k, row.k + 1}).front().figures, row.figures))
-            throw FileError(fmt::format(
-                "{}: variant {} was computed by version {}, and this version, {}, finds another "
-                "result; go on with that version, or begin again in another folder",
-                ledger.file().string(), row.k, fmt::join(versions, " or "), file.identity.version));
-    ledger.add_version(file.identity.version);
-    return versions.contains(file.identity.version) ? 0 : rows.size();
 }
 
 }  // namespace elastocheck::reports

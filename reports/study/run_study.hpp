@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -44,20 +43,8 @@ class OpenRanges {
     std::mutex handing_out_ = {};
 };
 
-// OpenRanges::next, of this process or of another one.
-using NextRange = std::function<std::optional<Range>(std::uint64_t finished)>;
-
 // Solves and records ranges until there is none. Each is one transaction, and its rows do not depend
-// on which others are computed where. Returns the number of variants.
-std::uint64_t run_study(const StudyFile& file, Ledger& ledger, const NextRange& next, int threads);
-
-// Figures of variants with these values [variants × variables], which no ledger records.
-std::vector<compare::variants::VariantFigures> solve_values(const StudyFile& file,
-                                                            const Eigen::MatrixXd& values);
-
-// Adds the version of this program to a ledger that another version has written, once up to 64 of
-// its rows, evenly spread, have been computed again with the same result, bit for bit. Throws
-// FileError where one differs. Returns how many were compared, 0 where the version is known.
-std::size_t check_version(const StudyFile& file, Ledger& ledger);
+// on which others are computed where.
+void run_study(const StudyFile& file, Ledger& ledger, OpenRanges& open, int threads);
 
 }  // namespace elastocheck::reports

@@ -468,6 +468,7 @@ std::vector<double> ends_of(const Distribution& distribution) {
 // That the scene is valid with each variable at its ends, the others as they are written. Tails and
 // combinations are left to the variants that draw them.
 void check_ends(const Study& study, const reader::ParsedScene& parsed, const Cursor& variables) {
+    Variants variants(parsed, study);
     Eigen::VectorXd x(static_cast<Index>(study.variables.size()));
     for (std::size_t j = 0; j < study.variables.size(); ++j)
         x[static_cast<Index>(j)] = study.variables[j].nominal;
@@ -476,7 +477,7 @@ void check_ends(const Study& study, const reader::ParsedScene& parsed, const Cur
             Eigen::VectorXd at = x;
             at[static_cast<Index>(j)] = end;
             try {
-                parsed.read(settings_of(study, at));
+                variants.scene(at);
             } catch (const SceneError& error) {
                 variables.require(study.variables[j].name)
                     .fail(fmt::format("{:g} can be drawn, and with it the scene is invalid: {}",
@@ -590,8 +591,7 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
         .scene = input_hash(text + std::string(reinterpret_cast<const char*>(numbers.data()),
                                                numbers.size() * sizeof(double))),
         .study = input_hash(essence(reading.study)),
-        .version = made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : ""),
-        .is_released = !made.dirty && made.commit != "unknown"};
+        .version = made.version + " " + made.commit.substr(0, 12) + (made.dirty ? " changed" : "")};
     return {file,
             std::move(reading.study),
             scene_file.string(),
@@ -602,16 +602,29 @@ StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count
             std::move(warnings)};
 }
 
-std::vector<Setting> settings_of(const Study& study, const Eigen::VectorXd& values) {
-    std::vector<Setting> settings;
-    for (std::size_t j = 0; j < study.variables.size(); ++j) {
-        const Variable& variable = study.variables[j];
-        const double x = values[static_cast<Index>(j)];
-        if (variable.scaled.empty()) settings.push_back(setting(variable.name, x));
-        for (const Scaled& scaled : variable.scaled)
-            settings.push_back(setting(scaled.path, x * scaled.nominal));
+namespace {
+std::vector<std::string> numbers_of(const Study& study) {
+    std::vector<std::string> paths;
+    for (const Variable& variable : study.variables) {
+        if (variable.scaled.empty()) paths.push_back(variable.name);
+        for (const Scaled& scaled : variable.scaled) paths.push_back(scaled.path);
     }
-    return settings;
+    return paths;
+}
+}  // namespace
+
+Variants::Variants(const reader::ParsedScene& scene, const Study& study)
+    : study_(study), scene_(scene, numbers_of(study)) {}
+
+Scene Variants::scene(const Eigen::VectorXd& values) {
+    numbers_.clear();
+    for (std::size_t j = 0; j < study_.variables.size(); ++j) {
+        const Variable& variable = study_.variables[j];
+        const double x = values[static_cast<Index>(j)];
+        if (variable.scaled.empty()) numbers_.push_back(x);
+        for (const Scaled& scaled : variable.scaled) numbers_.push_back(x * scaled.nominal);
+    }
+    return scene_.read(numbers_);
 }
 
 }  // namespace elastocheck::reports

@@ -30,8 +30,17 @@ struct StudyFile {
 // scene's trim is not reached or the program was built without OpenTURNS.
 StudyFile read_study(const std::string& file, std::optional<std::uint64_t> count);
 
-// The scene's numbers of one variant.
-std::vector<Setting> settings_of(const compare::variants::Study& study,
-                                 const Eigen::VectorXd& values);
+// The scene with the numbers of one variant after the other. Not thread-safe.
+class Variants {
+  public:
+    Variants(const reader::ParsedScene& scene, const compare::variants::Study& study);
+    // Throws SceneError.
+    Scene scene(const Eigen::VectorXd& values);
+
+  private:
+    const compare::variants::Study& study_;
+    reader::VariedScene scene_;
+    std::vector<double> numbers_ = {};
+};
 
 }  // namespace elastocheck::reports

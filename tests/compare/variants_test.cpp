@@ -366,6 +366,21 @@ TEST(VariantSolver, SaysWhyABranchEndsAndLeavesTheOtherFigures) {
     EXPECT_EQ(found[0].values, found[2].values) << "beside a variant that ends";
 }
 
+// A chain of bushings of 46 to 3e8 N/mm, on which series gives up.
+TEST(VariantSolver, FallsBackToTheEquilibriumLegWhereSeriesDeclines) {
+    const Model design = compile(
+        read_scene(ELASTOCHECK_SCENES "/../../tests/compare/scenes/stiff_beside_soft.yaml"));
+    const VariantSolver solver(design, {figure_at("tip_z", "pull", 152.4)});
+    EXPECT_EQ(solver.solve_alone(design, Leg::series).outcome, VariantOutcome::ended_early);
+    const VariantFigures found = solver.solve(std::vector{design}).front();
+    EXPECT_EQ(found.outcome, VariantOutcome::solved) << found.reason;
+    EXPECT_EQ(found.leg, Leg::equilibrium);
+    EXPECT_NE(found.reason.find("by the equilibrium leg, since series: branch 'pull': "),
+              std::string::npos)
+        << found.reason;
+    EXPECT_EQ(found.values, solver.solve_alone(design, Leg::equilibrium).values);
+}
+
 TEST(VariantSolver, RefusesWhatTheModelHasNot) {
     const Model design = compile(read_scene(ELASTOCHECK_SCENES "/mcpherson.yaml"));
     const auto make = [&](const StudyFigure& figure) { return VariantSolver(design, {figure}); };

@@ -282,5 +282,42 @@ TEST(GateCommand, OneBadSceneDoesNotHideTheOthers) {
     expect_said(gate(bad + " " + good), 2, {.out = {"bad.yaml: BAD INPUT", "good.yaml: passed"}});
 }
 
+// An edited baseline against a solution.
+struct Solved : Folder {
+    explicit Solved(const BaselineText& baseline) {
+        std::filesystem::create_directory(path / "curves");
+        write("single_bushing.json", baseline.review);
+        write("curves/single_bushing.json", baseline.curves);
+    }
+    Said gate() const { return elastocheck::gate(scene + " --quiet --baseline " + path.string()); }
+};
+
+TEST(GateCommand, NamesTolerancesWiderThanThoseOfTheClassInItsFirstLine) {
+    EXPECT_EQ(Solved(reports::baseline_text(as_committed)).gate().out.find("wider"),
+              std::string::npos);
+    const Said said = Solved(edited([](BaselineFile& file) {
+                          for (auto& [kind, tolerances] : file.baseline.tolerances)
+                              tolerances.at("mm").atol = tolerances.at("deg").rtol = 1e9;
+                      })).gate();
+    expect_said(said, 0);
+    EXPECT_TRUE(contains(said.out.substr(0, said.out.find('\n')),
+                         ", with tolerances wider than those of the class: deg: rtol 1e+09, mm: "
+                         "atol 1e+09"))
+        << said.out;
+}
+
+TEST(GateCommand, RefusesALimitWithMinAboveMaxWithItsLine) {
+    const BaselineText text = edited([](BaselineFile& file) {
+        file.baseline.limits = {
+            {.of = Quantity::equilibrium, .channel = "a", .max = 1, .unit = "mm"},
+            {.of = Quantity::equilibrium, .channel = "b", .max = 1, .min = 2, .unit = "mm"}};
+    });
+    const std::string before = text.review.substr(0, text.review.find("\"b\""));
+    expect_said(
+        Solved(text).gate(), 2,
+        {.out = {"single_bushing.json:" + std::to_string(1 + std::ranges::count(before, '\n')) +
+                 ": limits.2: min 2 is above max 1"}});
+}
+
 }  // namespace
 }  // namespace elastocheck

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -162,6 +163,15 @@ TEST(CandidateCommand, WhatCannotBeRightIsRefusedBeforeTheWork) {
         {"--candidate-command 'true {output}' --tolerance 1kg", "is not a unit"},
         {"--candidate nowhere.csv", "nowhere.csv"}};
     for (const auto& [how, what] : cases) expect_said(judge(how), 2, {.err = {what}});
+}
+
+// A pipe that nobody writes to would be waited for.
+TEST(CandidateCommand, APipeIsRefused) {
+    const Folder folder;
+    const std::string pipe = (folder.path / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    expect_said(judge("--candidate " + pipe), 2,
+                {.err = {pipe + ": is a pipe; a candidate is a regular file"}});
 }
 
 TEST(CandidateCommand, WordsOfACommandAreParted) {

@@ -1,4 +1,4 @@
-// What a study leaves besides its ledger: the page, HDF5 and its readers; rare failures.
+// What a study leaves besides its ledger: the page, the rows as CSV.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,66 +43,28 @@ figures: {height: centre_z@up:3000}
     EXPECT_EQ(text_of(path / "mine" / "study.html"), "<!DOCTYPE html><html>mine");
 }
 
-// ---- HDF5, and python3-openturns on the exported sample
+// ---- python3-openturns on the exported sample
 
 struct StudyPython : StudyCommand {
     void SetUp() override {
         StudyCommand::SetUp();
-        if (!has_hdf5) GTEST_SKIP() << "libhdf5-dev is not installed";
-        if (python("import h5py, pandas, openturns").code != 0)
-            GTEST_SKIP() << "python3-h5py, python3-pandas or python3-openturns is not installed";
+        if (python("import pandas, openturns").code != 0)
+            GTEST_SKIP() << "python3-pandas or python3-openturns is not installed";
     }
-    static constexpr bool has_hdf5 = ELASTOCHECK_HAS_HDF5;
     Said python(const std::string& program) const {
         const_cast<StudyPython*>(this)->write("program.py", program);
         return support::says("cd " + path.string() + " && /usr/bin/python3 program.py");
     }
 };
 
-TEST_F(StudyPython, ReadsTheRowsOfTheCsv) {
-    study(R"(elastocheck_study: 1
-scene: parallel_springs.yaml
-variables:
-  springs.first.rate: {normal: {mean: 10, sd: 15}}
-  factor: {scale: springs.second.rate, normal: {sd: 0.1}}
-design: {kind: sobol, count: 400, seed: 1}
-figures: {height: centre_z@up:3000, low: min centre_z@down}
-witness: 50
-)",
-          "-o out --csv rows.csv --hdf5 rows.h5");
-    expect_said(python(R"(
-import h5py, numpy, pandas
-file = h5py.File("rows.h5")
-assert file.attrs["schema"] == b"elastocheck/variants/1", file.attrs["schema"]
-frame = pandas.DataFrame(file["variants"][:])
-rows = pandas.read_csv("rows.csv", float_precision="round_trip")
-assert list(frame.columns) == list(rows.columns), frame.columns
-assert len(frame) == 400
-assert (frame["outcome"].str.decode("utf-8") == rows["outcome"]).all()
-assert (frame["reason"].str.decode("utf-8") == rows["reason"].fillna("")).all()
-assert (rows["outcome"] == "no scene").any(), rows["outcome"].value_counts()
-for name in rows.columns[3:]:
-    assert numpy.array_equal(frame[name], rows[name], equal_nan=True), name
-witnesses = file["witnesses"][:]
-assert list(witnesses["variant"]) == list(range(0, 400, 50))
-assert numpy.nanmax(abs(witnesses["height [mm]"] - frame["height [mm]"][::50])) < 1e-9
-print("same", file.attrs["content"].decode())
-)"),
-                0, {.out = {"same " + content(run("-o out --show"))}});
-    write("rows.h5", "text");
-    expect_said(run("-o out --hdf5 rows.h5"), 2, {.err = {"rows.h5: "}});
-    EXPECT_EQ(text_of(path / "rows.h5"), "text");
-    expect_said(run("-o out --show --hdf5 nowhere/rows.h5"), 2, {.err = {"nowhere/rows.h5: "}});
-}
-
 // The same estimators on the exported rows, and that the variables are a design for them.
 TEST_F(StudyPython, FindsTheSameSobolIndices) {
-    study(replaced(linear, "seed: 3", "seed: 3, indices: true"), "-o out --hdf5 rows.h5");
+    study(replaced(linear, "seed: 3", "seed: 3, indices: true"), "-o out --csv rows.csv");
     expect_said(python(R"(
-import h5py, json, numpy, openturns
-rows = h5py.File("rows.h5")["variants"][:]
+import json, numpy, openturns, pandas
+rows = {n: c.to_numpy() for n, c in pandas.read_csv("rows.csv", float_precision="round_trip").items()}
 names = ["springs.first.preload [N]", "static_loads.weight.force.z [N]"]
-d, blocks = len(names), len(rows) // 4
+d, blocks = len(names), len(rows["variant"]) // 4
 x = numpy.stack([rows[n] for n in names], 1)[:4 * blocks].reshape(blocks, d + 2, d)
 y = rows["height [mm]"][:4 * blocks].reshape(blocks, d + 2)
 for j in range(d):
@@ -127,74 +89,6 @@ for j, normal in enumerate((openturns.Normal(600, 20), openturns.Normal(-1500, 3
 print("same")
 )"),
                 0, {.out = {"same"}});
-}
-
-// ---- Rare failures
-
-double rare_cell(const json& statistics, const std::string& name, std::size_t row = 0) {
-    return cell(statistics["rare"], row, name);
-}
-
-// The height is normal: 420 mm, sd = √(20² + 30²) / 75.
-TEST_F(StudyCommand, FindsTheFailureShareOfALinearSuspension) {
-    const double sd = std::hypot(20, 30) / 75;
-    for (const double beta : {1.5, 4.2649, 6.0}) {
-        expect_said(study(replaced(linear, "max: 420.8", "max: " + std::to_string(420 + beta * sd)),
-                          "-o out --count 256 --rare"),
-                    0, {.out = {"Rare failures"}});
-        const json found = statistics();
-        const double share = 0.5 * std::erfc(beta / std::sqrt(2.0));
-        EXPECT_NEAR(rare_cell(found, "beta"), beta, 1e-4);
-        EXPECT_NEAR(rare_cell(found, "FORM"), share, 2e-3 * share);
-        EXPECT_NEAR(rare_cell(found, "probability"), share, 0.08 * share);
-        EXPECT_LT(rare_cell(found, "low"), share * 1.02);
-        EXPECT_GT(rare_cell(found, "high"), share / 1.02);
-        EXPECT_LT(rare_cell(found, "variants"), 21000);
-    }
-}
-
-// Height = 400 + (3000 + P₁ - 600) / (k₁ + k₂), with a uniform preload: both limits against counting.
-TEST_F(StudyCommand, FindsTheFailureShareOfACurvedCaseAsCountingDoes) {
-    const std::string curved = R"(elastocheck_study: 1
-scene: parallel_springs.yaml
-variables:
-  springs.first.rate: {normal: {sd: 3}}
-  springs.second.rate: {normal: {sd: 4}}
-  springs.first.preload: {uniform: {half_width: 60}}
-design: {kind: monte_carlo, count: 20000, seed: 1}
-figures: {height: centre_z@up:3000}
-limits: {height: {min: 433, max: 447}}
-)";
-    expect_said(study(curved, "-o out --rare"), 0);
-    const json found = statistics();
-    const double counted = cell(found["figures"], 0, "outside low"),
-                 counted_high = cell(found["figures"], 0, "outside high");
-    const double both = rare_cell(found, "probability", 0) + rare_cell(found, "probability", 1);
-    EXPECT_GT(both, counted);
-    EXPECT_LT(both, counted_high);
-}
-
-TEST_F(StudyCommand, SaysWhyARareFailureIsNotFound) {
-    expect_said(study(replaced(linear, "limits:\n  height: {max: 420.8}\n", ""),
-                      "-o out --count 10 --rare"),
-                2, {.err = {"--rare needs limits, and the study has none"}});
-    expect_said(study(replaced(linear, "{normal: {sd: 20}}", "{list: [600, 620]}"),
-                      "-o lists --count 10 --rare"),
-                2, {.err = {"--rare needs continuous distributions, and 'springs.first.preload'"}});
-    const Said beyond =
-        study(replaced(linear, "max: 420.8", "max: 419"), "-o beyond --count 10 --rare");
-    expect_said(beyond, 3, {.out = {"the design is beyond this limit"}});
-    // a negative rate is no scene
-    expect_said(study(R"(elastocheck_study: 1
-scene: parallel_springs.yaml
-variables:
-  springs.first.rate: {normal: {sd: 30}}
-design: {kind: monte_carlo, count: 64, seed: 1}
-figures: {height: centre_z@up:3000}
-limits: {height: {max: 600}}
-)",
-                      "-o none --rare"),
-                3, {.out = {"a variant has no value: "}});
 }
 
 }  // namespace

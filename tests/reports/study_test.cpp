@@ -211,11 +211,10 @@ TEST_F(StudyCommand, HasOneContentOnAnyThreadsAndInShards) {
     for (const char* k : {"1", "2"})
         expect_said(run("-o parts --shard " + std::string(k) + "/3"), 0,
                     {.out = {std::string("Shard ") + k + "/3"}});
-    expect_said(
-        run("-o parts --merge parts/ledger-1-of-3.sqlite --merge parts/ledger-2-of-3.sqlite"), 3,
-        {.err = {"256 variants are missing: 256 of 512 to 767\n"}});
+    expect_said(run("-o parts --merge parts"), 3,
+                {.err = {"256 variants are missing: 256 of 512 to 767\n"}});
     expect_said(run("-o elsewhere --shard 3/3"), 0);
-    EXPECT_EQ(content(run("-o parts --merge elsewhere/ledger-3-of-3.sqlite")), one);
+    EXPECT_EQ(content(run("-o whole --merge parts elsewhere")), one);
 }
 
 // Killed when it has recorded some variants and computes others, then finished by the same command.
@@ -273,11 +272,13 @@ TEST_F(StudyCommand, RefusesLedgersOfOtherStudies) {
     write("study.yaml", linear);
     const std::string scene = text_of(path / "parallel_springs.yaml");
     write("parallel_springs.yaml", replaced(scene, "rate: 45", "rate: 46"));
-    expect_said(run("-o second --count 300 --merge first/ledger.sqlite"), 2,
-                {.err = {"first/ledger.sqlite: is of another scene"}});
+    fs::rename(path / "first" / "ledger.sqlite", path / "first" / "ledger-1-of-1.sqlite");
+    expect_said(run("-o second --count 300 --merge first"), 2,
+                {.err = {"first/ledger-1-of-1.sqlite: is of another scene"}});
     write("parallel_springs.yaml", scene);
-    write("text.sqlite", "no ledger");
-    expect_said(run("-o third --count 300 --merge text.sqlite"), 2, {.err = {"text.sqlite: "}});
+    write("first/ledger-1-of-1.sqlite", "no ledger");
+    expect_said(run("-o third --count 300 --merge first"), 2, {.err = {"ledger-1-of-1.sqlite: "}});
+    expect_said(run("-o third --count 300 --merge nowhere"), 2, {.err = {"nowhere: "}});
 }
 
 TEST_F(StudyCommand, TwoProcessesDoNotWriteOneLedger) {
@@ -288,35 +289,105 @@ TEST_F(StudyCommand, TwoProcessesDoNotWriteOneLedger) {
                 2, {.err = {"another process is computing this study here"}});
 }
 
-// Rows that another version of the program has written are computed again, a sample of them.
-TEST_F(StudyCommand, GoesOnWithTheLedgerOfAVersionWithTheSameNumbers) {
-    const auto as_if_by_another_version = [&] {
-        Database(path / "out" / "ledger.sqlite", Database::Access::existing)
-            .run(
-                "DELETE FROM meta WHERE key LIKE 'version %';"
-                "UPDATE meta SET value = '0.0.1 abc' WHERE key = 'version'");
-    };
-    study(mcpherson, "-o out --count 300");
-    as_if_by_another_version();
-    expect_said(run("-o out --count 300 --show"), 0);
-    expect_said(run("-o out --count 400"), 0,
-                {.err = {"out/ledger.sqlite: 60 of its variants, computed again by version ",
-                         "have the values of version 0.0.1 abc", "100 variants computed"}});
-    const Said again = run("-o out --count 400");
-    EXPECT_EQ(again.err.find("computed again"), std::string::npos) << again.err;
-    EXPECT_EQ(content(again), content(run("-o whole --count 400")));
+// ---- A damaged ledger
 
-    as_if_by_another_version();
-    expect_said(run("-o merged --count 400 --merge out/ledger.sqlite"), 0,
-                {.err = {"have the values of version 0.0.1 abc"}});
+TEST_F(StudyCommand, RefusesADamagedRowByItsNumber) {
+    study(linear, "-o out --count 40");
+    const fs::path ledger = path / "out" / "ledger.sqlite";
+    const std::string good = text_of(ledger);
+    for (const auto& [change, says] : {
+             std::pair("variants SET f1 = f1 + 1e-12 WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET reason = 'x' WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET outcome = 99 WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET method = 1 WHERE k = 17", "row 17: its content is not"),
+             std::pair("variants SET k = 99 WHERE k = 17", "row 99: its content is not"),
+             std::pair("witnesses SET f1 = 1 WHERE k = 0", "row 0: its content is not"),
+             std::pair("variants SET f1 = 'abc' WHERE k = 17",
+                       "row 17: f1 is 'abc'; expected a "
+                       "number"),
+         }) {
+        write("out/ledger.sqlite", good);
+        Database(ledger, Database::Access::existing).run(std::string("UPDATE ") + change);
+        for (const char* options : {"-o out --count 40 --show", "-o out --count 50"})
+            expect_said(run(options), 2, {.err = {std::string("out/ledger.sqlite: ") + says}});
+    }
+    // As the message says.
+    write("out/ledger.sqlite", good);
+    Database(ledger, Database::Access::existing).run("DELETE FROM variants WHERE k = 17");
+    expect_said(run("-o out --count 40"), 0, {.err = {"1 variants computed"}});
+    EXPECT_EQ(content(run("-o out --count 40")), content(run("-o whole --count 40")));
+}
+
+TEST_F(StudyCommand, FollowsNoLinkToALedger) {
+    study(linear, "-o out --count 40");
+    fs::create_directories(path / "linked");
+    fs::create_symlink(path / "out" / "ledger.sqlite", path / "linked" / "ledger.sqlite");
+    for (const char* options : {"-o linked --count 40 --show", "-o linked --count 50"})
+        expect_said(run(options), 2, {.err = {"linked/ledger.sqlite: is a symbolic link"}});
+}
+
+// Its rows are shown, and no rows are added to them.
+TEST_F(StudyCommand, RefusesToWriteTheLedgerOfAnotherVersion) {
+    study(mcpherson, "-o out --count 300");
     Database(path / "out" / "ledger.sqlite", Database::Access::existing)
-        .run("UPDATE variants SET f1 = f1 + 1e-12");
-    as_if_by_another_version();
-    expect_said(run("-o out --count 400"), 2,
-                {.err = {"variant 0 was computed by version 0.0.1 abc, and this version, ",
-                         "finds another result"}});
-    expect_said(run("-o other --count 400 --merge out/ledger.sqlite"), 2,
-                {.err = {"finds another result"}});
+        .run("UPDATE meta SET value = '0.0.1 abc' WHERE key = 'version'");
+    expect_said(run("-o out --count 300 --show"), 0, {.out = {"300 of 300 variants"}});
+    expect_said(
+        run("-o out --count 400"), 2,
+        {.err = {"out/ledger.sqlite: is of another version of the program: 0.0.1 abc there, "}});
+    fs::rename(path / "out" / "ledger.sqlite", path / "out" / "ledger-1-of-1.sqlite");
+    expect_said(run("-o other --count 400 --merge out"), 2,
+                {.err = {"out/ledger-1-of-1.sqlite: is of another version of the program"}});
+}
+
+// ---- An array of jobs
+
+// Each job computes a shard, one is killed and goes on as a job of its own number.
+TEST_F(StudyCommand, HasOneContentAsAnArrayOfJobs) {
+    write("study.yaml", mcpherson);
+    const std::string one = content(run("-o one"));
+    const std::string array = "cd " + path.string() +
+                              " && PATH=" + fs::path(ELASTOCHECK_COMMAND).parent_path().string() +
+                              ":$PATH sh " ELASTOCHECK_STUDIES "/study.sbatch study.yaml parts 3";
+    for (const char* k : {"1", "3"})
+        expect_said(support::says("export SLURM_ARRAY_TASK_ID=" + std::string(k) + "; " + array),
+                    0);
+    expect_said(run("-o parts --merge parts"), 3, {.err = {"256 variants are missing"}});
+    expect_said(support::says("export SLURM_ARRAY_TASK_ID=2 SLURM_CPUS_PER_TASK=2; " + array), 0);
+    EXPECT_EQ(content(run("-o parts --merge parts")), one);
+    fs::create_directories(path / "empty");
+    expect_said(run("-o parts --merge empty"), 2,
+                {.err = {"empty: no ledger of a shard, ledger-K-of-N.sqlite, in it"}});
+}
+
+using NightlyStudySlurm = StudyCommand;
+TEST_F(NightlyStudySlurm, HasOneContentAsAnArrayOfJobs) {
+    if (support::says("command -v slurmctld slurmd munged sbatch").code != 0)
+        GTEST_SKIP() << "slurm-wlm or munge is not installed";
+    write("study.yaml", mcpherson);
+    const std::string one = content(run("-o one --count 3000"));
+    write("study.yaml", replaced(mcpherson, "count: 780", "count: 3000"));
+    write("submit.sh",
+          "cd " + path.string() +
+              "\n"
+              "job() { sbatch --parsable \"$@\" " ELASTOCHECK_STUDIES
+              "/study.sbatch study.yaml parts 3; }\n"
+              "first=$(job --array=1-3)\n"
+              "for k in $(seq 600); do [ -s parts/ledger-1-of-3.sqlite ] && break; sleep "
+              "0.05; done\n"
+              "scancel ${first}_1\n"
+              "sbatch --wait --dependency=afterany:$first --wrap true >/dev/null\n"
+              "sbatch --parsable --wait --array=1-3 " ELASTOCHECK_STUDIES
+              "/study.sbatch study.yaml parts 3\n"
+              "cat study-*.log >&2\n");
+    const Said said =
+        support::says("PATH=" + fs::path(ELASTOCHECK_COMMAND).parent_path().string() + ":$PATH " +
+                      ELASTOCHECK_ONE_NODE_SLURM + " " + (path / "slurm").string() + " sh " +
+                      (path / "submit.sh").string());
+    if (said.code == 77) GTEST_SKIP() << "Slurm does not start here: " << said.err;
+    EXPECT_EQ(said.code, 0) << said.err;
+    EXPECT_NE(said.err.find("variants computed"), std::string::npos) << said.err;
+    EXPECT_EQ(content(run("-o parts --merge parts")), one) << said.err;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ std::vector<Term> terms(const Cursor& at, const std::string& what) {
     if (at.value->kind == Value::Kind::map) {
         for (std::size_t k = 0; k < at.value->keys.size(); ++k) {
             const std::string& name = at.value->keys[k];
-            terms.push_back({name, at.at(at.value->items[k], child_path(at.path, name)), true});
+            terms.push_back({name, at.at(at.value->items[k], at.path_of(name)), true});
         }
     } else {
         for (const Cursor& item : at.is_list() ? at.items() : std::vector<Cursor>{at}) {

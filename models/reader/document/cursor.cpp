@@ -38,7 +38,11 @@ void Cursor::fail(const std::string& what) const {
 }
 
 Cursor Cursor::at(const Value& other, const std::string& its_path) const {
-    return {&other, its_path, file, numbers, {}, accesses};
+    return {&other, its_path, file, numbers, {}, accesses, has_path};
+}
+
+std::string Cursor::path_of(std::string_view key) const {
+    return has_path ? child_path(path, key) : std::string();
 }
 
 std::string Cursor::found() const {
@@ -67,8 +71,7 @@ std::optional<Cursor> Cursor::optional(const std::string& key) const {
     if (accesses) accesses->looked_for[value].insert(key);
     const auto found = std::find(value->keys.begin(), value->keys.end(), key);
     if (found == value->keys.end()) return std::nullopt;
-    return at(value->items[static_cast<std::size_t>(found - value->keys.begin())],
-              child_path(path, key));
+    return at(value->items[static_cast<std::size_t>(found - value->keys.begin())], path_of(key));
 }
 
 Cursor Cursor::require(const std::string& key) const {
@@ -88,7 +91,7 @@ std::vector<Cursor::Named> Cursor::entries() const {
                                   "not first, - + . "
                                   "and spaces",
                                   quote(name), longest_name));
-        entries.push_back({name, at(value->items[k], child_path(path, name))});
+        entries.push_back({name, at(value->items[k], path_of(name))});
     }
     return entries;
 }
@@ -98,7 +101,7 @@ std::vector<Cursor> Cursor::items() const {
     std::vector<Cursor> items;
     for (std::size_t k = 0; k < value->items.size(); ++k) {
         items.push_back(at(value->items[k], path));
-        items.back().item = item + '.' + place_in(*value, k);
+        if (has_path) items.back().item = item + '.' + place_in(*value, k);
     }
     return items;
 }
@@ -124,7 +127,8 @@ double Cursor::number(const std::string& unit) const {
     if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     double x = 0;
     const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = read_decimal(digits.data(), end, x);
+    auto [stop, error] = read_decimal(digits.data(), end, x);
+    if (value->number) x = *value->number, stop = end, error = {};
     if (value->kind != Value::Kind::scalar || stop != end || error == std::errc::invalid_argument ||
         std::isnan(x))
         fail(fmt::format("expected a number, found {}", found()));
@@ -145,7 +149,9 @@ int Cursor::whole_number(int least, int most) const {
     const std::string& digits = value->text;
     int n = 0;
     const char* const end = digits.data() + digits.size();
-    const auto [stop, error] = std::from_chars(digits.data(), end, n);
+    auto [stop, error] = std::from_chars(digits.data(), end, n);
+    if (value->number)
+        n = static_cast<int>(*value->number), stop = n == *value->number ? end : nullptr;
     if (value->kind != Value::Kind::scalar || stop != end || error != std::errc() || n < least ||
         n > most)
         fail(fmt::format("expected a whole number from {} to {}, found {}", least, most, found()));

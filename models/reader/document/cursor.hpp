@@ -28,6 +28,7 @@ struct Cursor {
     std::vector<Number>* numbers;  // records every number that is read
     std::string item{};            // place in a list, ".y" or ".4.2": part of a number's path only
     Accesses* accesses = nullptr;  // if not null, records every access
+    bool has_path = true;          // else paths are empty: errors and numbers do not say where
 
     [[noreturn]] void fail(const std::string& what) const;
 
@@ -55,7 +56,8 @@ struct Cursor {
     std::size_t one_of(const std::string& what, const std::vector<std::string>& allowed) const;
 
     Cursor at(const Value& value, const std::string& path) const;  // the same file at another place
-    std::string found() const;  // "'text'", "a list of 3", "a map", "nothing"
+    std::string found() const;                        // "'text'", "a list of 3", "a map", "nothing"
+    std::string path_of(std::string_view key) const;  // of a field
 };
 
 struct Cursor::Named {

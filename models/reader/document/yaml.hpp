@@ -1,6 +1,7 @@
 // Parses YAML text to a tree of values with line numbers, by yaml-cpp.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@ struct Value {
     std::vector<std::string> keys{};  // of a map: one per item, all different
     int line = 1;                     // where it begins; where its key stands, if it has one
     bool is_set = false;              // the value comes from a setting, not from the file
+    std::optional<double> number{};   // a value that is set as a number, without a text
     bool is_string = false;           // of JSON: in quotes, so no number
     // of a scalar in YAML: where its text begins, both from 0, in bytes; -1: not in the file
     int row = -1, column = -1;

@@ -88,6 +88,10 @@ std::vector<CandidateOutput> outputs_of(const CandidateRequest& request, const s
     std::vector<CandidateOutput> list;
     for (const auto& text : request.files) {
         const auto [n, file] = steps_and_file(text);
+        // One without a writer would be waited for; those of a shell, in /dev, have one.
+        std::error_code ignored;
+        if (std::filesystem::is_fifo(file, ignored) && !file.starts_with("/dev/"))
+            throw FileError(file + ": is a pipe; a candidate is a regular file");
         list.push_back({.name = std::filesystem::path(file).stem().string(),
                         .file = file,
                         .steps = n,

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 
 #include "reports/command/delivery.hpp"
@@ -15,25 +14,20 @@
 #include "reports/command/options/running.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/terminal.hpp"
-#include "reports/study/output/hdf5.hpp"
 #include "reports/study/output/study_output.hpp"
 #include "reports/study/output/study_page.hpp"
-#include "reports/study/ranks.hpp"
-#include "reports/study/rare_failures.hpp"
 #include "reports/study/run_study.hpp"
 
 namespace elastocheck::reports {
 namespace {
 
 struct StudyRequest {
-    std::string file, folder, shard, csv, hdf5;
+    std::string file, folder, shard, csv;
     std::vector<std::string> merge;
     int count = 0;
-    bool show = false, rare = false, as_json = false;
+    bool show = false, as_json = false;
     Running running;
 };
-
-constexpr std::uint64_t most_for_rare = 20'000;  // variants, for each limit
 
 constexpr FileKind statistics_file{"statistics of a study", R"({"schema":"elastocheck/study/)"};
 
@@ -74,99 +68,42 @@ StudyFile read(const StudyRequest& request) {
                                         : std::nullopt);
 }
 
-// Ledgers to be merged: a file, or those of all shards in a folder.
-std::vector<std::string> ledgers_of(const std::string& file_or_folder) {
-    if (!std::filesystem::is_directory(file_or_folder)) return {file_or_folder};
+// Those of all shards in a folder.
+std::vector<std::string> ledgers_in(const std::string& folder) {
     std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(file_or_folder))
-        if (const std::string name = entry.path().filename().string();
-            name.starts_with("ledger-") && name.find("-of-") != name.npos &&
-            name.ends_with(".sqlite"))
-            files.push_back(entry.path().string());
+    std::error_code failed;
+    for (auto at = std::filesystem::directory_iterator(folder, failed);
+         !failed && at != std::filesystem::end(at); at.increment(failed))
+        if (const std::string name = at->path().filename().string();
+            name.starts_with("ledger-") && name.ends_with(".sqlite"))
+            files.push_back(at->path().string());
+    if (failed) throw FileError(folder + ": " + failed.message());
     if (files.empty())
-        throw FileError(file_or_folder + ": no ledger of a shard, ledger-K-of-N.sqlite, in it");
+        throw FileError(folder + ": no ledger of a shard, ledger-K-of-N.sqlite, in it");
     std::ranges::sort(files);
     return files;
 }
 
-// A rank is a process of a core, unless more threads are requested.
-int threads_of_rank(const StudyRequest& request) {
-    const int threads = threads_of(request.running);
-    return request.running.jobs > 0 ? threads : 1;
-}
-
-// All ranks but the first, which has checked the study and whose ledger has what they need not
-// compute.
-int assist(const StudyRequest& request, const Ranks& ranks) {
-    hide_progress();
-    ranks.wait_for_first();
-    const std::filesystem::path folder = request.folder, own = ledger_of_rank(folder, ranks.rank());
-    if (!std::filesystem::exists(folder / "ledger.sqlite"))
-        throw FileError(fmt::format(
-            "{}: rank {} does not see the ledger.sqlite of rank 0 in it; the folder has to be on a "
-            "file system that all share",
-            folder.string(), ranks.rank()));
-    const StudyFile file = read(request);
-    std::uint64_t variants = 0;
-    {
-        const LedgerLock lock(own);
-        Ledger ledger(own, file.identity, file.study.figures, Ledger::Access::write);
-        std::mutex asking;  // MPI is called by one thread at a time
-        const auto next = [&](std::uint64_t finished) {
-            const std::scoped_lock guard(asking);
-            return ranks.next(finished);
-        };
-        variants = run_study(file, ledger, next, threads_of_rank(request));
-    }
-    ranks.done(variants);
-    return fine;
-}
-
-// Another version of the program may have written it.
-void accept(const StudyFile& file, Ledger& ledger) {
-    const auto versions = ledger.versions();
-    if (const std::size_t same = check_version(file, ledger); same > 0)
-        print_error(
-            "{}: {} of its variants, computed again by version {}, have the values of version {}\n",
-            ledger.file().string(), same, file.identity.version, fmt::join(versions, ", "));
-}
-
-void compute(const StudyRequest& request, const StudyFile& file, Ledger& ledger, const Shard& shard,
-             std::optional<Ranks>& ranks) {
+void compute(const StudyRequest& request, const StudyFile& file, Ledger& ledger,
+             const Shard& shard) {
     const auto start = std::chrono::steady_clock::now();
     OpenRanges open(ledger, file.study.design.count, shard, progress);
-    const auto next = [&](std::uint64_t finished) { return open.next(finished); };
-    std::string by;
-    if (ranks) {
-        ranks->serve(open);
-        run_study(file, ledger, next, threads_of_rank(request));
-        const auto variants = ranks->wait();
-        gather(file, ledger, request.folder);
-        by = fmt::format(" by {} ranks", variants.size());
-    } else if (open.variants() > 0) {
-        run_study(file, ledger, next, threads_of(request.running));
-    }
+    if (open.variants() == 0) return;
+    run_study(file, ledger, open, threads_of(request.running));
     progress("");
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (open.variants() > 0)
-        print_error("{} variants computed{} in {:.1f} s, {:.0f} per second\n", open.variants(), by,
-                    seconds, static_cast<double>(open.variants()) / seconds);
+    print_error("{} variants computed in {:.1f} s, {:.0f} per second\n", open.variants(), seconds,
+                static_cast<double>(open.variants()) / seconds);
 }
 
-// Exit code 0: every variant has a row; 3: some have none, none is solved, witnesses disagree, or
-// --rare has no result.
+// Exit code 0: every variant has a row; 3: some have none, none is solved, or witnesses disagree.
 int study(const StudyRequest& request, const Delivery& delivery) {
     const Shard shard = parse_shard(request.shard);
     if (request.show && (!request.merge.empty() || !request.shard.empty()))
         throw std::invalid_argument("--show computes nothing: not with --merge or --shard");
     if (!request.shard.empty() && !request.merge.empty())
         throw std::invalid_argument("--merge is for the whole study: not with --shard");
-    std::optional<Ranks> ranks = Ranks::join();
-    if (ranks && ranks->rank() > 0) return assist(request, *ranks);
-    if (ranks && (request.show || !request.shard.empty() || !request.merge.empty()))
-        throw std::invalid_argument(
-            "--show, --shard and --merge are of one process: not with mpirun");
     const StudyFile file = read(request);
     for (const auto& warning : file.warnings) print_error("{} (warning)\n", warning);
     const std::filesystem::path folder = request.folder;
@@ -182,19 +119,10 @@ int study(const StudyRequest& request, const Delivery& delivery) {
     if (!request.show) lock.emplace(ledger_file);
     Ledger ledger(ledger_file, file.identity, file.study.figures,
                   request.show ? Ledger::Access::read : Ledger::Access::write);
-    if (!request.show) {
-        accept(file, ledger);
-        if (request.shard.empty()) gather(file, ledger, folder);
-    }
-    std::vector<std::string> others;
-    for (const std::string& one : request.merge)
-        for (std::string& other : ledgers_of(one)) others.push_back(std::move(other));
-    for (const std::string& other : others) {
-        Ledger added(other, file.identity, file.study.figures, Ledger::Access::read);
-        accept(file, added);
-        ledger.merge(other);
-    }
-    if (!request.show && request.merge.empty()) compute(request, file, ledger, shard, ranks);
+    for (const std::string& shards : request.merge)
+        for (const std::string& other : ledgers_in(shards))
+            ledger.merge({other, file.identity, file.study.figures, Ledger::Access::merge});
+    if (!request.show && request.merge.empty()) compute(request, file, ledger, shard);
     std::vector<std::string> ranges;
     const std::uint64_t open = missing(ledger, file.study.design.count, shard, ranges);
     if (open > 0) print_error("{} variants are missing: {}\n", open, fmt::join(ranges, ", "));
@@ -202,21 +130,13 @@ int study(const StudyRequest& request, const Delivery& delivery) {
         write_study_csv(file, ledger, request.csv);
         print_error("Written: {}\n", request.csv);
     }
-    if (!request.hdf5.empty()) {
-        write_study_hdf5(file, ledger, ledger.content_hash(file.study.design.count), request.hdf5);
-        print_error("Written: {}\n", request.hdf5);
-    }
     if (!request.shard.empty()) {
         delivery.print_text(fmt::format("Shard {}/{}: {} variants in {}\n", shard.at, shard.of,
                                         ledger.summary(file.study.design.count).rows,
                                         ledger_file.string()));
         return open > 0 ? could_not_judge : fine;
     }
-    StudyResult result = evaluate_study(file, ledger);
-    if (request.rare) {
-        result.rare = rare_failures(file, most_for_rare, progress);
-        progress("");
-    }
+    const StudyResult result = evaluate_study(file, ledger);
     auto document = document_head(study_schema, delivery.command);
     document.update(study_json(file, result));
     if (!request.show) {
@@ -228,12 +148,8 @@ int study(const StudyRequest& request, const Delivery& delivery) {
     delivery.print_text(study_text(file, result));
     if (delivery.as_json) print_document(document);
     for (const std::string& sentence : result.disagreements) print_error("{}\n", sentence);
-    const bool rare_unknown =
-        std::ranges::any_of(result.rare, [](const auto& rare) { return !rare.trouble.empty(); });
     const bool nothing_solved = result.summary.by_outcome.front() == 0;
-    return open > 0 || nothing_solved || rare_unknown || !result.disagreements.empty()
-               ? could_not_judge
-               : fine;
+    return open > 0 || nothing_solved || !result.disagreements.empty() ? could_not_judge : fine;
 }
 
 }  // namespace
@@ -251,16 +167,11 @@ Command study_command() {
           "number of variants, instead of that in the file; more than before extends the study"},
          {"--shard", Text{&request->shard, Value{.name = "K/N"}},
           "compute part K of N, into ledger-K-of-N.sqlite"},
-         {"--merge", TextList{&request->merge, TextList::Form::repeated, a_file()},
-          "add the rows of this ledger, or of those of all shards in this folder, and compute "
-          "nothing; repeat it"},
+         {"--merge", TextList{&request->merge, TextList::Form::separate, a_folder()},
+          "add the rows of all shards in these folders, and compute nothing"},
          {"--show", Flag{&request->show}, "compute nothing, write nothing: show what there is"},
          {"--csv", Text{&request->csv, a_file()},
           "write variables and figures of all variants as CSV"},
-         {"--hdf5", Text{&request->hdf5, a_file()},
-          "write the same and the witnesses as HDF5, for h5py and pandas"},
-         {"--rare", Flag{&request->rare},
-          "small probabilities of figures beyond their limits, by importance sampling"},
          jobs_option(request->running),
          quiet_option(request->running),
          json_option(request->as_json)},

@@ -154,36 +154,6 @@ compare::Table witness_table(const StudyFile& file, const StudyResult& result) {
     return table;
 }
 
-compare::Table rare_table(const StudyFile& file, const StudyResult& result) {
-    using enum Digits;
-    compare::Table table{
-        {{"figure", "", "", true, words},
-         {"limit", "", "", true, words},
-         {"probability", "", "of a figure beyond the limit, by importance sampling", false, three},
-         {"low", "", "95 %", false, three, "from"},
-         {"high", "", "95 %", false, three, "to"},
-         {"FORM", "", "probability by the first-order reliability method", false, three},
-         {"beta", "", "reliability index", false, three},
-         {"variants", "", "solved for it", false, whole},
-         {"at", "", "the most probable failure", true, words, "most probable at"},
-         {"trouble", "", "why there is no result", true, words}},
-        {}};
-    for (const RareFailure& rare : result.rare) {
-        const StudyFigure& figure = file.study.figures[rare.figure];
-        const auto& found = rare.found;
-        const auto known = [&](double value) {
-            return rare.trouble.empty() ? value : compare::nan;
-        };
-        table.rows.push_back({figure.name,
-                              fmt::format("{} {:g} {}", rare.limit.above ? "above" : "below",
-                                          rare.limit.at, symbol(figure.unit)),
-                              known(found.probability), known(found.low), known(found.high),
-                              known(found.by_form), known(found.beta), count(found.evaluations),
-                              rare.at, rare.trouble});
-    }
-    return table;
-}
-
 compare::Table failed_table(const StudyResult& result) {
     using enum Digits;
     compare::Table table{{{"variant", "", "", false, whole},
@@ -224,8 +194,7 @@ StudyResult evaluate_study(const StudyFile& file, const Ledger& ledger) {
                        .witnesses = ledger.witnesses(size),
                        .failed = ledger.failed(size, most_shown),
                        .content_hash = ledger.content_hash(size),
-                       .disagreements = {},
-                       .rare = {}};
+                       .disagreements = {}};
     for (std::size_t j = 0; j < file.study.figures.size(); ++j)
         result.figures.push_back(statistics(file.study, j, ledger.values(j, size)));
     judge_witnesses(file, result);
@@ -238,6 +207,9 @@ std::string outcomes_text(const StudyResult& result) {
         if (result.summary.by_outcome[o] > 0)
             parts.push_back(fmt::format("{} {}", result.summary.by_outcome[o],
                                         name(static_cast<VariantOutcome>(o))));
+    if (result.summary.by_equilibrium > 0)
+        parts.push_back(fmt::format("{} of all by the equilibrium leg, where series declines",
+                                    result.summary.by_equilibrium));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -248,7 +220,6 @@ std::vector<std::pair<std::string, compare::Table>> study_tables(const StudyFile
             {"Shares of the variance (Sobol indices)", sobol_table(file, result)},
             {fmt::format("Every {} variants by the equilibrium leg too", file.study.witness),
              file.study.witness > 0 ? witness_table(file, result) : compare::Table{}},
-            {"Rare failures", rare_table(file, result)},
             {"The first failed variants", failed_table(result)}};
 }
 
@@ -286,7 +257,6 @@ json study_json(const StudyFile& file, const StudyResult& result) {
             {"sobol", table_json(sobol_table(file, result))},
             {"witnesses", table_json(witness_table(file, result))},
             {"disagreements", result.disagreements},
-            {"rare", table_json(rare_table(file, result))},
             {"failed", table_json(failed_table(result))},
             {"content", result.content_hash}};
 }
@@ -312,7 +282,7 @@ void write_study_csv(const StudyFile& file, const Ledger& ledger,
     const auto number = [](double value) {
         return std::isnan(value) ? std::string() : fmt::format("{}", value);
     };
-    ledger.each_row(Ledger::Rows::variants, 0, file.study.design.count, [&](const LedgerRow& row) {
+    ledger.each_row(file.study.design.count, [&](const LedgerRow& row) {
         if (row.k >= end) {
             first = row.k - row.k % batch_size;
             end = std::min(first + batch_size, file.study.design.count);

@@ -10,7 +10,6 @@
 #include "compare/tables/table.hpp"
 #include "compare/variants/statistics.hpp"
 #include "reports/study/ledger.hpp"
-#include "reports/study/rare_failures.hpp"
 #include "reports/study/study_file.hpp"
 
 namespace elastocheck::reports {
@@ -25,7 +24,6 @@ struct StudyResult {
     std::vector<LedgerRow> failed;  // the first ones
     std::string content_hash;
     std::vector<std::string> disagreements;  // of witnesses; each a sentence
-    std::vector<RareFailure> rare;           // where they are requested
 };
 // From the rows that are in the ledger.
 StudyResult evaluate_study(const StudyFile& file, const Ledger& ledger);
