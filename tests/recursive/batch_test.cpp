@@ -10,7 +10,7 @@
 #include "models/branch.hpp"
 #include "models/kinds.hpp"
 #include "recursive/batch/kernels.hpp"
-#include "recursive/batch/structure.hpp"
+#include "models/structure.hpp"
 #include "recursive/diagnosis/analysis.hpp"
 #include "recursive/series/sides.hpp"
 #include "tests/recursive/random.hpp"
