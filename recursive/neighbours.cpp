@@ -44,8 +44,7 @@ std::string why_not(Outcome outcome, const Diagnosis& diagnosis) {
 
 // Σ w_k ΔG_k into s.upper and s.lower. Points and lengths that change together keep a row closed: what
 // is left is rounding.
-void difference(SteppingState& s, double a, const Residual& here,
-                const Neighbours& stencil) {
+void difference(SteppingState& s, double a, const Residual& here, const Neighbours& stencil) {
     s.upper.setZero(), s.lower.setZero();
     for (const Neighbour& k : stencil) {
         const Residual there = residual_of(*k.model, k.model->branches.front(), a, s.q, s.lambda);

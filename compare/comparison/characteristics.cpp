@@ -300,9 +300,8 @@ Entry entry_of(Owner owner, const ForceTest& test, const Loading& loading,
                     auto sum = by_force_on(w);
                     for (std::size_t k = 0; other != 0 && k < x.model.wheels.size(); ++k)
                         if (k != w) sum += other * by_force_on(k);
-                    return seen == Seen::along_the_force
-                               ? ratio(1, sum, rigid)
-                               : (sign != 0 ? sign : -x.side(w)) * sum;
+                    return seen == Seen::along_the_force ? ratio(1, sum, rigid)
+                                                         : (sign != 0 ? sign : -x.side(w)) * sum;
                 }};
     if (figure.seen == Seen::along_the_force) {
         entry.definition =

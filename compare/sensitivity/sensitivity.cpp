@@ -262,11 +262,11 @@ std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channe
             const auto drawn =
                 evaluate(side.model, side, outputs, design_state(side.model), as_drawn);
             for (std::size_t c = 0; c < outputs.size(); ++c)
-                work.result.why_output.push_back(
-                    !active[c] ? "its joint is inactive on this branch"
-                    : !outputs[c].joints().empty() && drawn[c] == undefined
-                        ? why_undefined(outputs[c])
-                        : idle_motion_of(side, outputs[c]));
+                work.result.why_output.push_back(!active[c] ? "its joint is inactive on this branch"
+                                                 : !outputs[c].joints().empty() &&
+                                                         drawn[c] == undefined
+                                                     ? why_undefined(outputs[c])
+                                                     : idle_motion_of(side, outputs[c]));
             work.read = {std::move(side), outputs_of(outputs, options.changes)};
             all.push_back(std::move(work));
         }

@@ -453,30 +453,29 @@ int export_scene(const ExportRequest& request) {
 
 Command import_command() {
     const auto request = std::make_shared<ImportRequest>();
-    return {
-        "import",
-        "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
-        "hardpoints .sub, tables of points .csv",
-        {{"FILE", Text{&request->file, a_file()}, "the model (.adm, .json, .sub, .csv)", true},
-         {"-o,--output", Text{&request->output, a_file()}, "write the scene to this file"},
-         {"--wheel", Text{&request->wheel},
-          "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
-         {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
-          "dynamics: leave out dampers and friction"},
-         {"--axes", Text{&request->axes},
-          "axes of a table of hardpoints, turned to ISO 8855: x-rearward,y-right (default of "
-          ".sub), x-forward,y-right,z-down, ..."},
-         {"--columns", Text{&request->columns},
-          "columns of a table of points by heading, number or letters: "
-          "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... right.z (.csv)"},
-         {"--unit", Text{&request->unit, one_of({"mm", "cm", "m", "in"})},
-          "unit of a table of points whose headings do not say it (.csv)"},
-         {"--axle", Text{&request->axle},
-          "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ..."},
-         {"--allow-missing", Flag{&request->allow_missing},
-          "warn about what a scene cannot represent instead of rejecting the file"},
-         json_option(request->as_json)},
-        [request](const std::string&) { return import(*request); }};
+    return {"import",
+            "Import a model of another program as a scene: ADAMS .adm, Chrono::Vehicle .json, "
+            "hardpoints .sub, tables of points .csv",
+            {{"FILE", Text{&request->file, a_file()}, "the model (.adm, .json, .sub, .csv)", true},
+             {"-o,--output", Text{&request->output, a_file()}, "write the scene to this file"},
+             {"--wheel", Text{&request->wheel},
+              "name or id of the wheel carrier part, or of a marker at the wheel centre (.adm)"},
+             {"--drop", TextList{&request->drop, TextList::Form::separate, one_of({"dynamics"})},
+              "dynamics: leave out dampers and friction"},
+             {"--axes", Text{&request->axes},
+              "axes of a table of hardpoints, turned to ISO 8855: x-rearward,y-right (default of "
+              ".sub), x-forward,y-right,z-down, ..."},
+             {"--columns", Text{&request->columns},
+              "columns of a table of points by heading, number or letters: "
+              "name=Punkt,x=X_mm,y=3,z=D; for sides side=COLUMN, or left.x ... right.z (.csv)"},
+             {"--unit", Text{&request->unit, one_of({"mm", "cm", "m", "in"})},
+              "unit of a table of points whose headings do not say it (.csv)"},
+             {"--axle", Text{&request->axle},
+              "axle of a vehicle of Chrono: front (its first), rear (its last), 1, 2, ..."},
+             {"--allow-missing", Flag{&request->allow_missing},
+              "warn about what a scene cannot represent instead of rejecting the file"},
+             json_option(request->as_json)},
+            [request](const std::string&) { return import(*request); }};
 }
 
 Command export_command() {

@@ -20,7 +20,8 @@ double deflection_under(const Cursor& preload, const ScalarLaw& law, const Units
 }
 
 // ℓ₀ [m]. At the design length ℓ the deflection is x = ℓ - ℓ₀.
-double free_length(const Cursor& spring, double length, const ScalarLaw& law, const Definitions& defs) {
+double free_length(const Cursor& spring, double length, const ScalarLaw& law,
+                   const Definitions& defs) {
     const Units& units = defs.units;
     const auto given = spring.optional("free_length");
     const auto preload = spring.optional("preload");

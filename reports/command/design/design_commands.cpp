@@ -193,8 +193,8 @@ int tolerances(const TolerancesRequest& request, const Delivery& delivery) {
     for (const auto& number : given.numbers) words.push_back(number.path);
     const Varied varied = parse_varied(words, loaded.scene);
     const auto scene = scene_at(request.scene, request.settings, varied.numbers);
-    const compare::Figures figures =
-        compare::solved_figures(scene, varied.numbers, figures_of(named), threads_of(request.running));
+    const compare::Figures figures = compare::solved_figures(
+        scene, varied.numbers, figures_of(named), threads_of(request.running));
     const VectorXd nominal = figures.value(varied.start);
     const compare::FigureGradient gradient = figures.gradient(varied.start);
     const auto scatter = compare::scatter(gradient.rate, given.numbers, given.correlation);
