@@ -260,7 +260,7 @@ Command solve_for_command() {
     using enum TextList::Form;
     return {"solve-for",
             "Change numbers of a scene as little as possible so that figures have wanted values; "
-            "exact gradients by the equilibrium leg",
+            "gradients by the equilibrium leg",
             {scene_option(request->scene),
              {"--vary", TextList{&request->vary, repeated},
               "number that may change, with its limits: points.tie_rod_inner.z=260:340; repeat it",
@@ -285,7 +285,7 @@ Command fit_command() {
     using enum TextList::Form;
     return {
         "fit",
-        "Fit numbers of a scene to measured curves, with 95 % intervals; exact gradients "
+        "Fit numbers of a scene to measured curves, with 95 % intervals; gradients "
         "of the equilibrium leg",
         {scene_option(request->scene),
          {"--measured", Text{&request->measured, a_file()}, "measured points (CSV), as for report",

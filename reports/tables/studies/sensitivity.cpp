@@ -170,17 +170,18 @@ std::string sensitivity_text(const Gradients& all, int most) {
             if (!leg.failure.empty())
                 fmt::format_to(out, "{} leg: {}\n", name(leg.leg), leg.failure);
         fmt::format_to(out,
-                       "{} entries compared between the legs, largest difference {:.1e} of the "
-                       "largest of its row{}{}\n\n",
+                       "{} entries compared between the legs, largest difference beyond rounding "
+                       "{:.1e} of the largest of its row{}{}\n\n",
                        side.worst.compared, side.worst.share, side.worst.agrees() ? "" : ": ",
                        side.worst.agrees() ? "" : side.worst.where);
     }
-    fmt::format_to(out, "{}\n",
-                   all.conclusive()
-                       ? fmt::format("the legs agree within {:g} of the largest of each row",
-                                     compare::gradients_agree)
-                       : "NOT CONCLUSIVE: the legs disagree, one did not converge, or nothing was "
-                         "compared");
+    fmt::format_to(
+        out, "{}\n",
+        all.conclusive()
+            ? fmt::format("the legs agree within {:g} of the largest of each row, beyond rounding",
+                          compare::gradients_agree)
+            : "NOT CONCLUSIVE: the legs disagree, one did not converge, or nothing was "
+              "compared");
     return text;
 }
 
