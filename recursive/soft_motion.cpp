@@ -88,11 +88,6 @@ std::vector<std::string> free_or_locked(const Model& model) {
         if (!mode.outputs.empty() && std::exchange(named, mode.body) != mode.body)
             lines.push_back(fmt::format("nothing resists a motion of '{}': {}",
                                         mode.outputs.front(), mode.description));
-    if (!lines.empty()) return lines;
-    Equilibrium drawn;
-    for (const auto& body : model.bodies) drawn.poses.push_back(body.design);
-    if (const auto soft = softest_motion(model, {}, drawn, true); !soft.empty())
-        lines.push_back("the softest motion as drawn is " + soft);
     return lines;
 }
 

@@ -24,7 +24,7 @@ std::string softest_motion(const Model& model, const Branch& branch, const Equil
                            bool moves_output = false);
 
 // Why a scene may not settle or follow its trim, from the design position: idle motions of its
-// outputs and bodies that redundant joints lock, else the softest motion of an output.
+// outputs and bodies that redundant joints lock.
 std::vector<std::string> free_or_locked(const Model& model);
 
 }  // namespace elastocheck::recursive

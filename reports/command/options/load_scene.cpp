@@ -141,12 +141,15 @@ std::vector<std::string> placed(const std::vector<compare::Implausible>& list,
     return lines;
 }
 
-// What leaves the drawn scene free or locks it, before the reason why it is not trimmed.
+// The reason why a scene is not trimmed, after what leaves it free or locks it as drawn; where nothing
+// does, with the softest motion, which may be the cause.
 std::string cause(const Scene& scene, const std::string& reason) {
+    const Model drawn = on_branch(compile(scene), {});
     std::string text;
-    for (const auto& line : recursive::free_or_locked(on_branch(compile(scene), {})))
-        text += line + "; ";
-    return text.empty() ? reason : text + "so the trim fails: " + reason;
+    for (const auto& line : recursive::free_or_locked(drawn)) text += line + "; ";
+    if (!text.empty()) return text + "so the trim fails: " + reason;
+    const auto soft = recursive::softest_motion(drawn, {}, compare::design_state(drawn), true);
+    return soft.empty() ? reason : reason + "; the softest motion as drawn is " + soft;
 }
 
 }  // namespace
