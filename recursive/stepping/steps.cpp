@@ -88,7 +88,8 @@ bool turns_too_far(const SteppingState& s, Drive drive, double amount) {
 Outcome step(SteppingState& s, const Linear& method, Parameters next) {
     const Drive drive = next.t != s.parameters.t ? Drive::start : Drive::rate;
     const double amount = drive == Drive::start ? next.t - s.parameters.t : next.a - s.parameters.a;
-    if (!(std::abs(next.a) <= std::abs(s.end))) return Outcome::inconsistent_constraints;
+    if (s.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.end)))
+        return Outcome::inconsistent_constraints;
     if (turns_too_far(s, drive, amount)) return Outcome::diverged;
     const Parameters here = s.parameters;
     if (!method.closed) {  // lower row of (29), at (qⁿ, aⁿ)
@@ -126,7 +127,8 @@ Outcome step(SteppingState& s, const Linear& method, Parameters next) {
 
 Outcome step(SteppingState& s, const Consistent& method, Parameters next) {
     const int n = s.n(), m = s.m();
-    if (!(std::abs(next.a) <= std::abs(s.end))) return Outcome::inconsistent_constraints;
+    if (s.end != s.branch.to && !(std::abs(next.a) <= std::abs(s.end)))
+        return Outcome::inconsistent_constraints;
     if (turns_too_far(s, Drive::rate, next.a - s.parameters.a)) return Outcome::diverged;
     go_to(s, next);
     // for the check of idle modes

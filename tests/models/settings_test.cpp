@@ -32,7 +32,7 @@ void expect_equal(const Scene& a, const Scene& b) { EXPECT_EQ(numbers(a), number
 TEST(Settings, AreAsIfTheyStoodInTheFile) {
     const std::tuple<const char*, const char*, const char*, const char*> cases[] = {
         {"points.front.x", "90.5", "front: [100,", "front: [90.5,"},
-        {"points.front.y", "-1", "front: [100, 0,", "front: [100, -1,"},
+        {"points.front.y", "1", "front: [100, 0,", "front: [100, 1,"},
         {"springs.coil.rate", "28", "rate: 30,", "rate: 28,"},
         {"bushings.block.stiffness.2.2", "70", "[0, 100, 0, 0, 0, 0]", "[0, 70, 0, 0, 0, 0]"},
         {"bushings.mount.rates.x", "7", "rates: [1, 2, 2], rot", "rates: [7, 2, 2], rot"},
