@@ -101,6 +101,49 @@ const tests = {
     await click('reset');
     check((await settings()).length === 0, 'reset');
   },
+  // Positions are parameters: a hold solves other points, and takes the scene as opened along through its start.
+  async comparesAtTheShownParameter() {
+    const figures = ['camber', 'roll_centre_height'], at = 4;
+    const set = (id, value, event) => run(`document.getElementById('${id}').value = ${JSON.stringify(value)}; document.getElementById('${id}').dispatchEvent(new Event('${event}'))`);
+    const value = text => +text.replaceAll('−', '-');
+    const program = changes => byProgram(scene('double_wishbone'), 'travel', figures, changes).find(row => Math.abs(row[0] - at) < 1e-9).slice(1);
+    const expectChange = async when => {
+      const was = program([]), now = program(await settings());
+      for (const [k, name] of figures.entries()) {
+        const [, , old, is, by] = await run(`[...document.querySelectorAll('#static [data-channel=${name}] td')].map(td => td.textContent)`);
+        near(value(old), was[k], 6e-4 * Math.abs(was[k]), `${when}: ${name} as opened`);
+        near(value(is), now[k], 6e-4 * Math.abs(now[k]), `${when}: ${name} now`);
+        near(value(by), now[k] - was[k], 2e-3 * Math.abs(now[k] - was[k]), `${when}: change of ${name}`);
+      }
+    };
+    await set('motion', 21, 'input');
+    await set('table-at', 'shown', 'change');
+    const [x, y] = await handleOf('upper_rear');
+    const to = async (...heights) => { for (const up of heights) { await browser.mouse('mouseMoved', x, y - up); await idle(); } };
+    await browser.mouse('mousePressed', x, y);
+    await to(3, 6, 3, 0, 4, 8);
+    await expectChange('while held');
+    await browser.mouse('mouseReleased', x, y - 8);
+    await idle();
+    await expectChange('released');
+    check(await run('state.base.branches[0].points') === 41, 'the scene as opened keeps its points');
+    await run(`document.getElementById('reset').click()`);
+    await idle();
+    // Arrows during a hold, at the start, where fewer points are solved.
+    await set('motion', 20, 'input');
+    await browser.mouse('mousePressed', x, y);
+    await to(4);
+    await set('effect', 'camber', 'change');
+    await browser.until('state.effects && state.effects.length === 36', 'the effects are known');
+    const of = await run(`state.effects.find(e => e.path === 'points.upper_ball.y').by`), held = await settings(), y0 = await run(`numberOf('points.upper_ball.y')`);
+    const [more, less] = [1e-4, -1e-4].map(h => byProgram(scene('double_wishbone'), 'travel', ['camber'], [...held, ['points.upper_ball.y', y0 + h]]).find(row => row[0] === 0)[1]);
+    near(of, (more - less) / .2, 1e-3 * Math.abs(of), 'effect on the camber at the start during a hold');
+    await browser.mouse('mouseReleased', x, y - 4);
+    await set('effect', '', 'change');
+    await set('table-at', 'start', 'change');
+    await run(`document.getElementById('reset').click()`);
+    await idle();
+  },
   async nonsenseIsAMessage() {
     const type = async (p, text) => {
       await run(`(() => { const e = document.querySelector('#list [data-path="${p}"] input[type=text]'); e.focus(); e.value = ${JSON.stringify(text)}; e.dispatchEvent(new Event('change')); e.blur(); })()`);
@@ -178,8 +221,15 @@ const tests = {
     check((await strips('unproved')).every(n => n === 0) && !(await run(all)), 'proofs belong to the numbers');
     await browser.until(all, 'proved again');
     check((await strips('proved')).every(n => n === 41), 'and again for the new ones');
+    // Numbers that are not solved have no proof.
+    const unproved = async what => check((await strips('proved')).every(n => n === 0) && (await run(`document.querySelector('#notes .proof').textContent`)) === 'no proof: these numbers are not solved',
+      what + ': ' + await run(`document.querySelector('#notes .proof').textContent`));
+    await run(`remember(); put('springs.coil.rate', 'abc'); changed()`);
+    await idle();
+    await unproved('a number that is none');
     await run(`document.getElementById('reset').click()`);
     await idle();
+    await browser.until(all, 'proved once more');
   },
   async tablesAreTheProgramsFigures() {
     const cells = name => run(`[...document.querySelectorAll('#static [data-channel=${name}] td')].map(td => td.textContent)`), value = text => +text.replaceAll('−', '-');
@@ -429,6 +479,14 @@ const tests = {
     await wait(.5);
     await idle();
     await pictureOf('dark', true);
+  },
+  async aSolverThatStoppedTakesTheProofAlong() {
+    await browser.open(path.join(folder, 'wishbone.html'));
+    await idle();
+    await browser.until(`shownBranches().every(b => proofOf(b.name)?.done)`, 'the points are proved');
+    await run(`worker.terminate(); remember(); put('springs.coil.rate', '96000'); changed()`);
+    check(await run(`document.querySelectorAll('#charts .proof .proved').length`) === 0, 'no strip');
+    check(await run(`document.querySelector('#notes .proof').textContent`) === 'no proof: these numbers are not solved', 'no words');
   }
 };
 try {

@@ -2,16 +2,26 @@
 const state = {info: null, source: '', file: '', of: new Map(), channel: new Map(), settings: new Map(), base: null, now: null,
   branch: '', station: null, curves: null, point: null, targets: new Map(), effects: null, undo: [], redo: [], solved: new Map()};
 const branchOf = (run, name) => run.branches.find(b => b.name === name);
-const stationIn = branch => !branch ? 0 : state.station === null ? branch.start : Math.round(state.station * (branch.points - 1));
+// The shown position is a parameter of the shown branch: points of two runs at one place in their lists may be different
+// positions. Of the other branches the start is shown.
+const shownBranch = run => branchOf(run, state.branch) ?? run.branches[0];
+const stationIn = (run, branch) => !branch?.points ? 0 : state.station === null || branch.name !== shownBranch(run).name ? branch.start : run.near(branch, state.station);
 const stationOf = run => {
-  const branch = branchOf(run, state.branch) ?? run.branches[0];
-  return [branch, branch ? stationIn(branch) : 0];
+  const branch = shownBranch(run);
+  return [branch, stationIn(run, branch)];
+};
+// The same position of the scene as opened; -1: it has no such point.
+const stationAsOpened = () => {
+  const [branch, k] = stationOf(state.now), old = branchOf(state.base, branch?.name);
+  return [old, branch?.points ? state.base.exact(old, state.now.a(branch, k)) : -1];
 };
 
 // ---- The worker: one call at a time, answers by their number
 let worker, calls = 0;
 const waiting = new Map();
+let stopped = '';  // why the worker answers no more
 const ask = (what, data = {}) => new Promise((resolve, reject) => {
+  if (stopped) { reject(new Error(stopped)); return; }
   waiting.set(++calls, {resolve, reject});
   worker.postMessage({id: calls, what, ...data}, data.bytes ? [data.bytes] : []);
 });
@@ -22,6 +32,11 @@ const startWorker = async () => {
     const call = waiting.get(data.id);
     waiting.delete(data.id);
     data.error === undefined ? call.resolve(data) : call.reject(Object.assign(new Error(data.error), {kind: data.kind}));
+  };
+  worker.onerror = worker.onmessageerror = event => {
+    stopped = `the solver stopped: ${event.message ?? 'its answer cannot be read'}; open the page again`;
+    for (const call of waiting.values()) call.reject(new Error(stopped));
+    waiting.clear();
   };
   const coded = atob($('solver').textContent.trim()), packed = new Uint8Array(coded.length);
   for (let k = 0; k < coded.length; ++k) packed[k] = coded.charCodeAt(k);
@@ -51,8 +66,9 @@ const place = (name, coordinates) => {
   paths(name).forEach((p, k) => { if (Math.abs(coordinates[k] - numberOf(p) * mm(p)) > 1e-9) put(p, written(coordinates[k] / mm(p))); });
   changed();
 };
-// Half the points while a hardpoint is dragged.
-const request = () => ({settings: [...state.settings], points: held?.name ? 20 : 40,
+// Half the points while a hardpoint is dragged, where the start is shown.
+const allPoints = 40;
+const request = () => ({settings: [...state.settings], points: held?.name && state.station === null ? allPoints / 2 : allPoints,
   full: state.info.branches.map(b => state.branch === '' || b.name === state.branch || b === state.info.branches[0])});
 
 // ---- Undo: the settings before each change
@@ -86,6 +102,7 @@ window.live = {draws: [], state};  // for tests: seconds of every solve, and fro
 let since = 0;
 const changed = () => {
   since ||= performance.now();
+  dropProofs();
   due = true;
   fillNumbers();
   drawHandles(axesOf());
@@ -103,11 +120,11 @@ const pump = async () => {
     since = 0;
     try {
       // The first picture needs one branch; the others follow.
-      const first = !state.now;
-      const answer = await ask('solve', {request: first ? {...request(), only: state.branch} : request()});
+      const first = !state.now, asks = request();
+      const answer = await ask('solve', {request: first ? {...asks, only: state.branch} : asks});
       if (answer.head.trouble) throw new Error(answer.head.trouble);
       state.now = Object.assign(new Run(answer), {settings: [...settings]});
-      if (!settings.size) state.base = state.now;
+      if (!settings.size && asks.points === allPoints) state.base = state.now;
       trouble('');
       const begun = performance.now();
       draw();
@@ -120,6 +137,7 @@ const pump = async () => {
     } catch (error) {
       $('state').textContent = 'not solved: the curves are those of the last numbers that could be solved';
       trouble(error.message);
+      if (state.now) drawNotes();
     }
     invalid();
     await nextFrame();
@@ -142,7 +160,7 @@ const measureEffects = async () => {
   $('effects').hidden = true;
   drawHandles(axesOf());
   if (!name || !state.now) return;
-  const [branch, k] = stationOf(state.now), all = [];
+  const [branch, k] = stationOf(state.now), a = state.now.a(branch, k), all = [];
   const rates = state.channel.get(name).kind === 'characteristic';
   for (const point of handles.keys())
     for (const p of paths(point)) {
@@ -152,8 +170,8 @@ const measureEffects = async () => {
         if (mine !== measuring) return;
         const settings = new Map(state.settings).set(p, written(numberOf(p) + sign * h / mm(p)));
         try {
-          const run = new Run(await ask('solve', {request: {settings: [...settings], points: 40, only: branch.name, full: state.info.branches.map(() => rates)}}));
-          values.push(run.value(run.branches[0], k, run.place.get(name)));
+          const run = new Run(await ask('solve', {request: {settings: [...settings], points: allPoints, only: branch.name, full: state.info.branches.map(() => rates)}}));
+          values.push(valueAt(run, run.branches[0], name, run.exact(run.branches[0], a)));
         } catch { values.push(NaN); }
       }
       all.push({point, path: p, axis: 'xyz'.indexOf(p.at(-1)), by: (values[0] - values[1]) / (2 * h)});
@@ -162,10 +180,10 @@ const measureEffects = async () => {
   state.effects = all.filter(e => Number.isFinite(e.by));
   const unit = state.channel.get(name).unit, most = [...state.effects].sort((a, b) => Math.abs(b.by) - Math.abs(a.by)).slice(0, 5);
   $('effects').hidden = false;
-  $('effects').querySelector('h3').textContent = `Most effect on ${name} at ${shown(state.now.a(branch, k))} ${branch.unit} of ${branch.name}, per mm`;
+  $('effects').querySelector('h3').textContent = `Most effect on ${name} at ${shown(a)} ${branch.unit} of ${branch.name}, per mm`;
   $('effects').querySelector('ol').replaceChildren(...most.map(e => {
     const button = make('button', {type: 'button', 'aria-label': `change ${e.path} for it`}, 'solve');
-    button.onclick = () => solveFor(e.path, e.by * mm(e.path), name, branch.name, k);
+    button.onclick = () => solveFor(e.path, e.by * mm(e.path), name, branch.name, a);
     return make('li', {}, `${e.path.slice(7)} ${signed(e.by)} ${unit}`, button);
   }));
   $('effects').querySelector('label span').textContent = unit;
@@ -173,7 +191,7 @@ const measureEffects = async () => {
   drawHandles(axesOf());
 };
 // Sets one number such that a figure at a station has the wished value: secant method, from the known slope.
-const solveFor = async (path, slope, name, branchName, k) => {
+const solveFor = async (path, slope, name, branchName, a) => {
   const wish = $('wish').value.trim(), want = Number(wish), mine = ++measuring;
   $('wish').setAttribute('aria-invalid', String(wish === '' || !Number.isFinite(want)));
   if (wish === '' || !Number.isFinite(want)) return;
@@ -182,10 +200,10 @@ const solveFor = async (path, slope, name, branchName, k) => {
   try {
     for (let i = 0; i < 15; ++i) {
       const settings = new Map(state.settings).set(path, written(x));
-      const answer = await ask('solve', {request: {settings: [...settings], points: 40, only: branchName, full: state.info.branches.map(() => rates)}});
+      const answer = await ask('solve', {request: {settings: [...settings], points: allPoints, only: branchName, full: state.info.branches.map(() => rates)}});
       if (mine !== measuring || due) return;
       if (answer.head.trouble) throw new Error(answer.head.trouble);
-      const run = new Run(answer), value = run.value(run.branches[0], k, run.place.get(name));
+      const run = new Run(answer), value = valueAt(run, run.branches[0], name, run.exact(run.branches[0], a));
       if (!Number.isFinite(value)) break;
       if (Math.abs(value - want) <= 1e-6 * Math.max(1, Math.abs(want))) {
         remember();
@@ -275,7 +293,7 @@ const makeBranches = () => {
 };
 // The scene as opened, with all that the shown branch needs.
 const solveBase = async () => {
-  const answer = await ask('solve', {request: {...request(), settings: []}});
+  const answer = await ask('solve', {request: {...request(), points: allPoints, settings: []}});
   if (!answer.head.trouble) state.base = new Run(answer);
 };
 const makeChoice = () => {
@@ -376,7 +394,7 @@ $('redo').onclick = () => restore(state.redo, state.undo);
 $('reset').onclick = () => { remember(); state.settings.clear(); changed(); settle(); };
 $('motion').oninput = () => {
   const [branch] = stationOf(state.now), k = +$('motion').value;
-  state.station = k === branch.start ? null : k / (branch.points - 1);
+  state.station = k === branch.start ? null : state.now.a(branch, k);
   draw3d();
   drawCharts();
   drawMotion();

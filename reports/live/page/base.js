@@ -57,6 +57,17 @@ class Run {
     this.wide = 1 + channels + 3 * head.drawing.points.length + 3 * head.drawing.wheels.length;
   }
   a(branch, k) { return this.numbers[branch.at + k * this.wide]; }
+  // The point nearest to a parameter, and that at it: -1 where there is none.
+  near(branch, a) {
+    let best = branch.start;
+    for (let k = 0; k < branch.points; ++k) if (Math.abs(this.a(branch, k) - a) < Math.abs(this.a(branch, best) - a)) best = k;
+    return best;
+  }
+  exact(branch, a) {
+    if (!branch?.points) return -1;
+    const k = this.near(branch, a);
+    return Math.abs(this.a(branch, k) - a) <= 1e-9 * Math.max(1, Math.abs(a)) ? k : -1;
+  }
   value(branch, k, channel) { return this.numbers[branch.at + k * this.wide + 1 + channel]; }
   vector(branch, k, place) {
     const at = branch.at + k * this.wide + 1 + this.count + 3 * place;

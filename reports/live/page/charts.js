@@ -36,7 +36,7 @@ const chartOf = (branchName, name, withBranch) => {
   const curve = state.now.curve(now, name), before = state.base.curve(old, name), fast = state.now.published(now, name);
   const both = [...curve, ...before, ...fast].filter(p => Number.isFinite(p[1]));
   const figure = sketch('div', {class: 'chart', 'data-channel': name, 'data-branch': branchName});
-  const here = curve[Math.min(stationIn(now), curve.length - 1)];
+  const here = curve[stationIn(state.now, now)];
   const aim = sketch('button', {type: 'button', class: 'aim', title: 'Target band', 'aria-label': `Target band of ${name} on ${branchName}`,
     onclick: () => editTarget(name, branchName)}, 'target');
   const target = state.targets.get(`${branchName}|${name}`);

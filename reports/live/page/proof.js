@@ -5,9 +5,18 @@ const proofOf = branchName => proofs.run === state.now ? proofs.of.get(branchNam
 const shownBranches = () => state.branch === '' ? state.now.branches : state.now.branches.filter(b => b.name === state.branch);
 let proving = 0, provePause = 0;
 const resting = () => !busy && !due && !held?.name;
+const isSolved = () => JSON.stringify(state.now.settings) === JSON.stringify([...state.settings]);
+// Numbers that are not solved, whether they cannot be or the solver stopped, have no proof.
+const dropProofs = () => {
+  ++proving;
+  clearTimeout(provePause);
+  if (!proofs.run) return;
+  proofs.run = null;
+  drawCharts();
+};
 const prove = async () => {
   const mine = ++proving, run = state.now, more = () => mine === proving && run === state.now && resting();
-  if (!run || JSON.stringify(run.settings) !== JSON.stringify([...state.settings])) return;  // the newest numbers have no answer
+  if (!run || !isSolved()) return;
   if (proofs.run !== run) Object.assign(proofs, {run, of: new Map()});
   for (const {name, points} of shownBranches()) {
     const proof = proofs.of.get(name) ?? {stations: [], limits: [], done: points === 0};
@@ -15,7 +24,7 @@ const prove = async () => {
     for (let count = 1; !proof.done && more();) {
       const begun = performance.now(), first = proof.stations.length;
       try {
-        const {proof: found} = await ask('prove', {request: {settings: run.settings, points: 40, only: name}, first, count});
+        const {proof: found} = await ask('prove', {request: {settings: run.settings, points: allPoints, only: name}, first, count});
         proof.claim = found.claim;
         proof.stations.push(...found.stations);
         proof.limits = found.limits ?? proof.limits;
@@ -42,7 +51,7 @@ const power = value => minus(String(+value.toPrecision(2)).replace(/^0\.0+1$/, (
 // The proof of a branch in a sentence.
 const proofWords = (branch, points) => {
   const proof = proofOf(branch);
-  if (!proof) return 'proof of the points: when nothing is moved';
+  if (!proof) return isSolved() ? 'proof of the points: when nothing is moved' : 'no proof: these numbers are not solved';
   if (proof.trouble) return `not proved: ${proof.trouble}`;
   const {stations, claim, done} = proof, good = stations.filter(s => s.answer === 'proved'), bad = stations.find(s => s.answer !== 'proved');
   if (!stations.length) return done ? 'no point to prove' : 'proof of the points begins';

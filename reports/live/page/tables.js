@@ -13,12 +13,12 @@ const tableRow = (name, unit, was, value, more = {}, ...cells) => sketch('tr', m
   sketch('td', {}, shown(was)), sketch('td', {}, shown(value)), sketch('td', {class: differs(was, value) ? 'changed' : ''}, differs(was, value) ? signed(value - was) : ''), ...cells);
 const channelRow = (channel, was, value, ...cells) => tableRow(words(channel.name), channel.unit, was, value, {'data-channel': channel.name, title: channel.definition}, ...cells);
 const group = (title, rows) => rows.length ? [sketch('tr', {class: 'group'}, sketch('th', {colspan: 5, scope: 'rowgroup'}, title)), ...rows] : [];
-const valueAt = (run, branch, name, k) => branch?.points ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
+const valueAt = (run, branch, name, k) => branch?.points && k >= 0 ? run.value(branch, k, run.place.get(name) ?? -1) : NaN;
 const drawTables = () => {
   const {base, now, info} = state, first = info.branches[0]?.name;
   if (!base || !now) return;
   const here = $('table-at').value === 'shown', [is, k] = here ? stationOf(now) : [branchOf(now, first), branchOf(now, first)?.start];
-  const [old, j] = here ? stationOf(base) : [branchOf(base, first), branchOf(base, first)?.start];
+  const [old, j] = here ? stationAsOpened() : [branchOf(base, first), branchOf(base, first)?.start];
   const rowOf = c => channelRow(c, valueAt(base, old, c.name, j), valueAt(now, is, c.name, k));
   const adjusted = (now.trim ?? []).map(t => tableRow(t.name, t.unit, (base.trim ?? []).find(b => b.name === t.name)?.by ?? NaN, t.by, {title: t.makes, 'data-trim': t.name}));
   const rates = info.channels.filter(c => c.kind === 'characteristic'), angles = info.channels.filter(c => c.kind === 'motion' && staticFigures.includes(last(c.name)));
@@ -41,7 +41,7 @@ const largest = (run, name) => {
 const drawForces = () => {
   if (!$('forces').open) return;
   const {base, now} = state, all = $('forces-at').value === 'largest';
-  const [b, k] = stationOf(now), [o, j] = stationOf(base);
+  const [b, k] = stationOf(now), [o, j] = stationAsOpened();
   show($('forces').querySelector('table'), tableHead('', 'unit', 'as opened', 'now', 'change', ...all ? ['on branch'] : []), sketch('tbody', {}, ...forceChannels().map(c => {
     if (!all) return channelRow(c, valueAt(base, o, c.name, j), valueAt(now, b, c.name, k));
     const [was] = largest(base, c.name), [value, where] = largest(now, c.name);

@@ -94,8 +94,8 @@ const draw3d = () => {
   const axes = axesOf(), [branch, k] = stationOf(now);
   const layers = [];
   if (base !== now && branch) {
-    const [old, j] = stationOf(base);
-    if (old && old.points) layers.push(scenery(base, old, j, axes, true));
+    const [old, j] = stationAsOpened();
+    if (j >= 0) layers.push(scenery(base, old, j, axes, true));
   }
   if (branch && branch.points) layers.push(scenery(now, branch, k, axes, false));
   layers.push(triad(axes));
