@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <openturns/Beta.hxx>
 #include <openturns/Binomial.hxx>
 #include <openturns/ComposedDistribution.hxx>
@@ -49,8 +50,19 @@ OT::Distribution distribution(const Distribution& of) {
 
 bool available() { return true; }
 
+namespace {
+
+// OpenTURNS writes formulas in the locale of the process and parses them with a decimal point.
+struct ClassicLocale {
+    std::locale before = std::locale::global(std::locale::classic());
+    ~ClassicLocale() { std::locale::global(before); }
+};
+
+}  // namespace
+
 Transformation transformation(const std::vector<Distribution>& distributions,
                               const MatrixXd& correlation) {
+    const ClassicLocale in_force;
     OT::Collection<OT::Distribution> marginals;
     for (const Distribution& one : distributions) marginals.add(distribution(one));
     OT::ComposedDistribution joint(marginals);
@@ -61,6 +73,7 @@ Transformation transformation(const std::vector<Distribution>& distributions,
         joint.setCopula(OT::NormalCopula(R));
     }
     return [inverse = joint.getInverseIsoProbabilisticTransformation()](const MatrixXd& u) {
+        const ClassicLocale in_force;
         OT::Sample z(size(u.rows()), size(u.cols()));
         for (Index i = 0; i < u.rows(); ++i)
             for (Index j = 0; j < u.cols(); ++j)

@@ -86,13 +86,13 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& at) { return std::string(at.param.scene); });
 
 // Two minutes each.
-class NightlyAxles : public Axles {};
-TEST_P(NightlyAxles, TheWholeReportIsJudged) {
+class WholeAxles : public Axles {};
+TEST_P(WholeAxles, TheWholeReportIsJudged) {
     const Folder folder;
     expect_says("report " + file_of(GetParam()) + " --quiet -o " + (folder.path / "out").string(),
                 0, {.not_out = {"Not judged", "nan"}});
 }
-INSTANTIATE_TEST_SUITE_P(Own, NightlyAxles,
+INSTANTIATE_TEST_SUITE_P(Nightly, WholeAxles,
                          testing::Values(Axle{"front_subframe_axle", "", 0, 0, ""},
                                          Axle{"rear_five_link_axle", "", 0, 0, ""}),
                          [](const auto& at) { return std::string(at.param.scene); });

@@ -342,8 +342,8 @@ TEST(CandidateCommand, FilesThatCannotBeReadAreRefusedWithTheLine) {
     } cases[] = {
         {"a.csv", "load_N,toes_deg\n1,2\n", "a.csv:1: unknown column 'toes_deg', did you mean"},
         {"a.csv", "toe_deg\n1\n", "a.csv:1: no column gives the parameter or travel of a point"},
-        {"a.csv", "branch,load_N,toe_deg\njounce,1,2\nbounce,1,2\n",
-         "a.csv:3: branch: the scene has no branch 'bounce'"},
+        {"a.csv", "branch,load_N,toe_deg\njounce,1,2\nbrake,1,2\n",
+         "a.csv:3: branch: the scene has no branch 'brake'"},
         {"a.csv", "branch,load_N,toe_deg\njounce,1,x\n", "a.csv:2: toe_deg: 'x' is not a number"},
         {"a.csv", "branch,load_mm,toe_deg\njounce,1,1\n",
          "a.csv:2: load_mm: 'mm' is not a unit of the parameter of branch 'jounce'"},
