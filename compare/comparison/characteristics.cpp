@@ -238,7 +238,7 @@ const std::vector<ForceTest>& force_tests() {
           one_alone, "programs that load one wheel"},
          {{"parallel", 1,
            "a force at each contact patch, both to the same side, on this wheel towards the middle "
-           "of the vehicle (as on the outer wheel in a turn)",
+           "of the vehicle",
            alike, "rigs: lateral force, parallel"},
           {"opposed", -1, "a force at each contact patch, both towards the middle of the vehicle",
            towards_each_other, "rigs: lateral force, opposed"}},

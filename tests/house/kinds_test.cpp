@@ -27,17 +27,20 @@ const std::set<std::string> implement_a_kind{
     "models/kinds.hpp",                         // the list itself
     "models/compile/welds.cpp",                 // fixed joints
     "models/compile/links.cpp",                 // spherical joints of a link
+    "models/import/export/export_adm.cpp",      // weights as masses
     "models/import/export/export_chrono.cpp",   // stops between the ends of a spring
+    "models/vanishing_length.cpp",              // lengths above zero
     "recursive/linear_response.cpp",            // a disturbance, not a driver
+    "recursive/residuals.cpp",                  // lengths above zero
     "recursive/series/terms.hpp",               // series of the laws
     "reference/certificate/interval/laws.cpp",  // laws in intervals
     "reference/certificate/interval/laws.hpp",
     "reference/certificate/statement/system.cpp",           // isotropic bushings
-    "reference/energy/constraints/constraints.cpp",         // the opposite angle
     "reference/energy/potential/potential.cpp",             // rotation of bushings
     "reference/energy/solve.cpp",                           // lengths above zero
     "reference/equilibrium/continuation/continuation.cpp",  // springs and links that reverse
     "reference/equilibrium/residuals.cpp",                  // the opposite angle
+    "reference/equilibrium/solve.cpp",                      // lengths above zero
     "reference/equilibrium/statement/system.cpp",           // angles of bushings and joints
     "compare/comparison/compliance.cpp",                    // jacks and tyres
     "compare/comparison/elements.cpp",                      // axial force of links
