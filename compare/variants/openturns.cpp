@@ -73,7 +73,7 @@ Transformation transformation(const std::vector<Distribution>& distributions,
         joint.setCopula(OT::NormalCopula(R));
     }
     return [inverse = joint.getInverseIsoProbabilisticTransformation()](const MatrixXd& u) {
-        const ClassicLocale in_force;
+        const ClassicLocale also_here;
         OT::Sample z(size(u.rows()), size(u.cols()));
         for (Index i = 0; i < u.rows(); ++i)
             for (Index j = 0; j < u.cols(); ++j)

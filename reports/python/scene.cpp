@@ -14,6 +14,7 @@
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/document/text_file.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
+#include "recursive/soft_motion.hpp"
 #include "reports/command/options/limits.hpp"
 #include "reports/document/drawing.hpp"
 #include "reports/document/inspection.hpp"
@@ -101,9 +102,13 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
         of.scene = scene;
         const auto sides = compare::sides_of(model, branch, how.steps);
         compare::Analyses analyses;
+        std::vector<std::optional<Equilibrium>> last(sides.size());
         const EquilibriumPath path = compare::walk(
             sides, solver,
             [&](const Equilibrium& state) {
+                const auto w =
+                    static_cast<std::size_t>(&compare::side_at(sides, state.load) - sides.data());
+                if (!last[w] || state.load != 0) last[w] = state;
                 for (const compare::BranchSide& side : sides)
                     if (approximate && reports::is_end(side.branch, state.load))
                         of.ends.emplace_back(side, state);
@@ -121,6 +126,12 @@ std::vector<BranchCurves> solve(const SharedScene& scene, const SolveRequest& re
             });
         of.outcome = path.outcome;
         of.detail = path.detail;
+        std::string motion;
+        for (std::size_t w = 0; motion.empty() && w < sides.size(); ++w)
+            if (path.outcome != Outcome::converged && last[w] &&
+                !reports::is_end(sides[w].branch, last[w]->load))
+                motion = recursive::softest_motion(sides[w].model, sides[w].branch, *last[w]);
+        if (!motion.empty()) of.detail += "; the softest motion before it is " + motion;
     }
     return all;
 }

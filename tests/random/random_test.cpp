@@ -28,7 +28,7 @@ TEST(RandomScene, IsTheSameForItsSeedWhereverItIsMade) {
     std::uint64_t all = 0;
     for (std::uint64_t seed = 1; seed <= 50; ++seed)
         all = all * 31 + fingerprint(random_scene(seed));
-    EXPECT_EQ(all, 316082598815838147u);
+    EXPECT_EQ(all, 8521633227566751531u);
 }
 
 TEST(RandomScene, IsReadUnlessWhatItDrivesMovesNothing) {
@@ -50,7 +50,7 @@ TEST(RandomScene, OfTheDrivenFamilyMovesALengthAJackOrAnotherJoint) {
     std::uint64_t hash = 0;
     for (std::uint64_t seed = 1; seed <= 50; ++seed)
         hash = hash * 31 + fingerprint(random_scene(seed, Family::driven));
-    EXPECT_EQ(hash, 10594453238676642618u);
+    EXPECT_EQ(hash, 1897540047058270466u);
     int read = 0, lengths = 0, jacks = 0, wheels = 0, with_curves = 0, with_stops = 0;
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
         const std::string text = random_scene(seed, Family::driven);
