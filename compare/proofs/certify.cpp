@@ -37,7 +37,7 @@ CertifiedSide certify_side(const BranchSide& side, SolverSettings solver,
     for (const Equilibrium& state : path.points)
         add(result.tally, state.load, result.unit,
             certificate::certify(side.model, side.branch, state, in_si(options.tolerance)));
-    if (solver.leg == Leg::equilibrium && path.points.size() > 1)
+    if (options.curves && solver.leg == Leg::equilibrium && path.points.size() > 1)
         result.curve = certificate::certify_branch(side.model, side.branch, path.points,
                                                    in_si(options.tolerance));
     // The last point starts the search for the limit point; it claims no accuracy.

@@ -43,6 +43,7 @@ struct CertifyOptions {
     Tolerance tolerance;
     // least number of points per branch side besides the start, as far as it has as many steps
     int points = 20;
+    bool curves = true;  // prove that the equilibrium leg's points lie on one curve, too
     int threads = 1;
     Progress progress = {};
 };

@@ -98,6 +98,7 @@ compare::CertifyStudy certificate(const Scene& scene, const std::vector<compare:
     });
     return compare::certify(model, {.solvers = {{.leg = compare::Leg::equilibrium}},
                                     .tolerance = compare::claim(compare::claimed_accuracy),
+                                    .curves = false,
                                     .threads = threads,
                                     .progress = progress});
 }
