@@ -297,12 +297,12 @@ TEST(GateCommand, NamesTolerancesWiderThanThoseOfTheClassInItsFirstLine) {
               std::string::npos);
     const Said said = Solved(edited([](BaselineFile& file) {
                           for (auto& [kind, tolerances] : file.baseline.tolerances)
-                              tolerances.at("mm").atol = tolerances.at("deg").rtol = 1e9;
+                              tolerances.at("mm").atol = tolerances.at("mm").rtol = 1e9;
                       })).gate();
     expect_said(said, 0);
     EXPECT_TRUE(contains(said.out.substr(0, said.out.find('\n')),
-                         ", with tolerances wider than those of the class: deg: rtol 1e+09, mm: "
-                         "atol 1e+09"))
+                         ", with tolerances wider than those of the class: mm: atol 1e+09, mm: "
+                         "rtol 1e+09"))
         << said.out;
 }
 
