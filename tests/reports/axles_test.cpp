@@ -59,9 +59,9 @@ TEST_P(Axles, AHardpointIsFittedToCurvesOverTravel) {
     expect_says("solve " + file_of(axle) + " --set " + axle.number + "=" + axle.changed +
                     " --steps 8 --channels left.travel,left.toe,left.camber -o " + all,
                 0);
-    std::string heave = "left.travel_mm,left.toe_deg,left.camber_deg\n";
+    std::string heave = "branch,left.travel_mm,left.toe_deg,left.camber_deg\n";
     for (const auto& row : cells_of(text_of(all)))
-        if (row[0] == "heave") heave += row[4] + "," + row[5] + "," + row[6] + "\n";
+        if (row[0] == "heave") heave += "heave," + row[4] + "," + row[5] + "," + row[6] + "\n";
     const json result = json::parse(expect_says("fit " + file_of(axle) + " --measured " +
                                                     folder.write("rig.csv", heave) + " --vary " +
                                                     axle.number + " --quiet --json",
