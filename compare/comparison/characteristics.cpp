@@ -297,11 +297,15 @@ Entry entry_of(Owner owner, const ForceTest& test, const Loading& loading,
                                : seen == Seen::camber ? x.camber(w, by)
                                                       : x.moved_by(by, at)[cause % 3];
                     };
-                    auto sum = by_force_on(w);
+                    const double alone = by_force_on(w);
+                    double sum = alone;
                     for (std::size_t k = 0; other != 0 && k < x.model.wheels.size(); ++k)
                         if (k != w) sum += other * by_force_on(k);
-                    return seen == Seen::along_the_force ? ratio(1, sum, rigid)
-                                                         : (sign != 0 ? sign : -x.side(w)) * sum;
+                    // Forces that an axle carries within itself leave their rounding.
+                    constexpr double cancelled = 1e5;
+                    return seen == Seen::along_the_force
+                               ? ratio(1, sum, std::min(rigid, cancelled / std::abs(alone)))
+                               : (sign != 0 ? sign : -x.side(w)) * sum;
                 }};
     if (figure.seen == Seen::along_the_force) {
         entry.definition =
