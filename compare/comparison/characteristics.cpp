@@ -268,11 +268,9 @@ const std::vector<ForceTest>& force_tests() {
          0,
          {"alone", 0, "a moment about the vertical that turns the wheel towards toe-in", one_alone,
           "programs that load one wheel"},
-         {{"parallel", 1,
-           "a moment about z on each wheel, both the same way round, on this wheel "
-           "towards toe-in",
-           alike, "rigs: aligning torque, parallel"},
-          {"opposed", -1, "a moment about z on each wheel, both towards toe-in", alike,
+         {{"parallel", 1, "the same moment about z on each wheel, here toe-in", alike,
+           "rigs: aligning torque, parallel"},
+          {"opposed", -1, "a moment about z on each wheel towards toe-in", alike,
            "rigs: aligning torque, opposed"}},
          {{"aligning_torque_steer", Unit::deg_per_100Nm, Seen::toe},
           {"aligning_torque_camber", Unit::deg_per_100Nm, Seen::camber}}}};
