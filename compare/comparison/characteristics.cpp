@@ -212,7 +212,6 @@ struct Loading {
     const char* name;  // after "@"
     double other;      // on the other wheel, per unit on this one, ground axes
     const char* cause;
-    const char* loaded;
     const char* rig;  // what rigs call it
 };
 struct ForceTest {
@@ -223,10 +222,6 @@ struct ForceTest {
     std::vector<ForceFigure> figures;
 };
 
-constexpr const char* one_alone = "this wheel alone loaded";
-constexpr const char* alike = "both wheels loaded alike";
-constexpr const char* towards_each_other = "both wheels loaded towards the middle of the vehicle";
-
 const std::vector<ForceTest>& force_tests() {
     static const std::vector<ForceTest> tests{
         {at_patch + 1,
@@ -235,42 +230,39 @@ const std::vector<ForceTest>& force_tests() {
           "a force at the contact patch towards the middle of the vehicle (as on the outer wheel "
           "in "
           "a turn)",
-          one_alone, "programs that load one wheel"},
+          "programs that load one wheel"},
          {{"parallel", 1,
            "a force at each contact patch, both to the same side, on this wheel towards the middle "
            "of the vehicle",
-           alike, "rigs: lateral force, parallel"},
+           "rigs: lateral force, parallel"},
           {"opposed", -1, "a force at each contact patch, both towards the middle of the vehicle",
-           towards_each_other, "rigs: lateral force, opposed"}},
+           "rigs: lateral force, opposed"}},
          {{"lateral_force_steer", Unit::deg_per_kN, Seen::toe},
           {"lateral_force_camber", Unit::deg_per_kN, Seen::camber},
           {"lateral_stiffness", Unit::newton_per_mm, Seen::along_the_force,
            "lateral force at the contact patch over its lateral displacement"}}},
         {at_patch,
          -1,
-         {"alone", 0, "a force to the back at the contact patch", one_alone,
-          "programs that load one wheel"},
-         {{"both", 1, "a force to the back at each contact patch", alike,
-           "rigs: both wheels braked"}},
+         {"alone", 0, "a force to the back at the contact patch", "programs that load one wheel"},
+         {{"both", 1, "a force to the back at each contact patch", "rigs: both wheels braked"}},
          {{"braking_force_steer", Unit::deg_per_kN, Seen::toe},
           {"braking_force_camber", Unit::deg_per_kN, Seen::camber},
           {"longitudinal_stiffness", Unit::newton_per_mm, Seen::along_the_force,
            "longitudinal force at the contact patch over its longitudinal displacement"}}},
         {at_centre,
          1,
-         {"alone", 0, "a force forward at the wheel centre", one_alone,
-          "programs that load one wheel"},
-         {{"both", 1, "a force forward at each wheel centre", alike, "rigs: both wheels driven"}},
+         {"alone", 0, "a force forward at the wheel centre", "programs that load one wheel"},
+         {{"both", 1, "a force forward at each wheel centre", "rigs: both wheels driven"}},
          {{"traction_force_steer", Unit::deg_per_kN, Seen::toe},
           {"longitudinal_stiffness_at_centre", Unit::newton_per_mm, Seen::along_the_force,
            "longitudinal force at the wheel centre over its longitudinal displacement"}}},
         {moment_on + 2,
          0,
-         {"alone", 0, "a moment about the vertical that turns the wheel towards toe-in", one_alone,
+         {"alone", 0, "a moment about the vertical that turns the wheel towards toe-in",
           "programs that load one wheel"},
-         {{"parallel", 1, "the same moment about z on each wheel, here toe-in", alike,
+         {{"parallel", 1, "the same moment about z on each wheel, here towards toe-in",
            "rigs: aligning torque, parallel"},
-          {"opposed", -1, "a moment about z on each wheel towards toe-in", alike,
+          {"opposed", -1, "a moment about z on each wheel towards toe-in",
            "rigs: aligning torque, opposed"}},
          {{"aligning_torque_steer", Unit::deg_per_100Nm, Seen::toe},
           {"aligning_torque_camber", Unit::deg_per_100Nm, Seen::camber}}}};
@@ -305,16 +297,22 @@ Entry entry_of(Owner owner, const ForceTest& test, const Loading& loading,
                                ? ratio(1, sum, std::min(rigid, cancelled / std::abs(alone)))
                                : (sign != 0 ? sign : -x.side(w)) * sum;
                 }};
-    if (figure.seen == Seen::along_the_force) {
-        entry.definition =
-            figure.stiffness + (axle ? fmt::format(", {}", loading.loaded) : "") + at_height;
-        entry.undefined = gives_nothing;
-    } else {
-        const bool toe = figure.seen == Seen::toe;
-        entry.definition = fmt::format(
-            "change of {} over {}{}{}; positive {}", toe ? "toe" : "camber", loading.cause,
-            axle && loading.other == 0 ? fmt::format(", {}", loading.loaded) : "", at_height,
-            toe ? "towards toe-in" : "where the top leans out");
+    switch (figure.seen) {
+        case Seen::toe:
+            entry.definition = fmt::format(
+                "change of toe over {}{}{}; positive towards toe-in", loading.cause,
+                axle && loading.other == 0 ? ", this wheel alone loaded" : "", at_height);
+            break;
+        case Seen::camber:
+            entry.definition = fmt::format("change of camber {}; positive where the top leans out",
+                                           axle ? "in the same test"
+                                           : test.cause >= moment_on && test.cause < at_patch
+                                               ? "over the same moment, likewise"
+                                               : "over the same force, likewise");
+            break;
+        case Seen::along_the_force:
+            entry.definition = figure.stiffness + (axle ? " in the same test" : at_height);
+            entry.undefined = gives_nothing;
     }
     entry.used_by = loading.rig;
     return entry;

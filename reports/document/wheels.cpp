@@ -228,16 +228,11 @@ json pushes_json(const Model& model, const Branch& branch) {
                        (kind == "longitudinal force" && e.along_centre != e.along_patch);
     if (!known || std::ranges::all_of(e.push, [](double push) { return push == 0; }))
         return nullptr;
-    const bool forward = e.along_centre;
     return {{"per_unit", e.push},
             {"positive", kind == "moment"          ? "towards toe-in"
                          : kind == "lateral force" ? "inwards"
-                         : forward                 ? "forward"
-                                                   : "to the back"},
-            {"negative", kind == "moment"          ? "towards toe-out"
-                         : kind == "lateral force" ? "outwards"
-                         : forward                 ? "to the back"
-                                                   : "forward"}};
+                         : e.along_centre          ? "forward"
+                                                   : "to the back"}};
 }
 
 json efforts_json(const Branch& branch, const std::vector<compare::Channel>& channels) {

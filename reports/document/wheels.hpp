@@ -13,8 +13,8 @@ namespace elastocheck::reports {
 // wheels), or "other".
 const char* load_case(const Model& model, const Branch& branch);
 
-// Force or moment on each wheel in the plane of the road per unit of the parameter, and its
-// directions, as the K&C figures count it: inwards, to the back at the patch, forward at the wheel
+// Force or moment on each wheel in the plane of the road per unit of the parameter, and the
+// direction, as the K&C figures count it: inwards, to the back at the patch, forward at the wheel
 // centre, towards toe-in. Null where the branch is no such test.
 nlohmann::ordered_json pushes_json(const Model& model, const Branch& branch);
 

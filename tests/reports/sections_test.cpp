@@ -495,8 +495,9 @@ TEST(Sections, RatesOfAnAxleAreTheTestsOfARigInOneDirection) {
             if (row[0] > 0 && row[0] < nearest) nearest = row[0], slope = 1e3 * row[1] / row[0];
         EXPECT_NEAR(slope, steer, 0.15 * std::abs(steer)) << series.title;
     }
-    expect_parts(said(result, "compliance"), {"left, 3000 N outwards", "right, 3000 N inwards",
-                                              "left, 150 N·m towards toe-in"});
+    expect_parts(said(result, "compliance"),
+                 {"lateral, inwards: changes", "| left, 3000 N | right, −3000 N |",
+                  "braking, to the back: changes", "aligning, towards toe-in: changes"});
 }
 
 TEST(Sections, RatesOfASpringAreInTheColumnOfItsWheel) {

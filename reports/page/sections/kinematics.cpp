@@ -93,13 +93,13 @@ struct Case {
 // a wheel that is not loaded that on the other one.
 struct Push {
     double factor = 1;
-    std::string positive{}, negative{};  // "inwards", "outwards"; empty: the parameter as it stands
+    std::string positive{};  // "inwards"; empty: the parameter as it stands
 };
 Push push_of(const Case& c, const std::vector<WheelInfo>& wheels, const WheelInfo& wheel) {
     const auto pushes = c.sweep.branches.front().find("pushes");
     if (!pushes || !pushes->value->is_object()) return {};
     const auto factors = (*pushes)["per_unit"].numbers();
-    Push push{0, (*pushes)["positive"].text(), (*pushes)["negative"].text()};
+    Push push{0, (*pushes)["positive"].text()};
     for (std::size_t w = 0; w < std::min(wheels.size(), factors.size()); ++w)
         if (factors[w] != 0 && (push.factor == 0 || wheels[w].name == wheel.name))
             push.factor = factors[w];
@@ -375,26 +375,23 @@ Table stations(const Case& c, const std::string& caption, const std::vector<Chan
 // Changes at the ends of a load case, a quantity a row.
 Table at_ends(const Case& c, const std::vector<ChannelInfo>& channels,
               const std::vector<WheelInfo>& wheels, const std::vector<Quantity>& quantities) {
-    Table table{.caption = fmt::format("{}: changes since the start of the branch", c.legend()),
+    const std::string direction = push_of(c, wheels, wheels[0]).positive;
+    Table table{.caption = fmt::format("{}{}{}: changes since the start of the branch", c.legend(),
+                                       direction.empty() ? "" : ", ", direction),
                 .columns = {{"change", true}}};
     std::vector<std::size_t> ends;
     for (const std::size_t k : {std::size_t{0}, c.curve.a.size() - 1})
         if (k != c.curve.start) ends.push_back(k);
     for (const auto k : ends)
-        for (const auto& wheel : wheels) {
-            const Push push = push_of(c, wheels, wheel);
-            const double force = push.factor * c.curve.a[k];
-            const bool said = !push.positive.empty();
-            table.columns.push_back(
-                {fmt::format("{}{}{} {}{}{}", wheel.name, wheel.name.empty() ? "at " : ", ",
-                             short_number(said ? std::abs(force) : force), c.sweep.unit,
-                             said ? " " : "", force < 0 ? push.negative : push.positive)});
-        }
+        for (const auto& wheel : wheels)
+            table.columns.push_back({fmt::format(
+                "{}{}{} {}", wheel.name, wheel.name.empty() ? "at " : ", ",
+                short_number(push_of(c, wheels, wheel).factor * c.curve.a[k]), c.sweep.unit)});
     for (const auto& quantity : quantities) {
         const auto found = find(channels, wheels, quantity.name);
         if (found.size() != wheels.size()) continue;
         std::vector<std::string> row{
-            fmt::format("{} [{}], {}", quantity.title, found[0].unit, quantity.sign)};
+            fmt::format("{} [{}], {}", as_words(quantity.name), found[0].unit, quantity.sign)};
         for (const auto k : ends)
             for (const auto& of : found) {
                 const auto values = values_of(c, of);
