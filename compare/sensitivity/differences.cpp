@@ -208,7 +208,7 @@ std::vector<double> sizes_of_rows(const ReadSide& of, const MatrixXd& rate,
 }
 
 // Of smooth functions the difference of the two slopes is of the order h³: what is there is rounding,
-// of all numbers alike. Four times that, as a single one may be small by chance.
+// of all numbers alike.
 MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near) {
     MatrixXd rounding = MatrixXd::Zero(entries.rate.rows(), entries.rate.cols());
     for (Index c = 0; c < rounding.rows(); ++c) {
@@ -222,8 +222,8 @@ MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near)
         for (Index k = 0; k < rounding.cols(); ++k)
             if (entries.kink(c, k) > 0)
                 rounding(c, k) =
-                    4 * std::max(entries.check(c, k) < across_a_knot ? entries.kink(c, k) : 0,
-                                 *middle / near[static_cast<std::size_t>(k)].h);
+                    std::max(entries.check(c, k) < across_a_knot ? entries.kink(c, k) : 0,
+                             *middle / near[static_cast<std::size_t>(k)].h);
     }
     return rounding;
 }
@@ -276,7 +276,7 @@ struct Refining {
         if (!up.why.front().empty() || !down.why.front().empty())
             return;  // at the end of its range
         for (Index c = 0; c < check.size(); ++c) {
-            const double rounded = 25 * rounding[c] / number.h;
+            const double rounded = 100 * rounding[c] / number.h;
             const double size = settled * sizes[static_cast<std::size_t>(c)] / number.step;
             if (std::abs(check[c]) <= size ||
                 std::abs(up.rate(c, 0) - down.rate(c, 0)) <= one_slope / settled * size + rounded)

@@ -350,8 +350,10 @@ Disagreement compared(const Gradients& all, const SideGradients& side) {
                     ++worst.compared;
                     const double rounding = first.rounding[s](row, column) +
                                             other.rounding[s](row, column),
-                                 off = (std::abs(a - b) - rounding) * all.numbers[k].step,
+                                 distance = std::abs(a - b) * all.numbers[k].step,
+                                 off = distance - rounding * all.numbers[k].step,
                                  share = off <= 0 ? 0 : off / sizes[c];
+                    worst.whole = std::max(worst.whole, distance / sizes[c]);
                     if (share <= worst.share || std::isnan(worst.share)) continue;
                     worst.share = share;
                     worst.where = fmt::format("{} by {} at {:g} {}: {} {:.12g}, {} {:.12g}",

@@ -48,7 +48,8 @@ inline constexpr double gradients_agree = 1e-7;
 
 // Difference of two legs that is the largest share of what is allowed.
 struct Disagreement {
-    double share = 0;   // of the largest entry of the output's row
+    double share = 0;   // beyond rounding, of the largest entry of the output's row
+    double whole = 0;   // likewise, with its rounding
     std::string where;  // "toe by points.a.z at 100 N: equilibrium 1.2, energy 1.3"
     long compared = 0;
     bool agrees() const { return share <= gradients_agree; }

@@ -227,7 +227,7 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
         for (auto& row : compare::effect_rows(all))
             if ((row.at == 0) == of_design) rows.push_back(std::move(row));
         for (const auto& side : all.sides) {
-            apart = std::max(apart, side.worst.share), compared += side.worst.compared;
+            apart = std::max(apart, side.worst.whole), compared += side.worst.compared;
             if (const auto why = not_confirmed(side); !why.empty()) reasons.push_back(why);
         }
     };

@@ -170,9 +170,10 @@ std::string sensitivity_text(const Gradients& all, int most) {
             if (!leg.failure.empty())
                 fmt::format_to(out, "{} leg: {}\n", name(leg.leg), leg.failure);
         fmt::format_to(out,
-                       "{} entries compared between the legs, largest difference beyond rounding "
-                       "{:.1e} of the largest of its row{}{}\n\n",
-                       side.worst.compared, side.worst.share, side.worst.agrees() ? "" : ": ",
+                       "{} entries compared between the legs, largest difference {:.1e} of the "
+                       "largest of its row, {:.1e} beyond rounding{}{}\n\n",
+                       side.worst.compared, side.worst.whole, side.worst.share,
+                       side.worst.agrees() ? "" : ": ",
                        side.worst.agrees() ? "" : side.worst.where);
     }
     fmt::format_to(
@@ -205,6 +206,7 @@ json sensitivity_json(const Gradients& all) {
                          {"branch", side.branch},
                          {"compared", side.worst.compared},
                          {"worst", side.worst.share},
+                         {"with_rounding", side.worst.whole},
                          {"where", side.worst.where},
                          {"legs", by}});
     }
