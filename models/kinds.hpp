@@ -340,7 +340,7 @@ auto member(K& kind) {
 // [rad], the free length of an element [m]; nullptr if it has none.
 template <class K>
 auto driven_number(K& kind) {
-    using Value = std::conditional_t<std::is_const_v<K>, const Real, Real>;
+    using Value = std::conditional_t<std::is_const_v<K>, const double, double>;
     Value* found = nullptr;
     each_member(kind, overloaded{[&](Length<Value> l) { found = &l.value; },
                                  [&](PlaneAngle<Value> a) { found = &a.value; }});
@@ -357,7 +357,7 @@ auto preload(K& kind) {
 template <class K>
 bool is_angle(const K& kind) {
     bool angle = false;
-    each_member(kind, [&](PlaneAngle<const Real>) { angle = true; });
+    each_member(kind, [&](PlaneAngle<const double>) { angle = true; });
     return angle;
 }
 
@@ -397,7 +397,7 @@ inline bool is_follower(const LoadKind& load) {
 inline bool is_direction(const ConstraintKind& kind) { return member<Point>(kind) == nullptr; }
 
 // The rate of a linear law, the curve of another; nullptr where the law is not of this kind.
-inline const Real* rate_of(const ScalarLaw& law) {
+inline const double* rate_of(const ScalarLaw& law) {
     const auto* linear = std::get_if<LinearRate>(&law);
     return linear != nullptr ? &linear->k : nullptr;
 }

@@ -7,7 +7,7 @@ namespace elastocheck {
 
 // f(x), for compile() and the reader, which need the force at the design position. Each leg has its
 // own evaluation.
-Real force(const ScalarLaw& law, Real x);
+double force(const ScalarLaw& law, double x);
 
 // No force at any deformation.
 bool is_zero(const ScalarLaw& law);
@@ -22,7 +22,7 @@ SpatialLaw with_signs(const SpatialLaw& law, const Vector6& signs);
 // The law for a deformation `stretch` times and a force `force` times as large:
 // f'(x) = force · f(x / stretch). A full matrix remains symmetric: its coupling terms take the
 // square roots of the factors of both axes.
-ScalarLaw scaled(const ScalarLaw& law, Real stretch, Real force);
+ScalarLaw scaled(const ScalarLaw& law, double stretch, double force);
 SpatialLaw scaled(const SpatialLaw& law, const Vector6& stretch, const Vector6& force);
 
 // The same bushing with its markers i and j swapped; deformations, preload and undeformed offset

@@ -111,7 +111,8 @@ double difference_step(const VariedNumber& number) {
     if (const auto unit = millimetre().find(number.unit); unit != millimetre().end())
         return 0.05 * unit->second;
     if (number.unit == "deg") return 0.05;
-    return 1e-3 * (number.value != 0 ? std::abs(number.value) : 100);
+    const double scale = number.unit.empty() ? 10 : 100;  // of a weight or a direction; of a force
+    return 1e-3 * (number.value != 0 ? std::abs(number.value) : scale);
 }
 
 VaryingScene varying(const std::filesystem::path& file, std::span<const Setting> settings,

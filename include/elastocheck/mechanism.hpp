@@ -11,14 +11,9 @@
 #include <variant>
 #include <vector>
 
-// Real is the type of the numbers of a scene and of a model.
-//
-// All are in SI units, m, N, rad and their products; the comment of a field says which. Counts,
-// positions in lists and kinds are int and enumerations, so that a number that may be varied shows in
-// its type.
-namespace elastocheck {
-using Real = double;
-}
+// All numbers are in SI units, m, N, rad and their products; the comment of a field says which.
+// Counts, positions in lists and kinds are int and enumerations, so that a number that may be varied
+// shows in its type.
 
 // ---- Bodies and what is fixed in them.
 namespace elastocheck {
@@ -26,11 +21,11 @@ namespace elastocheck {
 using BodyId = int;  // position in Scene::bodies or Model::bodies
 inline constexpr BodyId ground = -1;
 
-using Vector3 = Eigen::Matrix<Real, 3, 1>;
-using Matrix3 = Eigen::Matrix<Real, 3, 3>;
-using Quaternion = Eigen::Quaternion<Real>;
-using Matrix6 = Eigen::Matrix<Real, 6, 6>;
-using Vector6 = Eigen::Matrix<Real, 6, 1>;
+using Vector3 = Eigen::Matrix<double, 3, 1>;
+using Matrix3 = Eigen::Matrix<double, 3, 3>;
+using Quaternion = Eigen::Quaternion<double>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct Pose {
     Vector3 r = Vector3::Zero();            // origin of the body [m]
@@ -90,13 +85,13 @@ struct Fixed {
 };  // x, y: the same two perpendicular directions on each
 struct Distance {
     Point i, j;
-    Real length = 0;
+    double length = 0;
 };  // [m] > 0
 struct InPlane {
     Point i, j;
     Direction normal_j;
-    Real offset = 0;  // of the plane from j along its normal [m]
-};                    // i stays in the plane
+    double offset = 0;  // of the plane from j along its normal [m]
+};                      // i stays in the plane
 struct InLine {
     Point i, j;
     Direction axis_j;
@@ -113,7 +108,7 @@ struct Parallel {
 struct Angle {
     Direction i;
     Direction j, y_j;  // perpendicular
-    Real angle = 0;    // [rad]
+    double angle = 0;  // [rad]
 };
 
 using JointKind = std::variant<Spherical, Revolute, Universal, Cylindrical, Translational, Planar,
@@ -129,8 +124,8 @@ struct Joint {
 
 // Laws of one deformation x.
 struct LinearRate {
-    Real k = 0;  // [N/m] or [N·m/rad] ≥ 0
-};               // u(x) = ½ k x²
+    double k = 0;  // [N/m] or [N·m/rad] ≥ 0
+};                 // u(x) = ½ k x²
 
 // Force over a deformation, a piecewise cubic polynomial:
 //
@@ -141,8 +136,8 @@ struct LinearRate {
 // Its slope is continuous for a smooth interpolant; it jumps at the rows of a piecewise linear
 // table and where a stop closes.
 struct Curve {
-    std::vector<Real> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
-    std::vector<std::array<Real, 4>>
+    std::vector<double> knots;  // x_0 < x_1 < ... < x_K, at least one [m] or [rad]
+    std::vector<std::array<double, 4>>
         pieces;                 // c [N, N/m, ...] of the piece before the first knot, about it,
                                 // then of the piece behind each knot, about that knot
     bool known_outside = true;  // false: undefined beyond the end knots, and a branch ends there
@@ -162,7 +157,7 @@ using SpatialLaw = std::variant<LinearStiffness, PerAxis>;
 struct AxialSpring {
     Point i, j;
     ScalarLaw law;
-    Real free_length = 0;  // ℓ₀ [m]
+    double free_length = 0;  // ℓ₀ [m]
 };
 
 // Deformation measure of a bushing and the direction of its forces. Programs differ here and all

@@ -22,19 +22,19 @@ struct CoincidentPoints {
 struct PointInPlane {
     Point i, j;
     Direction normal_j;
-    Real offset = 0;  // [m]
-};                    // n_j · (p_i - p_j) = offset    1 row
+    double offset = 0;  // [m]
+};                      // n_j · (p_i - p_j) = offset    1 row
 struct PerpendicularDirections {
     Direction i, j;
 };  // u_i · u_j = 0                 1 row
 struct DistanceBetween {
     Point i, j;
-    Real length = 0;
+    double length = 0;
 };  // |p_i - p_j| = length          1 row
 
 struct DirectionAtAngle {
     Direction i, j, y_j;  // x_j = j, perpendicular to y_j on the same body; u_i lies in their plane
-    Real angle = 0;       // [rad]
+    double angle = 0;     // [rad]
 };                        // u_i · (cos α y_j - sin α x_j) = 0,  α = angle   1 row
 
 using ConstraintKind = std::variant<CoincidentPoints, PointInPlane, PerpendicularDirections,

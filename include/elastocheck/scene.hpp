@@ -30,8 +30,8 @@ using Driven = std::variant<Load, Motion, FreeLength, Preload>;
 
 struct Driver {
     Driven what;
-    Real start = 0;  // at a = 0, constant while a changes
-    Real rate = 0;   // per unit of a
+    double start = 0;  // at a = 0, constant while a changes
+    double rate = 0;   // per unit of a
 };
 
 enum class ParameterUnit { newton, newton_metre, metre, radian, none };
@@ -42,8 +42,8 @@ enum class ParameterUnit { newton, newton_metre, metre, radian, none };
 // N, 300 steps each.
 struct Branch {
     std::string name;
-    Real from = 0;  // of the parameter a
-    Real to = 0;
+    double from = 0;  // of the parameter a
+    double to = 0;
     int steps = 0;  // equal increments of a in the published sweep, over the whole branch
     ParameterUnit unit = ParameterUnit::newton;  // of a
     std::vector<Driver> drivers;
@@ -64,7 +64,7 @@ struct Wheel {
         Vector3::Zero();  // contact patch at the design pose, a point of the body [m]
     Vector3 spin_axis_local = Vector3::UnitY();  // unit, pointing outboard
     int side = +1;                               // +1 left, -1 right
-    Real tyre_rate =
+    double tyre_rate =
         0;  // vertical, k_t [N/m]; 0: no tyre given. Ride rate: 1 / (1/k_wheel + 1/k_t)
     // none where the geometry has none, as in a multi-link
     std::optional<SteeringAxis> steering_axis = {};
@@ -85,12 +85,12 @@ struct Damper {
 // Vehicle data for the outputs that depend on it: anti-dive, Ackermann.
 enum class Axle { front, rear };
 struct Vehicle {
-    Real wheelbase = 0;  // [m] > 0
-    Real cg_height =
+    double wheelbase = 0;  // [m] > 0
+    double cg_height =
         0;  // of the whole vehicle, above the contact patches of the design position [m] > 0
     Axle axle = Axle::front;  // axle of the scene's wheels
-    Real brake_share = 0;     // of the vehicle's braking force, at this axle, 0 ... 1
-    Real drive_share = 0;     // of the driving force, 0 ... 1
+    double brake_share = 0;   // of the vehicle's braking force, at this axle, 0 ... 1
+    double drive_share = 0;   // of the driving force, 0 ... 1
 };
 
 // A named position of the design, ground axes [m]. For drawings; the legs do not read it.
@@ -131,13 +131,13 @@ struct Trim {
         // relative to its value in the scene; never a Load
         Driven what;
         // change of `what` for one unit of the named quantity [SI/SI]
-        Real per_unit = 1;
+        double per_unit = 1;
         ParameterUnit unit = ParameterUnit::newton;  // of the named quantity
     };
     struct Condition {
         std::string name;  // "left.travel"
         ConditionKind what;
-        std::optional<Real> value;  // SI; none: its value in the scene at the design position
+        std::optional<double> value;  // SI; none: its value in the scene at the design position
     };
     std::vector<Adjustment> adjust;
     std::vector<Condition> until;

@@ -107,7 +107,7 @@ void check_vehicle(const Cursor& scene, const Units& units, std::vector<std::str
     if (!vehicle) return;
     for (const auto& [field, from, to] : lengths_of_vehicle) {
         const Cursor given = vehicle->require(field);
-        const Real value = units.length.si(given.number());
+        const double value = units.length.si(given.number());
         if (value >= from && value <= to) continue;
         warnings.push_back(
             at(given,
@@ -141,7 +141,7 @@ void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
                                   "the contact patch is above the wheel centre; does z point up?"));
             return;
         }
-        Real up = 0;
+        double up = 0;
         std::string name;
         for (const Load& load : read.static_loads) {
             const Point* point = member<Point>(load.kind);

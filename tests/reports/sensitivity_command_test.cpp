@@ -52,6 +52,13 @@ TEST(SensitivityCommand, WritesEveryDerivative) {
     EXPECT_TRUE(contains(text_of(file), "branch,parameter,unit,output,number,derivative,per"));
 }
 
+// A direction that is zero in the scene is varied by a hundredth, not by a tenth of what it multiplies.
+TEST(SensitivityCommand, VariesAZeroDirectionByLittle) {
+    expect_says("sensitivity " + scenes +
+                    "/trailing_arm.yaml --of toe --to loads.vertical.force.x --points 1",
+                0, {.out = {"loads.vertical.force.x", "the legs agree within 1e-07"}});
+}
+
 // A number that decides which parts there are, or counts, has no derivative: the entry says so.
 TEST(SensitivityCommand, SaysWhyThereIsNoDerivative) {
     expect_says("sensitivity " + scenes +

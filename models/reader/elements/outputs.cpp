@@ -52,7 +52,7 @@ Wheel read_wheel(const Cursor& at, const Definitions& defs) {
                 .contact_local = local(contact ? *contact : centre),
                 .spin_axis_local = direction(spin_axis, defs),
                 .side = side.one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
-    if (const Real y = hardpoint(centre, defs).y(); wheel.side * y < 0)
+    if (const double y = hardpoint(centre, defs).y(); wheel.side * y < 0)
         side.fail(
             fmt::format("a {} wheel with its centre at y = {:.6g} {}; y points left from the "
                         "middle of the car: "
