@@ -13,7 +13,7 @@ namespace elastocheck {
 
 template <class Affine>
 struct DrivenElement {
-    Affine free_length;             // of an element that has one [m]
+    Affine free_length;             // of a spring; added to the undeformed d_z of a bushing [m]
     std::array<Affine, 6> preload;  // [N, N·m]
 };
 template <class Affine>
@@ -48,20 +48,10 @@ DrivenInputs<Affine> driven_inputs(const Model& model, const Branch& branch) {
     for (const auto& load : model.static_loads)
         inputs.loads.push_back({load.kind, {Value(1), Value(0)}});
 
-    const auto element_with = [&](int k, bool has_it, const char* what) -> auto& {
-        if (!has_it)
-            throw std::invalid_argument("element '" +
-                                        model.elastics.at(static_cast<std::size_t>(k)).name +
-                                        "' has no " + what + " to be driven");
-        return inputs.elements[static_cast<std::size_t>(k)];
-    };
     for (const auto& driver : branch.drivers) {
         const auto add = [&](Affine& to, double times) {
             to.start += Value(times) * Value(driver.start);
             to.rate += Value(times) * Value(driver.rate);
-        };
-        const auto kind = [&](int k) -> const ElasticKind& {
-            return model.elastics.at(static_cast<std::size_t>(k)).kind;
         };
         std::visit(
             overloaded{
@@ -77,13 +67,15 @@ DrivenInputs<Affine> driven_inputs(const Model& model, const Branch& branch) {
                 },
                 [&](const FreeLength& length) {
                     const int k = length.elastic;
-                    add(element_with(k, driven_number(kind(k)) != nullptr, "free length")
-                            .free_length,
-                        1);
+                    add(inputs.elements.at(static_cast<std::size_t>(k)).free_length, 1);
                 },
                 [&](const Preload& wrench) {
                     const int k = wrench.elastic;
-                    auto& element = element_with(k, preload(kind(k)) != nullptr, "preload");
+                    const Elastic& elastic = model.elastics.at(static_cast<std::size_t>(k));
+                    if (preload(elastic.kind) == nullptr)
+                        throw std::invalid_argument("element '" + elastic.name +
+                                                    "' has no preload to be driven");
+                    auto& element = inputs.elements[static_cast<std::size_t>(k)];
                     for (std::size_t n = 0; n < 6; ++n)
                         add(element.preload[n], wrench.direction[static_cast<int>(n)]);
                 }},

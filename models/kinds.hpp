@@ -227,23 +227,29 @@ struct Kind<Bushing> {
 
 template <>
 struct Kind<DeadForce> {
-    static constexpr bool is_follower = false;
+    static constexpr bool has_potential = true;
     static void members(auto& l, auto&& f) { f(l.at, LoadVector{l.f, ground, false}); }
 };
 template <>
 struct Kind<DeadMoment> {
-    static constexpr bool is_follower = false;
+    static constexpr bool has_potential = true;
     static void members(auto& l, auto&& f) { f(l.body, LoadVector{l.m, ground, true}); }
 };
 template <>
 struct Kind<FollowerForce> {
-    static constexpr bool is_follower = true;
+    static constexpr bool has_potential = false;
     static void members(auto& l, auto&& f) { f(l.at, LoadVector{l.f_local, l.at.body, false}); }
 };
 template <>
 struct Kind<FollowerMoment> {
-    static constexpr bool is_follower = true;
+    static constexpr bool has_potential = false;
     static void members(auto& l, auto&& f) { f(l.body, LoadVector{l.m_local, l.body, true}); }
+};
+
+template <>
+struct Kind<BrakeForce> {
+    static constexpr bool has_potential = false;
+    static void members(auto& l, auto&& f) { f(l.patch, l.body, LoadVector{l.f, ground, false}); }
 };
 
 template <>
@@ -388,8 +394,14 @@ inline bool is_moment(const LoadKind& load) {
     each_member(load, [&](LoadVector<const Vector3> v) { moment = v.is_moment; });
     return moment;
 }
+// Whether it rotates with its body.
 inline bool is_follower(const LoadKind& load) {
-    return std::visit([]<class L>(const L&) { return Kind<L>::is_follower; }, load);
+    bool follows = false;
+    each_member(load, [&](LoadVector<const Vector3> v) { follows = v.axes != ground; });
+    return follows;
+}
+inline bool has_potential(const LoadKind& load) {
+    return std::visit([]<class L>(const L&) { return Kind<L>::has_potential; }, load);
 }
 
 // Whether the rows of a constraint are cosines of directions [-] with moments as reactions, in

@@ -54,9 +54,7 @@ struct Wheels {
     Placed centre(std::size_t w) const {
         return placed(model.wheels[w].body, model.wheels[w].centre_local);
     }
-    Placed patch(std::size_t w) const {
-        return placed(model.wheels[w].body, model.wheels[w].contact_local);
-    }
+    Placed patch(std::size_t w) const { return point(model.wheels[w].contact); }
     Placed point(const Point& p) const { return placed(p.body, p.s_local); }
     double side(std::size_t w) const { return model.wheels[w].side; }
     Vector3d spin(std::size_t w) const {

@@ -467,7 +467,7 @@ double reciprocity(const Model& model, const Eigen::MatrixXd& C) {
     if (C.size() == 0) return nan;
     Eigen::VectorXd size = Eigen::VectorXd::Ones(C.rows());
     for (std::size_t w = 0; w < model.wheels.size(); ++w) {
-        const double radius = (model.wheels[w].centre_local - model.wheels[w].contact_local).norm();
+        const double radius = drawn_arm(model, model.wheels[w]).norm();
         if (radius > 0) size.segment<3>(static_cast<Eigen::Index>(6 * w + 3)).setConstant(radius);
     }
     const Eigen::MatrixXd even = size.asDiagonal() * C * size.asDiagonal();

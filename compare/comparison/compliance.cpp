@@ -27,27 +27,9 @@ bool is_jack(const Model& model, std::size_t joint) {
                                           std::holds_alternative<PointInPlane>(c.kind);
                                }) &&
            std::ranges::any_of(model.wheels, [&](const Wheel& wheel) {
-               return wheel.body == j.i &&
-                      (wheel.centre_local == j.at.s_local || wheel.contact_local == j.at.s_local);
+               return (wheel.body == j.i && wheel.centre_local == j.at.s_local) ||
+                      (wheel.contact.body == j.i && wheel.contact.s_local == j.at.s_local);
            });
-}
-
-// A tyre: a bushing between ground and a wheel with stiffness in d_z only, active only where
-// driven.
-const Bushing* tyre(const Elastic& elastic) {
-    return elastic.active_only_where_driven ? std::get_if<Bushing>(&elastic.kind) : nullptr;
-}
-
-// Vertical force of a tyre on its wheel [N].
-double tyre_force(const Bushing& tyre, std::size_t element, const Branch& branch,
-                  const Equilibrium& state) {
-    double stress = tyre.preload.z();
-    for (const auto& driver : branch.drivers)
-        if (const Vector6* direction = preload(driver.what);
-            direction != nullptr && driven_element(driver.what) == static_cast<int>(element))
-            stress += (driver.start + driver.rate * state.load) * direction->z();
-    const auto& K = std::get<LinearStiffness>(tyre.law).K;
-    return -(stress + K(2, 2) * deformation(tyre, state).z());
 }
 
 struct ResponseCase {
@@ -71,8 +53,10 @@ ResponseCase freed(const BranchSide& side, const Equilibrium& state) {
             free.state.reactions[k] = {};
         }
     for (std::size_t k = 0; k < side.model.elastics.size(); ++k)
-        if (const Bushing* at = tyre(side.model.elastics[k])) {
-            push({at->j.body, at->j.s_local}, tyre_force(*at, k, side.branch, state));
+        if (const Elastic& tyre = side.model.elastics[k]; tyre.written_as == WrittenAs::tyre) {
+            const Marker& at = std::get<Bushing>(tyre.kind).j;
+            const Vector6 e = deformation(tyre.kind, k, side.branch, state);
+            push({at.body, at.s_local}, -stress(tyre.kind, k, side.branch, state, e).z());
             std::erase_if(free.branch.drivers, [&](const Driver& driver) {
                 return driven_element(driver.what) == static_cast<int>(k);
             });
@@ -101,16 +85,21 @@ ResponseCase jacked_up(ResponseCase freed_case, std::size_t wheels) {
 }
 
 // Unit forces and moments at the wheel centres, then forces at the patches.
-std::vector<Disturbance> causes_at(const Model& model, bool with_patches) {
+// The longitudinal one brakes: the carrier holds a rolling wheel.
+std::vector<Disturbance> causes_at(const Model& model, const Equilibrium& state,
+                                   bool with_patches) {
     std::vector<Disturbance> list;
     for (const Wheel& wheel : model.wheels) {
-        const Point centre{wheel.body, wheel.centre_local}, patch{wheel.body, wheel.contact_local};
+        const Point centre{wheel.body, wheel.centre_local};
+        const Vector3d d = position(state.poses, wheel.contact) - position(state.poses, centre);
         for (int k = 0; k < 3; ++k)
             list.push_back(UnitWrench{centre, Vector3d::Unit(k), Vector3d::Zero()});
         for (int k = 0; k < 3; ++k)
             list.push_back(UnitWrench{centre, Vector3d::Zero(), Vector3d::Unit(k)});
         for (int k = 0; with_patches && k < 3; ++k)
-            list.push_back(UnitWrench{patch, Vector3d::Unit(k), Vector3d::Zero()});
+            list.push_back(k == 0 && wheel.rolls()
+                               ? UnitWrench{centre, Vector3d::Unit(k), d.cross(Vector3d::Unit(k))}
+                               : UnitWrench{wheel.contact, Vector3d::Unit(k), Vector3d::Zero()});
     }
     return list;
 }
@@ -137,7 +126,7 @@ std::vector<std::array<Motions, causes>> by_wheel(const std::vector<Motions>& al
     for (std::size_t w = 0; w < list.size(); ++w) {
         const Wheel& wheel = model.wheels[w];
         for (std::size_t k = 0; k < each; ++k) list[w][k] = all[each * w + k];
-        const Vector3d d = position(state.poses, wheel.body, wheel.contact_local) -
+        const Vector3d d = position(state.poses, wheel.contact) -
                            position(state.poses, wheel.body, wheel.centre_local);
         for (int axis = 0; !with_patches && axis < 3; ++axis)
             list[w][static_cast<std::size_t>(at_patch + axis)] = at_patch_of(list[w], d, axis);
@@ -194,10 +183,11 @@ WheelResponse wheel_response(const BranchSide& side, const SolverSettings& solve
     WheelResponse response;
     const std::size_t wheels = side.model.wheels.size();
     const ResponseCase freed_case = freed(side, state);
-    // The references refine their answers, so that those at the patch may be summed. The recursion
-    // does not: its sums would differ from its own answers by 1e-10.
-    const bool with_patches = solver.leg == Leg::recursive || solver.leg == Leg::series;
-    const auto wrenches = causes_at(side.model, with_patches);
+    // The references refine their answers, so that those at the patch of a wheel that does not roll
+    // may be summed. The recursion does not: its sums would differ from its own answers by 1e-10.
+    const bool with_patches = solver.leg == Leg::recursive || solver.leg == Leg::series ||
+                              std::ranges::any_of(side.model.wheels, &Wheel::rolls);
+    const auto wrenches = causes_at(side.model, state, with_patches);
     if (with_free) {
         const Response free = linear_response(solver, freed_case.model, freed_case.branch,
                                               freed_case.state, wrenches, analyses.free);

@@ -37,13 +37,6 @@ bool stands(const Elastic& elastic, int k, const Branch& branch) {
            });
 }
 
-// With s_z = k d_z - P - k h the tyre pushes the wheel up by -s_z, and its deflection is -s_z / k.
-double of_tyre(const ElasticKind& tyre, double s_z, bool is_force) {
-    const auto* law = member<SpatialLaw>(tyre);
-    const Matrix6* K = law != nullptr ? matrix_of(*law) : nullptr;
-    return is_force ? -s_z : K != nullptr && (*K)(2, 2) > 0 ? -s_z / (*K)(2, 2) : nan;
-}
-
 // Deformation and force of an element in a state; without them where it is not active.
 struct ElementState {
     const Elastic* elastic;
@@ -53,9 +46,8 @@ struct ElementState {
     double component(int k) const {
         if (!active) return nan;
         const bool is_force = k >= 6;
-        if (elastic->written_as == WrittenAs::tyre) return of_tyre(elastic->kind, s[2], is_force);
-        const bool reversed =
-            elastic->markers_swapped || is_spring(*elastic);  // positive in compression
+        const bool reversed = elastic->markers_swapped || is_spring(*elastic) ||
+                              elastic->written_as == WrittenAs::tyre;  // positive in compression
         return (reversed ? -1 : 1) * (is_force ? s : e)[k % 6];
     }
 };

@@ -27,7 +27,7 @@ struct WheelAt {
     double side = 1;
 
     Vector3d centre() const { return position(poses, wheel.body, wheel.centre_local); }
-    Vector3d patch() const { return position(poses, wheel.body, wheel.contact_local); }
+    Vector3d patch() const { return position(poses, wheel.contact); }
     Vector3d spin() const { return compare::pose(poses, wheel.body).p * wheel.spin_axis_local; }
     // The axis of the wheel's body that points outboard along ±y in the design position.
     Vector3d lateral() const {
@@ -48,7 +48,7 @@ struct WheelAt {
     // Where a circle of the drawn radius in the wheel's plane is lowest.
     Vector3d lowest() const {
         const Vector3d e = spin();
-        const double radius = (wheel.contact_local - wheel.centre_local).norm();
+        const double radius = drawn_arm(model, wheel).norm();
         return centre() + radius * (e * e.z() - Vector3d::UnitZ()).normalized();
     }
 

@@ -36,9 +36,7 @@ struct Configuration {
     Vector3d spin_axis(std::size_t w) const {
         return direction({wheel(w).body, wheel(w).spin_axis_local});
     }
-    Vector3d patch(std::size_t w) const {
-        return position({wheel(w).body, wheel(w).contact_local});
-    }
+    Vector3d patch(std::size_t w) const { return position(wheel(w).contact); }
     const Wrench& wrench(int joint) const {
         return state.reactions[static_cast<std::size_t>(joint)];
     }
@@ -182,7 +180,7 @@ struct Drawing {
     Configuration drawn() const { return {model, state}; }
 };
 Point centre_of(const Wheel& wheel) { return {wheel.body, wheel.centre_local}; }
-Point patch_of(const Wheel& wheel) { return {wheel.body, wheel.contact_local}; }
+Point patch_of(const Wheel& wheel) { return wheel.contact; }
 
 std::string body_name(const Model& model, BodyId body) {
     return body == ground ? "ground"

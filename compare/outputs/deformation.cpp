@@ -112,9 +112,15 @@ Vector6 deformation(const ElasticKind& kind, std::size_t element, const Branch& 
                free_length;
         return e;
     };
-    return std::visit(
-        overloaded{of_spring, [&](const Bushing& bushing) { return deformation(bushing, state); }},
-        kind);
+    const auto of_bushing = [&](const Bushing& bushing) {
+        Vector6 e = deformation(bushing, state);
+        for (const auto& driver : branch.drivers)
+            if (driven_element(driver.what) == static_cast<int>(element) &&
+                preload(driver.what) == nullptr)
+                e.z() -= driver.start + driver.rate * state.load;
+        return e;
+    };
+    return std::visit(overloaded{of_spring, of_bushing}, kind);
 }
 
 double force(const ScalarLaw& law, double x) {

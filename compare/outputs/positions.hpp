@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "elastocheck/mechanism.hpp"
+#include "elastocheck/model.hpp"
 
 namespace elastocheck::compare {
 
@@ -22,6 +22,15 @@ inline Eigen::Vector3d position(const std::vector<Pose>& poses, BodyId body,
 }
 inline Eigen::Vector3d position(const std::vector<Pose>& poses, const Point& point) {
     return position(poses, point.body, point.s_local);
+}
+
+// From the wheel's centre to its patch at the design position, ground axes [m].
+inline Eigen::Vector3d drawn_arm(const Model& model, const Wheel& wheel) {
+    const auto drawn = [&](const Point& p) -> Eigen::Vector3d {
+        const Pose& on = model.bodies[static_cast<std::size_t>(p.body)].design;
+        return on.r + on.p * p.s_local;
+    };
+    return drawn(wheel.contact) - drawn({wheel.body, wheel.centre_local});
 }
 
 }  // namespace elastocheck::compare

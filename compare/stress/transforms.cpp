@@ -24,8 +24,10 @@ void each_part(Scene& scene, const F& visit) {
     if constexpr (std::is_invocable_v<const F&, Point&>) {
         for (auto& probe : scene.probes) visit(probe.at);
         for (auto& damper : scene.dampers) visit(damper.i), visit(damper.j);
-        for (auto& wheel : scene.wheels)
+        for (auto& wheel : scene.wheels) {
+            visit(wheel.contact);
             if (auto& axis = wheel.steering_axis) visit(axis->lower), visit(axis->upper);
+        }
     }
 }
 // The same, and the members of the loads.
@@ -98,8 +100,7 @@ Scene with_body_axes(const Scene& original, const std::vector<Quaterniond>& turn
                                       if (v.axes != ground) v.value = turn(v.axes) * v.value;
                                   }});
     for (auto& wheel : scene.wheels)
-        for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local})
-            *v = turn(wheel.body) * *v;
+        for (auto* v : {&wheel.centre_local, &wheel.spin_axis_local}) *v = turn(wheel.body) * *v;
     return scene;
 }
 
@@ -132,8 +133,7 @@ Scene mirrored(const Scene& original) {
     for (auto& branch : scene.branches)
         for (auto& driver : branch.drivers) each_member(driver.what, mirror_wrench);
     for (auto& wheel : scene.wheels) {
-        for (auto* v : {&wheel.centre_local, &wheel.contact_local, &wheel.spin_axis_local})
-            *v = S * *v;
+        for (auto* v : {&wheel.centre_local, &wheel.spin_axis_local}) *v = S * *v;
         wheel.side = -wheel.side;
     }
     return scene;
@@ -151,7 +151,7 @@ Scene reversed(const Scene& original) {
     for (auto& probe : scene.probes) renumber(probe.at.body);
     for (auto& damper : scene.dampers) renumber(damper.i.body), renumber(damper.j.body);
     for (auto& wheel : scene.wheels) {
-        renumber(wheel.body);
+        renumber(wheel.body), renumber(wheel.contact.body);
         if (auto& axis = wheel.steering_axis)
             renumber(axis->lower.body), renumber(axis->upper.body);
     }
@@ -220,7 +220,7 @@ Scene scaled(const Scene& original, double length, double force) {
         }
     }
     for (auto& wheel : scene.wheels) {
-        wheel.centre_local *= length, wheel.contact_local *= length;
+        wheel.centre_local *= length;
         wheel.tyre_rate *= force / length;
     }
     if (scene.vehicle) scene.vehicle->wheelbase *= length, scene.vehicle->cg_height *= length;
@@ -284,7 +284,7 @@ void for_each_number(Scene& scene, const std::function<void(double&)>& visit) {
             numbers.driven(driver.what), visit(driver.start), visit(driver.rate);
     }
     for (auto& wheel : scene.wheels) {
-        numbers(wheel.centre_local), numbers(wheel.contact_local);
+        numbers(wheel.centre_local), numbers(wheel.contact);
         numbers(wheel.spin_axis_local), visit(wheel.tyre_rate);
         if (auto& axis = wheel.steering_axis) numbers(axis->lower), numbers(axis->upper);
     }

@@ -48,33 +48,33 @@ struct Lifted {
     double height = 0;  // of the road per unit of the parameter [m]
 };
 
-// Road height per unit of the driven preload, if the element is the tyre under this wheel, which
-// pushes the wheel up by P - k_t (d_z - h): its preload is -P - k_t h.
-double road_height(const Elastic& elastic, const Vector6& driven, const Wheel& wheel) {
-    const auto* tyre = std::get_if<Bushing>(&elastic.kind);
-    const bool is_tyre = tyre != nullptr && elastic.active_only_where_driven &&
-                         wheel.tyre_rate > 0 && tyre->i.body == ground &&
-                         tyre->j.body == wheel.body &&
-                         (tyre->j.s_local - wheel.contact_local).norm() <= 1e-9;
-    return is_tyre ? -driven[2] / wheel.tyre_rate : 0;
+// Whether the element is the tyre under this wheel.
+bool is_under(const Elastic& elastic, const Wheel& wheel) {
+    if (elastic.written_as != WrittenAs::tyre) return false;
+    const Marker& patch = std::get<Bushing>(elastic.kind).j;
+    return patch.body == wheel.contact.body &&
+           (patch.s_local - wheel.contact.s_local).norm() <= 1e-9;
+}
+
+bool carries(const Wheel& wheel, BodyId body) {
+    return body == wheel.body || body == wheel.contact.body;
 }
 
 // The only driver that moves, if it is vertical and acts on this wheel's body.
 Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
     Lifted found;
     for (const auto& driver : branch.drivers) {
-        if (driver.rate == 0) {  // held
-            const Vector6* road = preload(driver.what);
-            if (road != nullptr &&
-                road_height(model.elastics[static_cast<std::size_t>(driven_element(driver.what))],
-                            *road, wheel) != 0)
-                return {};  // a wheel lifted off its tyre also carries the tyre force
+        const int element = driven_element(driver.what);
+        const bool is_road =
+            element >= 0 && is_under(model.elastics[static_cast<std::size_t>(element)], wheel);
+        if (driver.rate == 0) {      // held
+            if (is_road) return {};  // a wheel lifted off its tyre also carries the tyre force
             continue;
         }
         const Lifted one = std::visit(
             overloaded{[&](const Load& load) {
                            const auto* force = std::get_if<DeadForce>(&load.kind);
-                           const bool lifts = force != nullptr && force->at.body == wheel.body &&
+                           const bool lifts = force != nullptr && carries(wheel, force->at.body) &&
                                               vertical(force->f);
                            return Lifted{lifts ? Lift::load : Lift::none, -1,
                                          lifts ? driver.rate * force->f.z() : 0, 0};
@@ -82,21 +82,17 @@ Lifted lifted(const Model& model, const Branch& branch, const Wheel& wheel) {
                        [&](const Motion& motion) {
                            const ModelJoint& joint =
                                model.joints[static_cast<std::size_t>(motion.joint)];
-                           if (joint.driven < 0 || joint.i != wheel.body) return Lifted{};
+                           if (joint.driven < 0 || !carries(wheel, joint.i)) return Lifted{};
                            const auto* plane = std::get_if<PointInPlane>(
                                &model.constraints[static_cast<std::size_t>(joint.driven)].kind);
                            const bool lifts =
                                plane != nullptr && vertical(at_design(model, plane->normal_j));
                            return Lifted{lifts ? Lift::jack : Lift::none, motion.joint, 0, 0};
                        },
-                       [](const FreeLength&) { return Lifted{}; },
-                       [&](const Preload& preload) {
-                           const Elastic& elastic =
-                               model.elastics[static_cast<std::size_t>(preload.elastic)];
-                           const double height =
-                               driver.rate * road_height(elastic, preload.direction, wheel);
-                           return Lifted{height != 0 ? Lift::road : Lift::none, -1, 0, height};
-                       }},
+                       [&](const FreeLength&) {
+                           return is_road ? Lifted{Lift::road, -1, 0, driver.rate} : Lifted{};
+                       },
+                       [](const Preload&) { return Lifted{}; }},
             driver.what);
         if (one.by == Lift::none || found.by != Lift::none) return {};
         found = one;
@@ -177,7 +173,7 @@ std::vector<RateError> rate_errors(const Model& model, const Comparison& compari
                     if (by.by == Lift::load) return by.force * change;
                     if (by.by == Lift::jack) return gained(run.curve, force, end);
                     const auto z = [&](const std::optional<Equilibrium>& at) {
-                        return at ? position(at->poses, wheel.body, wheel.contact_local).z() : NAN;
+                        return at ? position(at->poses, wheel.contact).z() : NAN;
                     };
                     const auto& [front, start, middle, back] = run.landmarks;
                     return wheel.tyre_rate *

@@ -194,8 +194,8 @@ constexpr bool has_energy(const Formulation& f) { return f.conjugate && f.offset
 // [N], moment [N·m]) in marker axes at e = e₀, positive where it pulls j back against +e, as ∂u/∂e
 // does. `undeformed` is e₀ [m, rad], where the law has zero force.
 //
-// A torsion spring is a bushing that resists only θ_z, a tyre one to ground that resists only d_z,
-// a beam one at half its length with its frame in the middle (models/reader/definitions/beams.hpp).
+// A torsion spring is a bushing that resists only θ_z, a tyre one to ground that only pushes along
+// z (the road moves its undeformed d_z), a beam one at half its length with its frame in the middle (models/reader/definitions/beams.hpp).
 struct Bushing {
     Marker i, j;
     SpatialLaw law;
@@ -237,7 +237,15 @@ struct FollowerMoment {
     BodyId body = ground;
     Vector3 m_local = Vector3::Zero();  // [N·m], [m] or [-], body axes
 };
-using LoadKind = std::variant<DeadForce, DeadMoment, FollowerForce, FollowerMoment>;
+// The force of the road on a braked wheel, which the caliper holds to its carrier `body`: a dead
+// force f on the carrier along a line through the contact patch p, a point of the wheel, with the
+// moment (p - r) × f about the carrier's origin r. No potential.
+struct BrakeForce {
+    Point patch;
+    BodyId body = ground;
+    Vector3 f = Vector3::Zero();  // [N]; [-] if a driver multiplies it by newtons
+};
+using LoadKind = std::variant<DeadForce, DeadMoment, FollowerForce, FollowerMoment, BrakeForce>;
 struct Load {
     std::string name;
     LoadKind kind;

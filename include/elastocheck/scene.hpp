@@ -17,7 +17,7 @@ namespace elastocheck {
 struct Motion {
     int joint = 0;  // position in Scene::joints or Model::joints
 };
-// Change of the free length ℓ₀ of an AxialSpring [m].
+// Change of the free length ℓ₀ of an AxialSpring, or of the undeformed d_z of a Bushing [m].
 struct FreeLength {
     int elastic = 0;  // position in Scene::elastics or Model::elastics
 };
@@ -56,18 +56,27 @@ struct SteeringAxis {
     Point lower, upper;  // or ground
 };
 
+// A wheel that rolls is a body of its own, without mass, between its carrier and the road. With e
+// the spin axis, n the normal of the road and h a unit vector across both at the design pose:
+//
+//   bearing   revolute about e at the wheel centre c, wheel on carrier
+//   spin      h · n = 0, h fixed in the wheel, n in ground
+//
+// so that the direction e × h from c to the patch stays -(n - (n·e) e) / |n - (n·e) e|, and the
+// patch, a point of this body, the lowest point of the disc: p(q) = c - R (n - (n·e) e) / |...|.
 struct Wheel {
-    std::string name;  // "left"; empty if the scene has one wheel
-    BodyId body = ground;
+    std::string name;                        // "left"; empty if the scene has one wheel
+    BodyId body = ground;                    // the carrier
     Vector3 centre_local = Vector3::Zero();  // [m]
-    Vector3 contact_local =
-        Vector3::Zero();  // contact patch at the design pose, a point of the body [m]
+    Point contact;  // contact patch, of the rolling wheel or of the carrier
     Vector3 spin_axis_local = Vector3::UnitY();  // unit, pointing outboard
     int side = +1;                               // +1 left, -1 right
     double tyre_rate =
         0;  // vertical, k_t [N/m]; 0: no tyre given. Ride rate: 1 / (1/k_wheel + 1/k_t)
     // none where the geometry has none, as in a multi-link
     std::optional<SteeringAxis> steering_axis = {};
+
+    bool rolls() const { return contact.body != body; }
 };
 
 // A body point whose position is an output, for scenes that are not suspensions.

@@ -15,7 +15,7 @@ namespace elastocheck::reduce {
 template <class S, class F>
 void each_output_body(S& scene, F f) {
     for (auto& wheel : scene.wheels) {
-        f(wheel.body);
+        f(wheel.body), f(wheel.contact.body);
         if (wheel.steering_axis)
             f(wheel.steering_axis->lower.body), f(wheel.steering_axis->upper.body);
     }

@@ -30,7 +30,8 @@ class Sets {
     explicit Sets(const Scene& scene)
         : first_(scene.bodies.size() + 1), has_output_(scene.bodies.size() + 1) {
         std::iota(first_.begin(), first_.end(), std::size_t{0});
-        for (const Wheel& wheel : scene.wheels) has_output_[number(wheel.body)] = true;
+        for (const Wheel& wheel : scene.wheels)
+            has_output_[number(wheel.body)] = has_output_[number(wheel.contact.body)] = true;
         for (const Probe& probe : scene.probes) has_output_[number(probe.at.body)] = true;
     }
     BodyId first(BodyId body) { return static_cast<BodyId>(find(number(body))) - 1; }
@@ -83,12 +84,11 @@ struct OnMerged {
         v.value = u.u_local;
     }
     void operator()(Wheel& wheel) const {
-        Point centre{wheel.body, wheel.centre_local}, contact{wheel.body, wheel.contact_local};
+        Point centre{wheel.body, wheel.centre_local};
         Direction spin{wheel.body, wheel.spin_axis_local};
-        (*this)(centre), (*this)(contact), (*this)(spin);
+        (*this)(centre), (*this)(wheel.contact), (*this)(spin);
         wheel.spin_axis_local = spin.u_local;
         wheel.centre_local = centre.s_local;
-        wheel.contact_local = contact.s_local;
         wheel.body = centre.body;
         if (wheel.steering_axis)
             (*this)(wheel.steering_axis->lower), (*this)(wheel.steering_axis->upper);

@@ -10,19 +10,16 @@ namespace {
 std::string idle(const Driver& driver, const Scene& scene) {
     const bool is_never = driver.start == 0 && driver.rate == 0;
     return std::visit(
-        overloaded{
-            [&](const Load& l) { return is_never || is_zero(l.kind) ? "it is zero" : ""; },
-            [](const Motion&) { return ""; },
-            [&](const FreeLength& f) {
-                const auto& kind = scene.elastics[static_cast<std::size_t>(f.elastic)].kind;
-                const bool is_moved = driven_number(kind) != nullptr && !is_zero(kind);
-                return is_never || !is_moved ? "it moves nothing" : "";
-            },
-            [&](const Preload& p) {
-                if (scene.elastics[static_cast<std::size_t>(p.elastic)].active_only_where_driven)
-                    return "";
-                return is_never || p.direction.isZero(0) ? "it is zero" : "";
-            }},
+        overloaded{[&](const Load& l) { return is_never || is_zero(l.kind) ? "it is zero" : ""; },
+                   [](const Motion&) { return ""; },
+                   [&](const FreeLength& f) {
+                       const Elastic& elastic = scene.elastics[static_cast<std::size_t>(f.elastic)];
+                       const bool stays = !is_never || elastic.active_only_where_driven;
+                       return stays && !is_zero(elastic.kind) ? "" : "it moves nothing";
+                   },
+                   [&](const Preload& p) {
+                       return is_never || p.direction.isZero(0) ? "it is zero" : "";
+                   }},
         driver.what);
 }
 

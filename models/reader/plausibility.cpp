@@ -134,7 +134,8 @@ constexpr double lightest_wheel = 50, heaviest_wheel = 1e5;
 void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
                   std::vector<std::string>& warnings) {
     for (const Wheel& wheel : read.wheels) {
-        if (wheel.contact_local.z() > wheel.centre_local.z()) {
+        // the rolling wheel's origin is its centre
+        if (wheel.contact.s_local.z() > (wheel.rolls() ? 0 : wheel.centre_local.z())) {
             const Cursor section =
                 wheel.name.empty() ? scene.require("wheel") : scene.require("wheels");
             warnings.push_back(at(section.optional(wheel.name).value_or(section),
@@ -145,7 +146,8 @@ void check_wheels(const Cursor& scene, const Units& units, const Scene& read,
         std::string name;
         for (const Load& load : read.static_loads) {
             const Point* point = member<Point>(load.kind);
-            if (point == nullptr || is_moment(load.kind) || point->body != wheel.body ||
+            if (point == nullptr || is_moment(load.kind) ||
+                (point->body != wheel.body && point->body != wheel.contact.body) ||
                 load.name.starts_with("gravity."))
                 continue;
             up += load_vector(load.kind).z();

@@ -119,7 +119,7 @@ void read_elements(const Cursor& scene, const char* key, const Definitions& defs
 }
 
 // `wheel` is the short form for a single wheel without name.
-void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel>& wheels) {
+void read_wheels(const Cursor& scene, Definitions& defs, std::vector<Wheel>& wheels) {
     const auto one = scene.optional("wheel");
     if (one && scene.optional("wheels"))
         one->fail("given together with wheels; allowed: one of the two");
@@ -127,12 +127,10 @@ void read_wheels(const Cursor& scene, const Definitions& defs, std::vector<Wheel
         one->fail(
             fmt::format("a scene with a mirror needs wheels with names; give wheels: {{{}: ...}}",
                         defs.mirror->from));
-    if (one) wheels.push_back(read_wheel(*one, defs));
+    if (one) wheels.push_back(read_wheel("", *one, defs));
     read_section(scene, "wheels", defs, Sides::both, wheels,
-                 [](const std::string& name, const Cursor& at, const Definitions& definitions) {
-                     Wheel wheel = read_wheel(at, definitions);
-                     wheel.name = name;
-                     return wheel;
+                 [&](const std::string& name, const Cursor& at, const Definitions&) {
+                     return read_wheel(name, at, defs);
                  });
 }
 
@@ -219,6 +217,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     result.name = scene.require("name").text("the name of the scene");
     Definitions defs = read_definitions(scene);
     defs.folder = folder;
+    read_wheels(scene, defs, result.wheels);
     result.bodies = defs.bodies;
     for (const auto& [name, position] : defs.points) result.hardpoints.push_back({name, position});
 
@@ -229,11 +228,16 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     read_section(scene, "stops", defs, Sides::both, result.elastics, read_stops);
     read_elements(scene, "torsion_springs", defs, result.elastics, named, read_torsion_spring);
     require_own_names(scene, defs, result.elastics);
-    read_section(scene, "static_loads", defs, Sides::both, result.static_loads, read_static_load);
+    const auto with_wheels = [&](auto read) {
+        return [read, &result](const std::string& name, const Cursor& at, const Definitions& d) {
+            return read(name, at, d, result.wheels);
+        };
+    };
+    read_section(scene, "static_loads", defs, Sides::both, result.static_loads,
+                 with_wheels(read_static_load));
     read_gravity(scene, defs, result);
     std::vector<Load> loads;
-    read_section(scene, "loads", defs, Sides::any, loads, read_load);
-    read_wheels(scene, defs, result.wheels);
+    read_section(scene, "loads", defs, Sides::any, loads, with_wheels(read_load));
     read_section(scene, "probes", defs, Sides::any, result.probes, read_probe);
     read_section(scene, "dampers", defs, Sides::both, result.dampers, read_damper);
     require_own_names(scene, result);
@@ -246,6 +250,7 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     for (const Load& load : loads) by_name.emplace(load.name, load);
     const auto drives = add_held(scene, defs, result);
     Drivables drivable = drivables(result, defs.units, drives, named);
+    add_rolling_joints(scene, result);
     read_beams(scene, defs, result.elastics);
     read_tyres(scene, defs, drivable, result);
     check_all_held(scene, result);

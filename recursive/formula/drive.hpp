@@ -35,10 +35,12 @@ void for_each_stored_rate(const Model& model, const Branch& branch, const Inputs
                        [](const Motion&) {},
                        [&](const FreeLength& f) {
                            const auto k = static_cast<std::size_t>(f.elastic);
-                           const auto& spring = std::get<AxialSpring>(model.elastics[k].kind);
-                           ElementForce<Real> force =
-                               force_of_free_length<Real>(spring, inputs.rest[k], q);
-                           force.F *= by;
+                           ElementForce<Real> force = std::visit(
+                               [&](const auto& e) {
+                                   return force_of_free_length<Real>(e, inputs.rest[k], q);
+                               },
+                               model.elastics[k].kind);
+                           force.F *= by, force.M *= by;
                            add(k, force);
                        },
                        [&](const Preload& p) {

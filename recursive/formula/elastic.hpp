@@ -96,8 +96,8 @@ Matrix3<Real> axes(const Bushing& e, const State<Real>& q) {
 }
 // e - e₀, the argument of the law.
 template <class Real>
-Vector6<Real> strain(const Bushing& e, const Spatial<Real>& g) {
-    return g.e - e.undeformed.cast<Real>();
+Vector6<Real> strain(const Rest<Real>& rest, const Spatial<Real>& g) {
+    return g.e - rest.undeformed;
 }
 
 // ---- K of eq. (19): the Hessian of the law, turned to ground axes, at the two levers.
@@ -128,7 +128,7 @@ ElementStiffness<Real> element_stiffness(const Bushing& e, const Rest<Real>& res
         {},       rotational(e.law)};
     const Matrix3<Real> A = axes<Real>(e, q);
     const Matrix6<Real> K_local = hessian<Real>(
-        e.law, [&] { return strain<Real>(e, deformation<Real>(e, q)); }, rest.piece);
+        e.law, [&] { return strain<Real>(rest, deformation<Real>(e, q)); }, rest.piece);
     const auto turn = [&](int a, int b) {  // K_T = A_f K_T' A_fᵀ, K_R = A_f K_R' A_fᵀ (10)-(11)
         const Matrix3<Real> AK = A * K_local.template block<3, 3>(3 * a, 3 * b);
         k.K.template block<3, 3>(3 * a, 3 * b).noalias() = AK.lazyProduct(A.transpose());
@@ -263,7 +263,7 @@ template <class Real>
 ElementForce<Real> element_force(const Bushing& e, const Rest<Real>& rest, const State<Real>& q) {
     const Spatial<Real> g = deformation<Real>(e, q);
     return force_of_stress<Real>(
-        e, g, gradient<Real>(e.law, strain<Real>(e, g), rest.piece) + rest.preload);
+        e, g, gradient<Real>(e.law, strain<Real>(rest, g), rest.piece) + rest.preload);
 }
 template <class Real>
 ElementForce<Real> element_force(const ElasticKind& kind, const Rest<Real>& rest,
@@ -281,6 +281,14 @@ ElementForce<Real> force_of_free_length(const AxialSpring& e, const Rest<Real>& 
     return {-rate / g.length * g.D, Vector3<Real>::Zero(), g.s_i, g.s_j};
 }
 template <class Real>
+ElementForce<Real> force_of_free_length(const Bushing& e, const Rest<Real>& rest,
+                                        const State<Real>& q) {
+    const Spatial<Real> g = deformation<Real>(e, q);
+    const Matrix6<Real> H = hessian<Real>(
+        e.law, [&] { return strain<Real>(rest, g); }, rest.piece);
+    return force_of_stress<Real>(e, g, -H.col(2));
+}
+template <class Real>
 ElementForce<Real> force_of_preload(const Bushing& e, const Vector6<Real>& change,
                                     const State<Real>& q) {
     return force_of_stress<Real>(e, deformation<Real>(e, q), change);
@@ -294,8 +302,8 @@ Vector6<Real> deflections(const AxialSpring& e, const Rest<Real>& rest, const St
     return x;
 }
 template <class Real>
-Vector6<Real> deflections(const Bushing& e, const Rest<Real>&, const State<Real>& q) {
-    return strain<Real>(e, deformation<Real>(e, q));
+Vector6<Real> deflections(const Bushing& e, const Rest<Real>& rest, const State<Real>& q) {
+    return strain<Real>(rest, deformation<Real>(e, q));
 }
 template <class Real>
 Vector6<Real> deflections(const ElasticKind& kind, const Rest<Real>& rest, const State<Real>& q) {

@@ -19,9 +19,10 @@ namespace elastocheck::recursive {
 // Rest values of an elastic element; the field of the other kind stays zero.
 template <class Real>
 struct Rest {
-    Real free_length = 0;                           // ℓ₀ of an AxialSpring [m]
-    Vector6<Real> preload = Vector6<Real>::Zero();  // of a Bushing [N, N·m]
-    Pieces piece = everywhere;                      // of its curves; constant on a branch
+    Real free_length = 0;                              // ℓ₀ of an AxialSpring [m]
+    Vector6<Real> preload = Vector6<Real>::Zero();     // of a Bushing [N, N·m]
+    Vector6<Real> undeformed = Vector6<Real>::Zero();  // likewise, e₀ [m, rad]
+    Pieces piece = everywhere;                         // of its curves; constant on a branch
 };
 
 template <class Real>
@@ -44,6 +45,8 @@ Rest<Real> rest_of(const ElasticKind& kind) {
     Rest<Real> rest;
     if (const double* length = driven_number(kind)) rest.free_length = static_cast<Real>(*length);
     if (const auto* wrench = preload(kind)) rest.preload = wrench->template cast<Real>();
+    if (const auto* bushing = std::get_if<Bushing>(&kind))
+        rest.undeformed = bushing->undeformed.template cast<Real>();
     return rest;
 }
 
@@ -86,9 +89,8 @@ inline void check(const Model& model, const Branch& branch) {
                                    "it drives a joint without offset, length or angle");
                        },
                        [&](const FreeLength& f) {
-                           const ElasticKind* kind = elastic(f.elastic);
-                           require(kind != nullptr && driven_number(*kind) != nullptr,
-                                   "it drives the free length of an element that is not a spring");
+                           require(elastic(f.elastic) != nullptr,
+                                   "it drives the free length of an element that does not exist");
                        },
                        [&](const Preload& p) {
                            const ElasticKind* kind = elastic(p.elastic);
@@ -139,7 +141,12 @@ void set_inputs(const Model& model, const Branch& branch, const Inputs<Real>& dr
                            },
                            [&](const FreeLength& f) {
                                const auto e = static_cast<std::size_t>(f.elastic);
-                               change(inputs.rest[e].free_length, drawn.rest[e].free_length, by);
+                               Rest<Real>& rest = inputs.rest[e];
+                               const Rest<Real>& as_drawn = drawn.rest[e];
+                               if (std::holds_alternative<Bushing>(model.elastics[e].kind))
+                                   change(rest.undeformed[2], as_drawn.undeformed[2], by);
+                               else
+                                   change(rest.free_length, as_drawn.free_length, by);
                            },
                            [&](const Preload& p) {
                                const auto e = static_cast<std::size_t>(p.elastic);

@@ -31,6 +31,17 @@ void add_load(const FollowerMoment& moment, Real factor, const State<Real>& q,
               Vector<Real>& f_ext) {
     f_ext.template segment<3>(6 * moment.body + 3) += factor * q[moment.body].lever(moment.m_local);
 }
+// From the origin of the carrier to the patch.
+template <class Real>
+Vector3<Real> lever_of(const BrakeForce& brake, const State<Real>& q) {
+    return q[brake.patch.body].r + q[brake.patch.body].lever(brake.patch.s_local) - q[brake.body].r;
+}
+template <class Real>
+void add_load(const BrakeForce& brake, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
+    const Vector3<Real> f = factor * brake.f.cast<Real>();
+    f_ext.template segment<3>(6 * brake.body) += f;
+    f_ext.template segment<3>(6 * brake.body + 3) += lever_of<Real>(brake, q).cross(f);
+}
 template <class Real>
 void add_load(const LoadKind& load, Real factor, const State<Real>& q, Vector<Real>& f_ext) {
     std::visit([&](const auto& kind) { add_load<Real>(kind, factor, q, f_ext); }, load);

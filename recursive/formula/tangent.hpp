@@ -150,7 +150,7 @@ template <class Real, class Target>
 void add_tangent(const Bushing& e, const Rest<Real>& rest, const State<Real>& q, Target& target) {
     const Spatial<Real> g = deformation<Real>(e, q);
     const Vector3<Real> rho = g.s_i + g.D;
-    const Vector6<Real> answered = strain<Real>(e, g);
+    const Vector6<Real> answered = strain<Real>(rest, g);
     const Matrix6<Real> K = hessian<Real>(
         e.law, [&] { return answered; }, rest.piece);
     const Vector6<Real> stress = gradient<Real>(e.law, answered, rest.piece) + rest.preload;
@@ -287,6 +287,17 @@ void add_load_stiffness(const FollowerMoment& moment, Real factor, const State<R
     const BodyId b = moment.body;
     target.template block<3, 3>(6 * b + 3, 6 * b + 3) +=
         tilde<Real>(factor * q[b].lever(moment.m_local));
+}
+// The lever reaches from the carrier's origin r to the patch p on another body:
+// -δ((p - r) × f) = f̃ (δp - δr) = f̃ (δr_p - s̃ δπ_p - δr).
+template <class Real, class Target>
+void add_load_stiffness(const BrakeForce& brake, Real factor, const State<Real>& q,
+                        Target& target) {
+    const Matrix3<Real> f = tilde<Real>(factor * brake.f.cast<Real>());
+    const BodyId b = brake.body, p = brake.patch.body;
+    target.template block<3, 3>(6 * b + 3, 6 * b) -= f;
+    target.template block<3, 3>(6 * b + 3, 6 * p) += f;
+    target.template block<3, 3>(6 * b + 3, 6 * p + 3) -= f * tilde(q[p].lever(brake.patch.s_local));
 }
 
 }  // namespace detail

@@ -125,14 +125,20 @@ Pattern pattern(const Model& model) {
     for (BodyId b = 0; b < n / 6; ++b) t.block(t.pi(b), t.pi(b));  // a load on the body
     for (const auto& elastic : model.elastics) touch(t, elastic.kind);
     const auto touch_load = [&](const LoadKind& load) {
-        std::visit(overloaded{
-                       [](const DeadForce&) {},
-                       [](const DeadMoment&) {},
-                       // The force rotates with its body.
-                       [&](const FollowerForce& f) { t.block(t.r(f.at.body), t.pi(f.at.body)); },
-                       [](const FollowerMoment&) {},
-                   },
-                   load);
+        std::visit(
+            overloaded{
+                [](const DeadForce&) {},
+                [](const DeadMoment&) {},
+                // The force rotates with its body.
+                [&](const FollowerForce& f) { t.block(t.r(f.at.body), t.pi(f.at.body)); },
+                [](const FollowerMoment&) {},
+                // The moment depends on the positions of the carrier and the patch.
+                [&](const BrakeForce& f) {
+                    for (const int half : {t.r(f.body), t.r(f.patch.body), t.pi(f.patch.body)})
+                        t.block(t.pi(f.body), half);
+                },
+            },
+            load);
     };
     for (const auto& load : model.static_loads) touch_load(load.kind);
     for (const auto& branch : model.branches)

@@ -119,6 +119,8 @@ struct BushingSeries {
     Vector4<Real> A_i_local = Vector4<Real>::Zero(),   // quaternions of the markers (x, y, z, w)
         A_j_local = Vector4<Real>::Zero();
     Driven<Vector6<Real>> preload;
+    Driven<Real> rise;  // of e₀ along z
+    bool is_rising = false;
     bool rotational = false;  // whether there is a moment M' = ∂U/∂θ; else θ is not computed
     Arm<Real> i, j;
     Matrix3<Real> E_i;  // axes of marker i at τ = 0
@@ -189,6 +191,15 @@ struct ForceSeries {
     Arm<Real> at;
 };
 template <class Real>
+struct BrakeSeries {
+    BrakeForce kind;
+    Vector3<Real> f = Vector3<Real>::Zero();
+    Driven<Real> factor;
+    Series<Real> size;
+    Arm<Real> patch;
+    Vector3Series<Real> lever;  // from the carrier's origin to the patch
+};
+template <class Real>
 struct MomentSeries {
     DeadMoment kind;
     Vector3<Real> m = Vector3<Real>::Zero();
@@ -209,7 +220,8 @@ using ConstraintSeries =
     std::variant<CoincidentSeries<Real>, PlaneSeries<Real>, PerpendicularSeries<Real>,
                  DistanceSeries<Real>, AngleSeries<Real>>;
 template <class Real>
-using LoadSeries = std::variant<ForceSeries<Real>, MomentSeries<Real>, FollowerSeries<Real>>;
+using LoadSeries =
+    std::variant<ForceSeries<Real>, MomentSeries<Real>, FollowerSeries<Real>, BrakeSeries<Real>>;
 
 // All series of a model on a branch; allocated once.
 template <class Real>

@@ -132,6 +132,15 @@ LoadSeries<Real> term(Arena& room, const DeadForce& f) {
     return t;
 }
 template <class Real>
+LoadSeries<Real> term(Arena& room, const BrakeForce& f) {
+    BrakeSeries<Real> t;
+    t.kind = f;
+    reserve(room, t.size);
+    reserve(room, t.lever);
+    reserve_arm(room, t.patch, f.patch.body);
+    return t;
+}
+template <class Real>
 LoadSeries<Real> term(Arena&, const DeadMoment& m) {
     MomentSeries<Real> t;
     t.kind = m;
@@ -247,6 +256,11 @@ void take(MomentSeries<Real>& t, const DeadMoment& m, int lane) {
     put(t.m, lane, m.m);
 }
 template <class Real>
+void take(BrakeSeries<Real>& t, const BrakeForce& f, int lane) {
+    put(t.patch.local, lane, f.patch.s_local);
+    put(t.f, lane, f.f);
+}
+template <class Real>
 void take(FollowerSeries<Real>& t, const FollowerForce& f, int lane) {
     put(t.f.local, lane, f.f_local);
     put(t.m.local, lane, Eigen::Vector3d(f.at.s_local.cross(f.f_local)));
@@ -313,9 +327,13 @@ void drive(Equations<Real>& e, const Model& model, const Driver& driver, const M
 template <class Real>
 void drive(Equations<Real>& e, const Model&, const Driver& driver, const FreeLength& what,
            int lane) {
-    add(std::get<SpringSeries<Real>>(e.elastics[static_cast<std::size_t>(what.elastic)])
-            .free_length,
-        e.drive, driver, 1.0, lane);
+    std::visit(
+        overloaded{[&](SpringSeries<Real>& t) { add(t.free_length, e.drive, driver, 1.0, lane); },
+                   [&](BushingSeries<Real>& t) {
+                       add(t.rise, e.drive, driver, 1.0, lane);
+                       t.is_rising = true;
+                   }},
+        e.elastics[static_cast<std::size_t>(what.elastic)]);
 }
 template <class Real>
 void drive(Equations<Real>& e, const Model&, const Driver& driver, const Preload& what, int lane) {
@@ -416,6 +434,10 @@ void place(AngleSeries<Real>& t, const State<double>& q, int lane) {
 template <class Real>
 void place(ForceSeries<Real>& t, const State<double>& q, int lane) {
     place(t.at, q, lane);
+}
+template <class Real>
+void place(BrakeSeries<Real>& t, const State<double>& q, int lane) {
+    place(t.patch, q, lane);
 }
 template <class Real>
 void place(MomentSeries<Real>&, const State<double>&, int) {}
@@ -770,6 +792,12 @@ void evaluate(Equations<Real>& e, BushingSeries<Real>& t, Order o) {
     if (t.rotational) t.angles != nullptr ? plane_angles(t, o) : rotation_vector(t, o);
     t.middle != nullptr ? middle_deformation(t, o) : deformation_on_i(t, o);
     if (o.k == 0) t.e.c[0] -= t.undeformed;
+    if (t.is_rising) {
+        add_linear(o, t.e, [&](auto of) -> Vector6<Real> {
+            return Vector6<Real>::Unit(2) * (-t.rise.rate * of(e.a));
+        });
+        if (o.k == 0) t.e.c[0][2] -= t.rise.start;
+    }
     std::visit([&](const auto& law) { law_gradient(o, law, t); }, t.kind.law);
     linear(o, t.stress,
            [&](auto of) -> Vector6<Real> { return of(t.gradient) + of(e.a) * t.preload.rate; });
@@ -883,6 +911,18 @@ void evaluate(Equations<Real>& e, ForceSeries<Real>& t, Order o) {
     const BodyId b = t.at.body;
     e.G.template segment<3>(6 * b) -= at(t.size, o.k) * t.f;
     e.G.template segment<3>(6 * b + 3) -= convolution(o.k, t.size, t.at.s, scale).cross(t.f);
+}
+template <class Real>
+void evaluate(Equations<Real>& e, BrakeSeries<Real>& t, Order o) {
+    turn(o, e, t.patch);
+    follow(o, e, t.factor, t.size);
+    const BodySeries<Real>&on = e[t.kind.body], &wheel = e[t.patch.body];
+    linear(o, t.lever,
+           [&](auto of) -> Vector3<Real> { return of(wheel.r) + of(t.patch.s) - of(on.r); });
+    if (o.pass == Pass::change) return;
+    const BodyId b = t.kind.body;
+    e.G.template segment<3>(6 * b) -= at(t.size, o.k) * t.f;
+    e.G.template segment<3>(6 * b + 3) -= convolution(o.k, t.size, t.lever, scale).cross(t.f);
 }
 template <class Real>
 void evaluate(Equations<Real>& e, MomentSeries<Real>& t, Order o) {

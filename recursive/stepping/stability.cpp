@@ -14,11 +14,11 @@ namespace elastocheck::recursive {
 
 bool has_energy(const Model& model, const Branch& branch) {
     return std::ranges::none_of(model.static_loads,
-                                [&](const Load& load) { return is_follower(load.kind); }) &&
+                                [&](const Load& load) { return !has_potential(load.kind); }) &&
            std::ranges::none_of(branch.drivers,
                                 [&](const Driver& driver) {
                                     const Load* load = driven_load(driver.what);
-                                    return load != nullptr && is_follower(load->kind);
+                                    return load != nullptr && !has_potential(load->kind);
                                 }) &&
            std::ranges::all_of(model.elastics, [](const auto& element) {
                const auto* formulation = member<Formulation>(element.kind);

@@ -164,12 +164,12 @@ struct SteppingState {
     int m() const { return system.m; }
 
   private:
-    // Throws for a follower load without entries in the pattern: the matrix would silently omit its
+    // Throws for a load that moves others and is without entries in the pattern: the matrix would silently omit its
     // tangent.
     void check_followers(const Pattern& pattern) const {
         for (const auto& driver : branch.drivers) {
             const Load* load = driven_load(driver.what);
-            if (!load || !is_follower(load->kind) || is_moment(load->kind)) continue;
+            if (!load || has_potential(load->kind) || is_moment(load->kind)) continue;
             const BodyId body = body_of(load->kind);
             if (!has_entry(pattern, 6 * body, 6 * body + 3))
                 throw std::invalid_argument(

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "compare/outputs/curve.hpp"
+#include "compare/outputs/positions.hpp"
 #include "models/kinds.hpp"
 #include "reports/text/labels.hpp"
 
@@ -236,9 +237,11 @@ void draw_beam(Sketch& sketch, const std::string& name, const std::vector<Segmen
 json millimetres(const Vector3d& v) { return {1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()}; }
 
 // Circle through the contact patch about the spin axis; empty where patch and centre coincide.
-json circle(const Wheel& wheel, const Pose& pose) {
+json circle(const Model& model, const Wheel& wheel, const std::vector<Pose>& poses) {
     json list = json::array();
-    const Vector3d arm = wheel.contact_local - wheel.centre_local;
+    const auto body = static_cast<std::size_t>(wheel.body);
+    const Pose& pose = poses[body];
+    const Vector3d arm = model.bodies[body].design.p.conjugate() * compare::drawn_arm(model, wheel);
     const Vector3d radius = arm - wheel.spin_axis_local * wheel.spin_axis_local.dot(arm);
     if (radius.norm() < same) return list;
     constexpr int corners = 48;
@@ -278,7 +281,7 @@ json positions(const Sketch& sketch, const std::vector<Pose>& poses) {
     for (const auto& point : sketch.points) points.push_back(millimetres(sketch.at(point, poses)));
     json result = {{"points_mm", points}};
     for (const auto& wheel : sketch.model->wheels)
-        result["wheels_mm"].push_back(circle(wheel, poses[static_cast<std::size_t>(wheel.body)]));
+        result["wheels_mm"].push_back(circle(*sketch.model, wheel, poses));
     return result;
 }
 
@@ -334,7 +337,7 @@ json drawing_json(const Scene& scene, const Model& model, const compare::Compari
     for (const auto& wheel : model.wheels) {
         const std::string whose = wheel.name.empty() ? "" : wheel.name + " ";
         const auto centre = sketch.add({wheel.body, wheel.centre_local}, whose + "wheel centre"),
-                   patch = sketch.add({wheel.body, wheel.contact_local}, whose + "contact patch");
+                   patch = sketch.add(wheel.contact, whose + "contact patch");
         hubs[static_cast<std::size_t>(wheel.body)].push_back(centre);
         if (patch != centre) patches.insert(patch);
         const Pose& pose = model.bodies[static_cast<std::size_t>(wheel.body)].design;

@@ -17,17 +17,20 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+// From the nearer of centre and patch on the point's body; infinite if neither is on it.
 double away(const Wheel& wheel, const Point& point) {
-    return std::min((wheel.centre_local - point.s_local).norm(),
-                    (wheel.contact_local - point.s_local).norm());
+    double least = std::numeric_limits<double>::infinity();
+    for (const Point& own : {Point{wheel.body, wheel.centre_local}, wheel.contact})
+        if (own.body == point.body) least = std::min(least, (own.s_local - point.s_local).norm());
+    return least;
 }
 
 // The wheel on this body: of several, the one whose centre or patch is nearest to the point.
 std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
     std::optional<std::size_t> found;
     for (std::size_t w = 0; w < model.wheels.size(); ++w)
-        if (model.wheels[w].body == point.body &&
-            (!found || away(model.wheels[w], point) < away(model.wheels[*found], point)))
+        if (const double here = away(model.wheels[w], point);
+            std::isfinite(here) && (!found || here < away(model.wheels[*found], point)))
             found = w;
     return found;
 }
@@ -119,12 +122,13 @@ Effects effects_of(const Model& model, const Branch& branch) {
     return effects;
 }
 
-// Force of the road on a wheel: force + slope · a, efforts of jacks, and tyres of this rate under the
-// rise of the contact patch. Weights are loads of their bodies, not of the road.
+// Force of the road on a wheel: force + slope · a, efforts of jacks, and a tyre, which only pushes.
+// Weights are loads of their bodies, not of the road.
 struct WheelForce {
     bool known = true;                   // no other force on the wheel's body may be the road's
     double force = 0, slope = 0;         // [N], [N per unit of a]
-    double tyre_rate = 0;                // [N/m], of the tyres that stand on the branch
+    double tyre_rate = 0;                // [N/m], 0 where none stands on the branch
+    double road = 0, road_slope = 0;     // rise of the patch that unloads the tyre [m], [m per a]
     std::vector<std::size_t> efforts{};  // channels
     std::size_t patch = 0;               // channel of the height of the patch [mm]
     double drawn_patch = 0;              // [mm]
@@ -137,7 +141,7 @@ void add_load(std::vector<WheelForce>& wheels, const Model& model, const LoadKin
     const double up = load_vector(load).z();
     const auto w = wheel_at(model, at);
     for (std::size_t k = 0; k < wheels.size(); ++k)
-        if (model.wheels[k].body == at.body && (is_follower(load) || (!w && up != 0)))
+        if (std::isfinite(away(model.wheels[k], at)) && (is_follower(load) || (!w && up != 0)))
             wheels[k].known = false;
     if (w) wheels[*w].force += start * up, wheels[*w].slope += rate * up;
 }
@@ -147,7 +151,6 @@ std::vector<WheelForce> wheel_forces(const Model& model, const Branch& branch,
     std::vector<WheelForce> wheels(model.wheels.size());
     for (const auto& load : model.static_loads)
         if (!load.name.starts_with("gravity.")) add_load(wheels, model, load.kind, 1, 0);
-    std::vector<int> tyres;  // standing
     for (const auto& driver : branch.drivers) {
         if (const Load* load = driven_load(driver.what)) {
             add_load(wheels, model, load->kind, driver.start, driver.rate);
@@ -157,15 +160,10 @@ std::vector<WheelForce> wheel_forces(const Model& model, const Branch& branch,
                     if (is_effort_of(channels[c], joint)) wheels[*w].efforts.push_back(c);
         } else if (const int e = driven_element(driver.what);
                    const auto w = wheel_on_tyre(model, e)) {
-            // the road pushes up by -(preload + k d_z), d_z the rise of the patch
             const auto& tyre = std::get<Bushing>(model.elastics[static_cast<std::size_t>(e)].kind);
-            const double road = preload(driver.what)->z();
-            if (std::ranges::find(tyres, e) == tyres.end()) {
-                tyres.push_back(e);
-                wheels[*w].force -= tyre.preload.z();
-                wheels[*w].tyre_rate += std::get<LinearStiffness>(tyre.law).K(2, 2);
-            }
-            wheels[*w].force -= driver.start * road, wheels[*w].slope -= driver.rate * road;
+            wheels[*w].tyre_rate = model.wheels[*w].tyre_rate;
+            wheels[*w].road += tyre.undeformed.z() + driver.start;
+            wheels[*w].road_slope += driver.rate;
         }
     }
     const auto drawn = compare::evaluate(model, channels, compare::design_state(model));
@@ -185,8 +183,10 @@ std::vector<double> loads_of(const WheelForce& wheel, const compare::Curve& curv
     std::vector<double> loads;
     const double unit = compare::in_unit(curve.unit);
     for (std::size_t k = 0; wheel.known && k < curve.a.size(); ++k) {
-        double sum = wheel.force + wheel.slope * curve.a[k] / unit -
-                     wheel.tyre_rate * 1e-3 * (curve.values[k][wheel.patch] - wheel.drawn_patch);
+        const double a = curve.a[k] / unit,
+                     rise = 1e-3 * (curve.values[k][wheel.patch] - wheel.drawn_patch);
+        double sum = wheel.force + wheel.slope * a +
+                     wheel.tyre_rate * std::max(0.0, wheel.road + wheel.road_slope * a - rise);
         for (const auto c : wheel.efforts) sum += curve.values[k][c];
         loads.push_back(sum);
     }

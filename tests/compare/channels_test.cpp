@@ -132,7 +132,7 @@ struct Steered {
         model.wheels.push_back({.name = "",
                                 .body = 0,
                                 .centre_local = at(0, 0, 0.3),
-                                .contact_local = Vector3d::Zero(),
+                                .contact = {0, Vector3d::Zero()},
                                 .spin_axis_local = at(0, 1, 0),
                                 .side = side});
         model.wheels[0].steering_axis = {{ground, at(0.02, 0.6, 0.1)},
@@ -231,7 +231,7 @@ struct TwoSteered {
             model.wheels.push_back({.name = side > 0 ? "left" : "right",
                                     .body = side > 0 ? 0 : 1,
                                     .centre_local = Vector3d(0, side * 0.1, 0.3),
-                                    .contact_local = Vector3d(0, side * 0.1, 0),
+                                    .contact = {side > 0 ? 0 : 1, Vector3d(0, side * 0.1, 0)},
                                     .spin_axis_local = Vector3d(0, side, 0),
                                     .side = side});
             model.wheels.back().steering_axis = {{ground, {0, side * 0.6, 0.1}},

@@ -515,12 +515,10 @@ TEST(Characteristics, RollCentreFromForcesIsThatFromMotion) {
         const double per_newton =
             (force.curve.values.back()[jack] - force.curve.values.front()[jack]) / 2;
         const Read is(model, Leg::equilibrium, "lateral");
-        const Pose& wheel = is.state.poses[static_cast<std::size_t>(model.wheels[0].body)];
-        const double y = (wheel.r + wheel.p * model.wheels[0].contact_local).y();
+        const Point& patch = model.wheels[0].contact;
+        const double y = position(is.state.poses, patch).y();
         // The jack acts at the centre; the rise of the patch differs slightly with camber.
-        const double rises = moved(is.state, is.response.travel[0],
-                                   {model.wheels[0].body, model.wheels[0].contact_local})
-                                 .z();
+        const double rises = moved(is.state, is.response.travel[0], patch).z();
         EXPECT_NEAR(is["roll_centre_height"], -1e3 * y * per_newton / rises, 1e-3) << name;
     }
 }

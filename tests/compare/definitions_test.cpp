@@ -41,7 +41,7 @@ struct ByHand {
         Wheel wheel;
         wheel.body = 0;
         wheel.spin_axis_local = {0, std::cos(camber), -std::sin(camber)};
-        wheel.contact_local = {0, 0, -0.3};
+        wheel.contact = {wheel.body, {0, 0, -0.3}};
         wheel.steering_axis = {{0, {0.02, -0.10, -0.1}}, {0, {-0.03, -0.15, 0.1}}};
         model.bodies.push_back({.name = "wheel", .design = {{0, 0.65, 0}, {1, 0, 0, 0}}});
         model.wheels.push_back(wheel);
@@ -187,7 +187,7 @@ TEST(DefinitionRates, OfARigidWheelFollowFromEachOther) {
     const Wheel& wheel = at.model.wheels[0];
     const auto state = design_state(at.model);
     const Pose& body = state.poses[static_cast<std::size_t>(wheel.body)];
-    const Vector3d lever = body.p * (wheel.contact_local - wheel.centre_local);
+    const Vector3d lever = body.p * (wheel.contact.s_local - wheel.centre_local);
     expect_near(at("front_view_swing_arm@patch"),
                 at("front_view_swing_arm") + 1e3 * wheel.side * lever.y(), "arm to the patch");
     expect_near(at("side_view_swing_arm@patch"), at("side_view_swing_arm") - 1e3 * lever.x(),
@@ -250,7 +250,7 @@ TEST(DefinitionRates, OfAnAxleFollowFromHeaveRollAndSingleWheels) {
 TEST(DefinitionRates, AtTheCentreAreThoseOfAPatchAtTheCentre) {
     const AtDesign at = at_design("double_wishbone");
     Model moved = at.model;
-    moved.wheels[0].contact_local = moved.wheels[0].centre_local;
+    moved.wheels[0].contact.s_local = moved.wheels[0].centre_local;
     const AtDesign there(std::move(moved));
     expect_near(at("lateral_force_steer@centre"), there("lateral_force_steer"), "steer");
     expect_near(at("braking_force_steer@inboard"), there("braking_force_steer"), "braking");
@@ -358,7 +358,7 @@ TEST(DefinitionRates, OfMotionAreDifferencesOfSolvedStates) {
     for (const char* scene : {"double_wishbone_rigid", "multi_link"}) {
         Model model = compile(trim(support::scene(scene)).scene);
         // a contact patch beside the wheel, which rises otherwise than the centre
-        model.wheels[0].contact_local += Vector3d(0.1, 0.2, 0);
+        model.wheels[0].contact.s_local += Vector3d(0.1, 0.2, 0);
         const AtDesign at(model);
         const Slopes solved(model, "travel", 1e-4);
         int elements = 0;
@@ -418,7 +418,7 @@ TEST(DefinitionRates, OfAckermannByHand) {
         wheel.body = static_cast<BodyId>(model.bodies.size());
         wheel.side = side;
         wheel.spin_axis_local = {0, double(side), 0};
-        wheel.contact_local = {0, 0, -0.3};
+        wheel.contact = {wheel.body, {0, 0, -0.3}};
         model.bodies.push_back({.name = wheel.name, .design = {{0, 0.7 * side, 0}, {1, 0, 0, 0}}});
         model.wheels.push_back(wheel);
     }

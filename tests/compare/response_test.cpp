@@ -150,7 +150,7 @@ MatrixXd compliance(const OneWay& side, const Equilibrium& state, const Answerin
     EXPECT_EQ(response.outcome, Outcome::converged) << response.detail;
     const Wheel& wheel = side.model.wheels[0];
     const auto body = static_cast<std::size_t>(wheel.body);
-    const Vector3d lever = state.poses[body].p * wheel.contact_local;
+    const Vector3d lever = state.poses[body].p * wheel.contact.s_local;
     MatrixXd C(6, 6);
     for (std::size_t k = 0; k < 6; ++k) {
         const Increment& by = response.increments[k][body];

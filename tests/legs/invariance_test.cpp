@@ -36,8 +36,7 @@ Scene driven_scene() {
     const int jack = static_cast<int>(s.joints.size()) - 1, rack = jack - 1;
     Vector6 preload;
     preload << 900, -400, 300, 4, 7, -3;
-    const Load brake{"brake",
-                     DeadForce{{s.wheels[0].body, s.wheels[0].contact_local}, {-1, .3, 0}}};
+    const Load brake{"brake", DeadForce{s.wheels[0].contact, {-1, .3, 0}}};
     const Driver load = s.branches[0].drivers[0];
     s.branches = {
         legs::branch_of({load, {Motion{rack}, 0.015, 0}}, 2000),

@@ -129,7 +129,7 @@ std::map<std::string, std::vector<Vector3d>> places(Scene scene) {
             if (const auto* l = std::get_if<Load>(&driver.what)) load(*l);
     for (const Wheel& wheel : scene.wheels) {
         list = &result["wheel " + wheel.name];
-        note(Point{wheel.body, wheel.centre_local}), note(Point{wheel.body, wheel.contact_local});
+        note(Point{wheel.body, wheel.centre_local}), note(wheel.contact);
         note(Direction{wheel.body, wheel.spin_axis_local});
         if (wheel.steering_axis) note(wheel.steering_axis->lower), note(wheel.steering_axis->upper);
     }
@@ -167,7 +167,7 @@ Scene welded() {
     s.wheels.push_back({.name = "wheel",
                         .body = 3,
                         .centre_local = Vector3d(1, 2, 3),
-                        .contact_local = Vector3d(4, 5, 6)});
+                        .contact = {3, Vector3d(4, 5, 6)}});
     s.wheels.back().steering_axis = {at(s, 3, p), at(s, 2, q)};
     s.probes.push_back({"tip", at(s, 2, n)});
     s.dampers.push_back({"damper", at(s, 3, q), at(s, 2, p)});

@@ -112,7 +112,7 @@ TEST(ShippedScene, McPhersonIsThePapersExampleInSi) {
     EXPECT_EQ(scene.wheels.at(0).side, +1);
     EXPECT_EQ(scene.wheels.at(0).body, 1);
     EXPECT_EQ(scene.wheels.at(0).spin_axis_local, Vector3d::UnitY());
-    expect_near(scene.wheels.at(0).contact_local, Vector3d(0, 0, -0.32), 1e-16);
+    expect_near(scene.wheels.at(0).contact.s_local, Vector3d(0, 0, -0.32), 1e-16);
 }
 
 TEST(ShippedScene, EveryOneLoadsWithItsBodiesParallelToGroundAndItsJointsClosed) {
@@ -518,7 +518,7 @@ TEST(Stiffness, IsSymmetricToTheLastBit) {
 
 TEST(Wheel, ContactPatchIsTheCentreUnlessGiven) {
     const Scene scene = parsed(replaced(bench_scene, "contact_patch: side, ", ""));
-    EXPECT_EQ(scene.wheels.at(0).contact_local, scene.wheels.at(0).centre_local);
+    EXPECT_EQ(scene.wheels.at(0).contact.s_local, scene.wheels.at(0).centre_local);
 }
 
 TEST(Wheel, RightSideHasItsSpinAxisToTheRight) {

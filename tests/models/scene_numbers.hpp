@@ -130,7 +130,7 @@ inline std::vector<std::pair<std::string, double>> numbers(const Scene& scene) {
         n.where = "wheel " + wheel.name;
         n.add("body", wheel.body);
         n.add("centre", wheel.centre_local);
-        n.add("contact", wheel.contact_local);
+        n.add("contact", wheel.contact.s_local);
         n.add("spin_axis", wheel.spin_axis_local);
         n.add("side", wheel.side);
         if (!wheel.steering_axis) continue;

@@ -51,9 +51,7 @@ TEST(SeriesDrivers, WhatIsHeldIsSettledFirst) {
             preload.elastic = static_cast<int>(k);
     branch.drivers.push_back({preload, 1, 3});
     branch.drivers.push_back(
-        {Load{"brake", DeadForce{{scene.wheels[0].body, scene.wheels[0].contact_local},
-                                 Eigen::Vector3d(-1, 0, 0)}},
-         800, 1e4});
+        {Load{"brake", DeadForce{scene.wheels[0].contact, Eigen::Vector3d(-1, 0, 0)}}, 800, 1e4});
     const OneWay w = walked(scene, branch);
     const Path path = follow(w.model, w.branch);
     ASSERT_EQ(path.outcome, Outcome::converged) << path.detail;

@@ -189,8 +189,8 @@ Scene rich_scene() {
                    ParameterUnit::newton,
                    {{Load{"push", DeadForce{point(plate, {.1, 1.0, 0}), {.1, .2, 1}}}, 0, 1},
                     {Load{"twist", DeadMoment{knuckle, {.02, .05, .03}}}, 0, 1}}}};
-    s.wheels = {Wheel{"", plate, point(plate, {0, .95, .1}).s_local,
-                      point(plate, {0, .95, -.2}).s_local, along(plate, {0, 1, 0}).u_local, 1}};
+    s.wheels = {Wheel{"", plate, point(plate, {0, .95, .1}).s_local, point(plate, {0, .95, -.2}),
+                      along(plate, {0, 1, 0}).u_local, 1}};
     return s;
 }
 

@@ -49,7 +49,7 @@ inline double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 inline UnitWrench at_wheel(const Model& model, const Eigen::Vector3d& force,
                            const Eigen::Vector3d& moment = Eigen::Vector3d::Zero()) {
     const Wheel& wheel = model.wheels[0];
-    return {{wheel.body, wheel.contact_local}, force, moment};
+    return {wheel.contact, force, moment};
 }
 
 // The disturbance `by` times, held on the whole branch.

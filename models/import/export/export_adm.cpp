@@ -469,16 +469,20 @@ class AdmWriter {
     void write(const Load& l) {
         const Vector3d none = Vector3d::Zero();
         std::visit(
-            overloaded{[&](const DeadForce& f) {
-                           load(l.name, f.at.body, f.at.s_local, f.f, none, false);
-                       },
-                       [&](const DeadMoment& m) { load(l.name, m.body, none, none, m.m, false); },
-                       [&](const FollowerForce& f) {
-                           load(l.name, f.at.body, f.at.s_local, f.f_local, none, true);
-                       },
-                       [&](const FollowerMoment& m) {
-                           load(l.name, m.body, none, none, m.m_local, true);
-                       }},
+            overloaded{
+                [&](const DeadForce& f) {
+                    load(l.name, f.at.body, f.at.s_local, f.f, none, false);
+                },
+                [&](const DeadMoment& m) { load(l.name, m.body, none, none, m.m, false); },
+                [&](const FollowerForce& f) {
+                    load(l.name, f.at.body, f.at.s_local, f.f_local, none, true);
+                },
+                [&](const FollowerMoment& m) { load(l.name, m.body, none, none, m.m_local, true); },
+                [&](const BrakeForce&) {
+                    result_.notes.missing.emplace_back(
+                        SourceLocation{0, "load '" + l.name + "'"},
+                        "a brake force acts through a point of another body");
+                }},
             l.kind);
     }
 

@@ -168,7 +168,7 @@ Wheel twin(const Wheel& wheel, const Definitions& defs) {
     return {.name = wheel.name,
             .body = twin(wheel.body, defs),
             .centre_local = twin_place(wheel.body, wheel.centre_local, defs),
-            .contact_local = twin_place(wheel.body, wheel.contact_local, defs),
+            .contact = twin(wheel.contact, defs),
             .spin_axis_local = reflected(wheel.spin_axis_local),
             .side = -wheel.side,
             .tyre_rate = wheel.tyre_rate,

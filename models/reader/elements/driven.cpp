@@ -113,19 +113,19 @@ void add_elements(const Scene& scene, const Units& units, const NamedElements& e
 // ground position in the design.
 void add_jacks(const Scene& scene, const Units& units, Drivables& result) {
     for (const Wheel& wheel : scene.wheels) {
-        const Vector3& r = scene.bodies[static_cast<std::size_t>(wheel.body)].design.r;
         const std::string of_wheel = wheel.name.empty() ? "" : wheel.name + ".";
-        const auto add = [&](const char* quantity, const char* joint, const Vector3& s_local) {
-            const InPlane jack{.i = {wheel.body, s_local},
-                               .j = {ground, r + s_local},
+        const auto add = [&](const char* quantity, const char* joint, const Point& at) {
+            const Vector3& r = scene.bodies[static_cast<std::size_t>(at.body)].design.r;
+            const InPlane jack{.i = at,
+                               .j = {ground, r + at.s_local},
                                .normal_j = {ground, Vector3::UnitZ()},
                                .offset = 0};
             result.table[of_wheel + quantity] = {ParameterUnit::metre, units.length,
                                                  Motion{no_joint}, 1,
                                                  Joint{of_wheel + joint, jack, true}};
         };
-        add("travel", "jack", wheel.centre_local);
-        add("patch_travel", "patch_jack", wheel.contact_local);
+        add("travel", "jack", {wheel.body, wheel.centre_local});
+        add("patch_travel", "patch_jack", wheel.contact);
     }
 }
 

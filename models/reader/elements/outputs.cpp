@@ -35,10 +35,26 @@ double share(const Cursor& at) {
     return x;
 }
 
+// The body of a rolling wheel (scene.hpp), at its centre, and that of its twin.
+BodyId add_rolling_wheel(const std::string& name, const Vector3& centre, Definitions& defs) {
+    const std::string of_wheel = name.empty() ? "" : name + ".";
+    const auto add = [&](const std::string& of, const Vector3& r) {
+        defs.bodies.push_back({of + "rolling_wheel", {.r = r, .p = Quaternion::Identity()}});
+        defs.twin_of.push_back(static_cast<BodyId>(defs.bodies.size()) - 1);
+        return defs.twin_of.back();
+    };
+    const BodyId wheel = add(of_wheel, centre);
+    if (const auto twin = defs.mirror ? turned(*defs.mirror, of_wheel) : std::nullopt)
+        std::swap(defs.twin_of[static_cast<std::size_t>(wheel)],
+                  defs.twin_of[static_cast<std::size_t>(add(*twin, reflected(centre)))]);
+    return wheel;
+}
+
 }  // namespace
 
-Wheel read_wheel(const Cursor& at, const Definitions& defs) {
-    at.only_keys({"body", "centre", "contact_patch", "spin_axis", "side", "steering_axis"});
+Wheel read_wheel(const std::string& name, const Cursor& at, Definitions& defs) {
+    at.only_keys(
+        {"body", "centre", "contact_patch", "contact", "spin_axis", "side", "steering_axis"});
     const BodyId body = moving_body(at.require("body"), defs, "a wheel");
     const auto contact = at.optional("contact_patch");
     const Cursor centre = at.require("centre"), spin_axis = at.require("spin_axis");
@@ -46,10 +62,10 @@ Wheel read_wheel(const Cursor& at, const Definitions& defs) {
         return point_of(body, hardpoint(field, defs), defs).s_local;
     };
     const Cursor side = at.require("side");
-    Wheel wheel{.name = {},
+    Wheel wheel{.name = name,
                 .body = body,
                 .centre_local = local(centre),
-                .contact_local = local(contact ? *contact : centre),
+                .contact = {body, local(contact ? *contact : centre)},
                 .spin_axis_local = direction(spin_axis, defs),
                 .side = side.one_of("a side", {"left", "right"}) == 0 ? +1 : -1};
     if (const double y = hardpoint(centre, defs).y(); wheel.side * y < 0)
@@ -64,7 +80,31 @@ Wheel read_wheel(const Cursor& at, const Definitions& defs) {
                                    wheel.side > 0 ? '+' : '-', wheel.side > 0 ? "left" : "right"));
     if (const auto axis = at.optional("steering_axis"))
         wheel.steering_axis = read_steering_axis(*axis, body, defs);
+    const Vector3 arm = wheel.contact.s_local - wheel.centre_local;
+    if (const auto kind = at.optional("contact");
+        kind && kind->one_of("a contact", {"carrier", "rolling"}) == 1) {
+        if (!(arm.z() < 0))
+            kind->fail("the contact patch is not below the wheel centre; allowed: carrier");
+        wheel.contact = {add_rolling_wheel(name, hardpoint(centre, defs), defs), arm};
+    }
     return wheel;
+}
+
+void add_rolling_joints(const Cursor& scene, Scene& result) {
+    for (const Wheel& wheel : result.wheels) {
+        if (!wheel.rolls()) continue;
+        const std::string of_wheel = wheel.name.empty() ? "" : wheel.name + ".";
+        const Direction spin{wheel.body, wheel.spin_axis_local}, road{ground, Vector3::UnitZ()};
+        const BodyId on = wheel.contact.body;
+        add_joint(scene,
+                  {of_wheel + "bearing", Revolute{{on, Vector3::Zero()},
+                                                  {wheel.body, wheel.centre_local},
+                                                  {on, spin.u_local},
+                                                  spin}},
+                  result);
+        const Direction across{on, spin.u_local.cross(road.u_local).normalized()};
+        add_joint(scene, {of_wheel + "spin", Perpendicular{across, road}}, result);
+    }
 }
 
 Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs) {

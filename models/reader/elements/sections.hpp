@@ -19,10 +19,16 @@ std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
 std::vector<Elastic> read_stops(const std::string& name, const Cursor& at, const Definitions& defs);
 Elastic read_torsion_spring(const std::string& name, const Cursor& at, const Definitions& defs);
 Elastic read_bushing(const std::string& name, const Cursor& at, const Definitions& defs);
-Load read_load(const std::string& name, const Cursor& at,
-               const Definitions& defs);  // numbers as written
-Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs);  // SI
-Wheel read_wheel(const Cursor& at, const Definitions& defs);
+// Loads with numbers as written, static loads in SI. Pre: the wheels are read; a force at the patch
+// of one that rolls acts there.
+Load read_load(const std::string& name, const Cursor& at, const Definitions& defs,
+               const std::vector<Wheel>& wheels);
+Load read_static_load(const std::string& name, const Cursor& at, const Definitions& defs,
+                      const std::vector<Wheel>& wheels);
+// A wheel that rolls becomes a body of its own, added to `defs`.
+Wheel read_wheel(const std::string& name, const Cursor& at, Definitions& defs);
+// The joints of the wheels that roll.
+void add_rolling_joints(const Cursor& scene, Scene& result);
 Probe read_probe(const std::string& name, const Cursor& at, const Definitions& defs);
 Damper read_damper(const std::string& name, const Cursor& at, const Definitions& defs);
 Vehicle read_vehicle(const Cursor& at, const Definitions& defs);

@@ -1,11 +1,10 @@
-// Reads tyres: a vertical rate at the contact patch.
+// Reads tyres: a vertical rate at the contact patch, which only pushes.
 //
-// A bushing from ground (i) to the wheel (j), both markers at the contact patch of the design
-// position, ground axes. d_z is the rise of the patch, a point of the wheel. With the road raised
-// by h the tyre pushes the wheel up by P - k (d_z - h). A bushing pulls j back by
-// ∂U/∂d_z = k d_z + preload, so
+// A bushing from ground (i) to the contact patch (j), both markers there at the design position,
+// ground axes. d_z is the rise of the patch. With the road raised by h the tyre pushes the wheel up
+// by P - k (d_z - h), and not at all where that is negative:
 //
-//   preload = -P - k h e_z:   the road height drives a preload along -k e_z.
+//   u'(x) = k min(x, 0),  x = d_z - e₀,  e₀ = P/k + h:   the road drives the undeformed d_z.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,13 +33,14 @@ struct Tyre {
 };
 
 Bushing bushing(const Tyre& tyre, const Wheel& wheel, const Definitions& defs) {
-    const Vector3& r = defs.bodies[static_cast<std::size_t>(wheel.body)].design.r;
-    Matrix6 K = Matrix6::Zero();
-    K(2, 2) = tyre.k;
-    return {.i = {ground, r + wheel.contact_local},
-            .j = {wheel.body, wheel.contact_local},
-            .law = LinearStiffness{K},
-            .preload = -tyre.P * Vector6::Unit(2)};
+    const auto& [on, s_local] = wheel.contact;
+    const Vector3& r = defs.bodies[static_cast<std::size_t>(on)].design.r;
+    PerAxis law;
+    law.axis[2] = Curve{.knots = {0}, .pieces = {{0, tyre.k, 0, 0}, {0, 0, 0, 0}}};
+    return {.i = {ground, r + s_local},
+            .j = {on, s_local},
+            .law = law,
+            .undeformed = tyre.P / tyre.k * Vector6::Unit(2)};
 }
 
 void add_tyre(const Cursor& at, const std::string& name, const Tyre& tyre, std::size_t wheel,
@@ -52,8 +52,7 @@ void add_tyre(const Cursor& at, const std::string& name, const Tyre& tyre, std::
     const int id = static_cast<int>(scene.elastics.size());
     scene.elastics.push_back({name, bushing(tyre, above, defs), true, WrittenAs::tyre});
     drivables.table["tyres." + name + ".road"] = {ParameterUnit::metre, defs.units.length,
-                                                  Preload{id, -tyre.k * Vector6::Unit(2)}, 1,
-                                                  std::nullopt};
+                                                  FreeLength{id}, 1, std::nullopt};
 }
 
 }  // namespace

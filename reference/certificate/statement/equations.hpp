@@ -239,5 +239,9 @@ template <class T>
 Acting<T> acting(const FollowerMoment& load, const Frame<T>& body) {
     return {constant<T>(Eigen::Vector3d::Zero()), lever(body, load.m_local)};
 }
+template <class T>
+Acting<T> acting(const BrakeForce&, const Frame<T>&) {
+    throw std::logic_error("certificate: a brake force: not yet");
+}
 
 }  // namespace elastocheck::reference::certificate

@@ -60,12 +60,14 @@ bool is_round(const Bushing& bushing, const ElementPath& path, std::size_t i, st
 
 void set_formulations(System& system) {
     for (const auto& load : system.loads)
-        if (body_of(load.kind) != ground && is_follower(load.kind)) system.conservative = false;
+        if (body_of(load.kind) != ground && !has_potential(load.kind)) system.conservative = false;
     for (std::size_t e = 0; e < system.elements.size(); ++e) {
         const auto& elastic = system.model->elastics[e];
         const auto* bushing = std::get_if<Bushing>(&elastic.kind);
         if (bushing == nullptr) continue;
         ElementPath& path = system.elements[e];
+        if (!is_zero(path.free_length.start) || !is_zero(path.free_length.rate))
+            throw std::logic_error("certificate: a driven undeformed length of a bushing: not yet");
         path.rotational = resists_rotation(bushing->law);
         for (std::size_t k = 3; k < 6; ++k)
             path.rotational |= !is_zero(path.preload[k].start) || !is_zero(path.preload[k].rate);

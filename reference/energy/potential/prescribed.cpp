@@ -1,5 +1,8 @@
 #include "reference/energy/potential/prescribed.hpp"
 
+#include <stdexcept>
+
+#include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::reference::energy {
@@ -17,7 +20,8 @@ void add(Prescribed& to, const LoadKind& load, double factor) {
                           },
                           // Models with followers are not solved, and their forces are not judged:
                           // conservative.hpp.
-                          [](const FollowerForce&) {}, [](const FollowerMoment&) {}},
+                          [](const FollowerForce&) {}, [](const FollowerMoment&) {},
+                          [](const BrakeForce&) {}},  // not yet: refused as without potential
                load);
 }
 
@@ -29,7 +33,13 @@ void add(Prescribed& to, const Model& model, const Driven& driven, double factor
                        to.offset[model.joints.at(static_cast<std::size_t>(motion.joint)).driven] +=
                            factor;
                    },
-                   [&](const FreeLength& length) { to.free_length[length.elastic] += factor; },
+                   [&](const FreeLength& length) {
+                       const auto k = static_cast<std::size_t>(length.elastic);
+                       if (driven_number(model.elastics.at(k).kind) == nullptr)
+                           throw std::logic_error(
+                               "energy: a driven undeformed length of a bushing: not yet");
+                       to.free_length[length.elastic] += factor;
+                   },
                    [&](const Preload& preload) {
                        to.preload.col(preload.elastic) += factor * preload.direction;
                    }},

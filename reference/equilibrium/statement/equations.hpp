@@ -298,6 +298,11 @@ Interaction<T> on_body(const FollowerMoment& load, const Frame<T>& body) {
     return on;
 }
 
+template <class T>
+Interaction<T> on_body(const BrakeForce&, const Frame<T>&) {
+    throw std::logic_error("equilibrium: a brake force: not yet");
+}
+
 // ---- Bodies of an element or constraint
 
 struct Pair {

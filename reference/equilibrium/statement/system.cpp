@@ -53,6 +53,8 @@ void set_paths(System& system) {
         ElementPath& path = system.elements.emplace_back(ElementPath{inputs.elements[e]});
         const auto* law = member<SpatialLaw>(model.elastics[e].kind);
         if (law == nullptr) continue;
+        if (path.free_length.start != 0 || path.free_length.rate != 0)
+            throw std::logic_error("equilibrium: a driven undeformed length of a bushing: not yet");
         path.rotational = resists_rotation(*law);
         for (std::size_t k = 3; k < 6; ++k)
             path.rotational |= path.preload[k].start != 0 || path.preload[k].rate != 0;
@@ -61,7 +63,7 @@ void set_paths(System& system) {
 
 void set_formulations(System& system) {
     for (const auto& load : system.loads)
-        if (body_of(load.kind) != ground && is_follower(load.kind)) system.conservative = false;
+        if (body_of(load.kind) != ground && !has_potential(load.kind)) system.conservative = false;
     for (const auto& elastic : system.model->elastics) {
         const auto* formulation = member<Formulation>(elastic.kind);
         if (formulation == nullptr) continue;
