@@ -207,23 +207,39 @@ std::vector<double> sizes_of_rows(const ReadSide& of, const MatrixXd& rate,
     return least_sizes(of.outputs.channels, std::move(largest));
 }
 
-// Of smooth functions the difference of the two slopes is of the order h³: what is there is rounding,
-// of all numbers alike.
+// 6 standard deviations of the rounding of an entry. With ε the rounding of one value of its output, of
+// all numbers alike, a sum Σ c_k (y_k - y_0) has √(Σ c_k² + (Σ c_k)²) ε. ε is measured by the kink,
+// which is h³ of smooth functions: its median over the numbers that move the output is 0.6745 ε √(...).
+double spread(const std::array<double, 4>& c) {
+    double sum = 0, squares = 0;
+    for (const double one : c) sum += one, squares += one * one;
+    return std::sqrt(squares + sum * sum);
+}
 MatrixXd rounding_of(const Entries& entries, std::span<const Neighbouring> near) {
+    constexpr double deviations = 6, median_of_normal = 0.6745;
     MatrixXd rounding = MatrixXd::Zero(entries.rate.rows(), entries.rate.cols());
     for (Index c = 0; c < rounding.rows(); ++c) {
+        // exactly zero where no neighbour changes the output
+        const auto moves = [&](Index k) {
+            return entries.rate(c, k) != 0 || entries.check(c, k) != 0;
+        };
         std::vector<double> noise;
-        for (Index k = 0; k < rounding.cols(); ++k)
-            if (entries.kink(c, k) > 0 && entries.check(c, k) < across_a_knot)
-                noise.push_back(entries.kink(c, k) * near[static_cast<std::size_t>(k)].h);
+        for (Index k = 0; k < rounding.cols(); ++k) {
+            const Neighbouring& number = near[static_cast<std::size_t>(k)];
+            if (number.stencil == &around && moves(k) && entries.check(c, k) < across_a_knot)
+                noise.push_back(entries.kink(c, k) * number.h);
+        }
         if (noise.empty()) continue;
         const auto middle = noise.begin() + std::ssize(noise) / 2;
         std::ranges::nth_element(noise, middle);
-        for (Index k = 0; k < rounding.cols(); ++k)
-            if (entries.kink(c, k) > 0)
+        const double epsilon = *middle / (median_of_normal * spread(around.kink));
+        for (Index k = 0; k < rounding.cols(); ++k) {
+            const Neighbouring& number = near[static_cast<std::size_t>(k)];
+            if (moves(k))
                 rounding(c, k) =
                     std::max(entries.check(c, k) < across_a_knot ? entries.kink(c, k) : 0,
-                             *middle / near[static_cast<std::size_t>(k)].h);
+                             deviations * spread(number.stencil->weight) * epsilon / number.h);
+        }
     }
     return rounding;
 }
@@ -276,7 +292,7 @@ struct Refining {
         if (!up.why.front().empty() || !down.why.front().empty())
             return;  // at the end of its range
         for (Index c = 0; c < check.size(); ++c) {
-            const double rounded = 100 * rounding[c] / number.h;
+            const double rounded = 50 * rounding[c] / number.h;
             const double size = settled * sizes[static_cast<std::size_t>(c)] / number.step;
             if (std::abs(check[c]) <= size ||
                 std::abs(up.rate(c, 0) - down.rate(c, 0)) <= one_slope / settled * size + rounded)

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "compare/comparison/elements.hpp"
@@ -276,15 +277,17 @@ std::vector<SideWork> sides_to_follow(const Model& model, std::span<const Channe
 
 // ---- The columns of the numbers, from those of numbers and adjustments.
 
-// dx/dp of one leg, SI per unit of the number; NaN where there is none.
-MatrixXd adjusting(const Rates& conditions, Index numbers) {
+// dx/dp of one leg, SI per unit of the number, with its rounding; NaN where there is none.
+struct Adjusting {
+    MatrixXd dx, rounding;
+};
+Adjusting adjusting(const Rates& conditions, Index numbers) {
     const Index n = conditions.at.rows();
     const MatrixXd J = conditions.at.middleCols(numbers, n);
-    if (!J.allFinite()) return MatrixXd::Constant(n, numbers, nan);
-    const Eigen::PartialPivLU<MatrixXd> solver(J);
-    MatrixXd dx(n, numbers);
-    for (Index k = 0; k < numbers; ++k) dx.col(k) = -solver.solve(conditions.at.col(k));
-    return dx;
+    if (!J.allFinite()) return {MatrixXd::Constant(n, numbers, nan), MatrixXd::Zero(n, numbers)};
+    const MatrixXd inverse = J.inverse(), dx = -inverse * conditions.at.leftCols(numbers);
+    return {dx, inverse.cwiseAbs() * (conditions.rounding.leftCols(numbers) +
+                                      conditions.rounding.middleCols(numbers, n) * dx.cwiseAbs())};
 }
 
 // `all`: numbers, adjustments, then perhaps the parameter. A number that moves no adjustment takes
@@ -299,23 +302,31 @@ MatrixXd with_adjustments(const MatrixXd& all, Index numbers, const MatrixXd& dx
     return total;
 }
 
-void take(SideWork& work, Index numbers, const std::vector<MatrixXd>& dx) {
+// Derivatives within their rounding are zero.
+void take(SideWork& work, Index numbers, const std::vector<Adjusting>& adjusting) {
     SideGradients& result = work.result;
-    for (std::size_t l = 0; l < work.rates.size(); ++l)
+    for (std::size_t l = 0; l < work.rates.size(); ++l) {
+        const MatrixXd& dx = adjusting[l].dx;
+        const MatrixXd off = (dx.array() != 0).select(adjusting[l].rounding, 0);
         for (const Rates& at : work.rates[l]) {
-            result.legs[l].at.push_back(with_adjustments(at.at, numbers, dx[l]));
-            result.legs[l].rounding.push_back(
-                with_adjustments(at.rounding, numbers, dx[l].cwiseAbs()));
+            MatrixXd moved = at.at.cwiseAbs();
+            if (moved.size() > 0) moved.leftCols(numbers).setZero();
+            MatrixXd rounding = with_adjustments(at.rounding, numbers, dx.cwiseAbs());
+            rounding.leftCols(numbers) += with_adjustments(moved, numbers, off).leftCols(numbers);
+            const MatrixXd all = with_adjustments(at.at, numbers, dx);
+            result.legs[l].at.push_back((all.array().abs() <= rounding.array()).select(0, all));
+            result.legs[l].rounding.push_back(std::move(rounding));
             if (l > 0) continue;
-            result.one_sided.push_back({with_adjustments(at.one_sided.growing, numbers, dx[l]),
-                                        with_adjustments(at.one_sided.falling, numbers, dx[l])});
+            result.one_sided.push_back({with_adjustments(at.one_sided.growing, numbers, dx),
+                                        with_adjustments(at.one_sided.falling, numbers, dx)});
             auto& why = result.why_number.emplace_back(at.why);
             why.resize(static_cast<std::size_t>(numbers));
-            for (Index k = 0; k < numbers && dx[l].rows() > 0; ++k)
+            for (Index k = 0; k < numbers && dx.rows() > 0; ++k)
                 if (auto& reason = why[static_cast<std::size_t>(k)];
-                    reason.empty() && !dx[l].col(k).allFinite())
+                    reason.empty() && !dx.col(k).allFinite())
                     reason = "the trim has no derivative by it";
         }
+    }
 }
 
 // The largest entry of every output's row by the first leg, each number by its step.
@@ -375,15 +386,27 @@ std::vector<Leg> legs_for(const Model& model, const std::vector<Leg>& asked) {
 
 }  // namespace
 
-bool Gradients::conclusive() const {
-    bool any = false;
+std::vector<std::string> SideGradients::not_confirmed() const {
+    std::vector<std::string> reasons;
+    for (const LegGradients& by : legs)
+        if (!by.failure.empty() && !by.not_applicable)
+            reasons.push_back(
+                fmt::format("{}: {} leg: {}", name, compare::name(by.leg), by.failure));
+    if (!worst.agrees())
+        reasons.push_back(fmt::format("{}: {}, which differ by {:.1e} of the largest of the row",
+                                      name, worst.where, worst.share));
+    return reasons;
+}
+
+std::vector<std::string> Gradients::not_confirmed() const {
+    std::vector<std::string> reasons;
+    long compared = 0;
     for (const SideGradients& side : sides) {
-        for (const LegGradients& leg : side.legs)
-            if (!leg.failure.empty() && !leg.not_applicable) return false;
-        if (!side.worst.agrees()) return false;
-        any = any || side.worst.compared > 0;
+        std::ranges::move(side.not_confirmed(), std::back_inserter(reasons));
+        compared += side.worst.compared;
     }
-    return any;
+    if (compared == 0) reasons.emplace_back("no derivative was compared");
+    return reasons;
 }
 
 Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& model,
@@ -428,14 +451,15 @@ Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& mod
             all.numbers[k].undefined = points[k - from].undefined;
         on_every_side([&](SideWork& side) { side.differentiate(numbers, points); });
     }
-    std::vector<MatrixXd> dx(used.size());
+    std::vector<Adjusting> dx(used.size());
     const auto numbers = std::ssize(varying.numbers);
     if (trims) {
         const SideWork start = std::move(sides.back());
         sides.pop_back();
         for (std::size_t l = 0; l < used.size(); ++l)
             dx[l] = start.rates[l].empty()
-                        ? MatrixXd::Constant(std::ssize(scene.trim->until), numbers, nan)
+                        ? Adjusting{MatrixXd::Constant(std::ssize(scene.trim->until), numbers, nan),
+                                    MatrixXd::Zero(std::ssize(scene.trim->until), numbers)}
                         : adjusting(start.rates[l].front(), numbers);
     }
     on_every_side([&](SideWork& side) {

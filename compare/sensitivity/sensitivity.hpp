@@ -68,6 +68,9 @@ struct SideGradients {
     std::vector<OneSided> one_sided;      // per station, by the equilibrium leg
     std::vector<std::string> why_output;  // per output, likewise: not determined on this branch
     Disagreement worst;
+
+    // Every leg that failed, and the entry in which two differ most; empty where all agree.
+    std::vector<std::string> not_confirmed() const;
 };
 
 struct Gradients {
@@ -75,7 +78,9 @@ struct Gradients {
     std::vector<VariedNumber> numbers;
     std::vector<SideGradients> sides;
 
-    bool conclusive() const;  // every leg that applies converged, something is compared, all agree
+    // Likewise of all sides, and where nothing is compared.
+    std::vector<std::string> not_confirmed() const;
+    bool conclusive() const { return not_confirmed().empty(); }
 };
 
 struct GradientOptions {

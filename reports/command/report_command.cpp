@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "compare/comparison/compare.hpp"
@@ -189,15 +190,6 @@ KeyOutputs key_outputs(const Model& model) {
     return key;
 }
 
-// Why the derivatives on a side are not confirmed: the worst entry, or the leg that failed; empty
-// where they are, or where there is nothing to compare.
-std::string not_confirmed(const compare::SideGradients& side) {
-    for (const auto& leg : side.legs)
-        if (!leg.failure.empty() && !leg.not_applicable)
-            return fmt::format("{}: {} leg: {}", side.name, name(leg.leg), leg.failure);
-    return side.worst.agrees() ? "" : side.name + ": " + side.worst.where;
-}
-
 // "sensitivity": effects of the numbers of the scene on the key figures along the leading sweep.
 // Where they are not confirmed, this section says so; the verdict is on the curves and rates.
 void add_sensitivity(json& document, const LoadedScene& loaded, const std::string& file,
@@ -228,7 +220,7 @@ void add_sensitivity(json& document, const LoadedScene& loaded, const std::strin
             if ((row.at == 0) == of_design) rows.push_back(std::move(row));
         for (const auto& side : all.sides) {
             apart = std::max(apart, side.worst.whole), compared += side.worst.compared;
-            if (const auto why = not_confirmed(side); !why.empty()) reasons.push_back(why);
+            std::ranges::move(side.not_confirmed(), std::back_inserter(reasons));
         }
     };
     add(key.at_design, true);

@@ -59,6 +59,33 @@ TEST(SensitivityCommand, VariesAZeroDirectionByLittle) {
                 0, {.out = {"loads.vertical.force.x", "the legs agree within 1e-07"}});
 }
 
+// What the trim holds at zero is zero, not 1e-10 of rounding; two legs that differ by rounding agree.
+TEST(SensitivityCommand, ShowsAndJudgesRoundingAsZero) {
+    const Folder folder;
+    const std::string file = (folder.path / "derivatives.csv").string();
+    expect_says("sensitivity " + scenes +
+                    "/double_wishbone.yaml --of toe --to points.tie_rod_inner.z --branch travel "
+                    "--points 1 --csv " +
+                    file,
+                0, {.out = {"points.tie_rod_inner.z         0      82  deg per m         0"}});
+    EXPECT_TRUE(contains(text_of(file), "travel to 80 mm,0,mm,toe,points.tie_rod_inner.z,0,"));
+    expect_says("sensitivity " + scenes +
+                    "/multi_link.yaml --of aligning_torque_steer --branch aligning --points 1",
+                0, {.out = {"the legs agree within 1e-07"}});
+}
+
+TEST(SensitivityCommand, NamesEveryLegThatMakesItInconclusive) {
+    expect_says(
+        "sensitivity " + scenes +
+            "/two_spring_arch.yaml --of apex_z --branch down --set branches.down.to=-400",
+        3,
+        {.out = {"NOT CONCLUSIVE\n  down: equilibrium leg: limit point: ",
+                 "\n  down: energy leg: limit point: ", "\n  down: series leg: limit point: "}});
+    expect_says(
+        "sensitivity " + scenes + "/pinned_bar.yaml --of tip_z --to branches.up.steps --points 1",
+        3, {.out = {"NOT CONCLUSIVE\n  no derivative was compared"}});
+}
+
 // A number that decides which parts there are, or counts, has no derivative: the entry says so.
 TEST(SensitivityCommand, SaysWhyThereIsNoDerivative) {
     expect_says("sensitivity " + scenes +

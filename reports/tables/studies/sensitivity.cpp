@@ -167,22 +167,19 @@ std::string sensitivity_text(const Gradients& all, int most) {
         text += reports::text(table);
         for (const auto& reason : reasons) fmt::format_to(out, "no derivative: {}\n", reason);
         for (const auto& leg : side.legs)
-            if (!leg.failure.empty())
-                fmt::format_to(out, "{} leg: {}\n", name(leg.leg), leg.failure);
+            if (leg.not_applicable) fmt::format_to(out, "{} leg: {}\n", name(leg.leg), leg.failure);
         fmt::format_to(out,
                        "{} entries compared between the legs, largest difference {:.1e} of the "
-                       "largest of its row, {:.1e} beyond rounding{}{}\n\n",
-                       side.worst.compared, side.worst.whole, side.worst.share,
-                       side.worst.agrees() ? "" : ": ",
-                       side.worst.agrees() ? "" : side.worst.where);
+                       "largest of its row, {:.1e} beyond rounding\n\n",
+                       side.worst.compared, side.worst.whole, side.worst.share);
     }
-    fmt::format_to(
-        out, "{}\n",
-        all.conclusive()
-            ? fmt::format("the legs agree within {:g} of the largest of each row, beyond rounding",
-                          compare::gradients_agree)
-            : "NOT CONCLUSIVE: the legs disagree, one did not converge, or nothing was "
-              "compared");
+    const auto reasons = all.not_confirmed();
+    if (reasons.empty())
+        fmt::format_to(out,
+                       "the legs agree within {:g} of the largest of each row, beyond rounding\n",
+                       compare::gradients_agree);
+    else
+        fmt::format_to(out, "NOT CONCLUSIVE\n  {}\n", fmt::join(reasons, "\n  "));
     return text;
 }
 
@@ -211,6 +208,7 @@ json sensitivity_json(const Gradients& all) {
                          {"legs", by}});
     }
     return {{"conclusive", all.conclusive()},
+            {"reasons", all.not_confirmed()},
             {"agreement", compare::gradients_agree},
             {"numbers", numbers},
             {"sides", sides},
