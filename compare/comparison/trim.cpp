@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "compare/comparison/legs.hpp"
+#include "compare/comparison/trim_once.hpp"
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/deformation.hpp"
 #include "elastocheck/compile.hpp"
@@ -27,7 +28,6 @@ using Eigen::VectorXd;
 constexpr int most_iterations = 30;
 constexpr int most_halvings = 10;
 constexpr double met = 1e-12;        // [m, rad]: accuracy of a settled state
-constexpr double acceptable = 1e-9;  // [m, rad]: accepted where Newton's method stagnates
 constexpr double moves = 1e-10;      // [m, rad]: a smaller effect of a step counts as none
 constexpr double contraction = 0.5;  // least progress of an iteration with the J of another scene
 constexpr double known = 1e-6;       // of the largest singular value: resolution of the differences
@@ -37,7 +37,7 @@ struct Problem {
     const Trim* trim = nullptr;
     BranchSide side;                                // branch on which the adjustments are held
     std::vector<Channel> channels;                  // read by the conditions
-    VectorXd target;                                // [m, rad]
+    VectorXd drawn, target;                         // [m, rad]
     Leg solver = Leg::equilibrium;                  // by which the trim equations are solved
     std::shared_ptr<recursive::Analysis> analysis;  // of the series, with its last settled state
 };
@@ -120,7 +120,7 @@ Problem pose(const Scene& scene) {
     problem.side = {"trim", on_branch(model, model.branches.front()), model.branches.front()};
     problem.channels = condition_channels(problem.side.model, *problem.trim);
     const VectorXd drawn = values(problem, design_state(problem.side.model));
-    problem.target = drawn;
+    problem.drawn = problem.target = drawn;
     for (std::size_t k = 0; k < problem.trim->until.size(); ++k)
         if (const auto& value = problem.trim->until[k].value)
             problem.target[static_cast<Index>(k)] = *value;
@@ -302,12 +302,14 @@ Scene with_adjusted(Scene scene, const VectorXd& p) {
     return scene;
 }
 
-namespace {
+VectorXd asked_from_drawn(const Scene& scene) {
+    const Problem problem = pose(scene);
+    return problem.target - problem.drawn;
+}
 
-// trim() by one leg, confirmed by the energy leg or, where that does not apply, by the series.
-Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) {
+Trimmed trim_once(const Scene& scene, Leg solver, bool confirm, TrimStart* start,
+                  SettledTrim* settles) {
     Trimmed result{scene, std::nullopt};
-    if (!scene.trim) return result;
     const Trim& trim = *scene.trim;
     if (trim.adjust.size() != trim.until.size() || trim.adjust.empty())
         throw std::invalid_argument(
@@ -440,6 +442,7 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
     }
 
     if (start != nullptr) *start = {p, changes};
+    if (settles != nullptr) *settles = {held, here.state};
     apply(trim, p, result.scene);
     for (std::size_t k = 0; k < trim.adjust.size(); ++k) {
         const auto& adjusted = trim.adjust[k];
@@ -450,13 +453,6 @@ Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) 
                            problem.side.branch.drivers[k].what, held, here.state)});
     }
     return result;
-}
-
-}  // namespace
-
-Trimmed trim(const Scene& scene) { return trim_by(scene, Leg::equilibrium, true, nullptr); }
-Trimmed trim_by_series(const Scene& scene, TrimStart* start) {
-    return trim_by(scene, Leg::series, false, start);
 }
 
 }  // namespace elastocheck::compare

@@ -34,9 +34,15 @@ constexpr std::size_t held_at_a_time = 100000;
 
 // ---- What changes: the numbers, then the adjustments of the trim.
 
+// Whether the adjustments of a trim follow from its conditions at a fixed state. With balanced bushings
+// a trim is found again for each changed number.
+bool adjusts(const Trimmed& trimmed) {
+    return trimmed.record && trimmed.record->bushings == Trim::Bushings::unloaded;
+}
+
 // Found adjustments, SI.
 VectorXd adjusted(const Trimmed& trimmed) {
-    if (!trimmed.record) return {};
+    if (!adjusts(trimmed)) return {};
     VectorXd x(std::ssize(trimmed.record->adjusted));
     for (Index k = 0; k < x.size(); ++k) {
         const auto& one = trimmed.record->adjusted[static_cast<std::size_t>(k)];
@@ -46,6 +52,11 @@ VectorXd adjusted(const Trimmed& trimmed) {
 }
 
 Changed with_adjustments(Scene scene, const VectorXd& x) {
+    if (scene.trim && x.size() == 0) {
+        const Trimmed again = trim_by_series(scene);
+        if (!again.record->reached()) throw std::invalid_argument("trim: " + again.record->detail);
+        return {compile(again.scene), {}};
+    }
     if (x.size() == 0) return {compile(scene), {}};
     std::optional<Trim> trim = scene.trim;
     return {compile(with_adjusted(std::move(scene), x)), std::move(trim)};
@@ -423,7 +434,7 @@ Gradients gradients(const Scene& scene, const Trimmed& trimmed, const Model& mod
         });
     };
     on_every_side([&](SideWork& side) { side.follow(used); });
-    const bool trims = trimmed.record.has_value();
+    const bool trims = adjusts(trimmed);
     if (trims) {
         SideWork& start = sides.emplace_back();
         start.read.side = at_rest(model);

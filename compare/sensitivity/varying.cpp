@@ -121,15 +121,14 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
     std::vector<VariedNumber> numbers;
     for (const std::string& joined : paths) {
         for (const std::string& path : paths_in(joined))
-            if (std::ranges::find(scene.numbers, path, &Number::path) == scene.numbers.end()) {
+            if (!find_number(scene, path)) {
                 std::vector<std::string> names;
                 for (const Number& number : scene.numbers) names.push_back(number.path);
                 throw SceneError(fmt::format("{}: the scene has no number {}{}", scene.source,
                                              reader::quote(path),
                                              reader::did_you_mean(path, names, "there")));
             }
-        numbers.push_back(varied_number(
-            *std::ranges::find(scene.numbers, paths_in(joined).front(), &Number::path)));
+        numbers.push_back(varied_number(*find_number(scene, paths_in(joined).front())));
         numbers.back().path = joined;
     }
     return varying({file, {settings.begin(), settings.end()}}, std::move(numbers));
@@ -143,6 +142,11 @@ VaryingScene varying(const std::filesystem::path& file, std::span<const Setting>
     for (const Number& number : scene.numbers) {
         numbers.push_back(varied_number(number));
         chosen.push_back(!wanted || wanted(number.path));
+        for (const auto& [side, value] : number.sides)
+            if (const std::string path = number.path + "@" + side; wanted && wanted(path)) {
+                numbers.push_back(varied_number({path, value, number.unit, {}}));
+                chosen.push_back(true);
+            }
     }
     File of{file, {settings.begin(), settings.end()}};
     auto list = joined(of, std::move(numbers), std::move(chosen));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -19,13 +20,18 @@ struct SceneError : std::runtime_error {
 // Replacement of one value of the file before reading: all references to a hardpoint then use it.
 struct Setting {
     // Path of keys to the value, "springs.coil.rate"; in a list of three .x, .y or .z, in any other
-    // list its position from 1, "bushings.mount.stiffness.2.6". Only existing values can be set.
+    // list its position from 1, "bushings.mount.stiffness.2.6". Only existing values can be set. Under
+    // a mirror "points.arm_left.z" sets both sides, "points.arm_left.z@left" or "...@right" one of them,
+    // both as the file writes it for the left one.
     std::string path;
     std::string value;  // as written in the file, in its units
 };
 
 // Parses "points.tie_rod_inner.z=-0.055". Throws SceneError if path or value is missing.
 Setting parse_setting(std::string_view text);
+
+// The number of this path, or of one side of it; none where the scene has no such number.
+std::optional<Number> find_number(const Scene& scene, std::string_view path);
 
 // A setting with the shortest text that reads back as the same number.
 Setting setting(std::string path, double value);
@@ -39,7 +45,8 @@ Scene parse_scene(std::string_view text, const std::string& name,
                   std::span<const Setting> settings = {});
 
 // The text of a scene file with these values replaced where they are written, each old value in a
-// comment at the end of its line; all else stays as it is. Throws SceneError for text that is not
+// comment at the end of its line; all else stays as it is. Numbers of one side alone are entries of
+// the section `one_side`. Throws SceneError for text that is not
 // YAML, a setting as read_scene() rejects it, and a value that is not written as one word.
 std::string rewrite_scene(std::string_view text, const std::string& name,
                           std::span<const Setting> settings);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -113,6 +114,9 @@ struct Number {
     std::string path;  // "points.tie_rod_inner.z": name for a Setting
     double value = 0;
     std::string unit;  // "mm", "N·m/deg"; empty for a pure number
+    // Under a mirror, of a number that makes both sides: "left" and "right", each with its value. One
+    // side alone is PATH@left or PATH@right.
+    std::vector<std::pair<std::string, double>> sides = {};
 };
 
 // ---- Trim: parameters adjusted until the design position is in equilibrium under the start values
@@ -148,9 +152,12 @@ struct Trim {
         ConditionKind what;
         std::optional<double> value;  // SI; none: its value in the scene at the design position
     };
+    enum class Bushings { unloaded, balanced };
     std::vector<Adjustment> adjust;
     std::vector<Condition> until;
     int line = 0;  // of the file, 0 when built in code
+    // balanced: with preloads of all bushings such that the drawn position is the equilibrium
+    Bushings bushings = Bushings::unloaded;
 };
 
 // A part of the input that is not modelled.

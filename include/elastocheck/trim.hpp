@@ -14,6 +14,16 @@
 //
 // The energy leg, which does not use p, then settles the trimmed scene, and its conditions are
 // checked too.
+//
+// Trim::Bushings::balanced: the drawn position shall be the equilibrium. With preloads P of the
+// bushings (none at first) the scene is trimmed and settles at x; what the laws then carry beyond
+// what they carry as drawn is added,
+//
+//   P ← P + u'(e(x)) - u'(e(drawn)),
+//
+// again until no body is farther than 1e-12 m from where it is drawn. The first state, of bushings
+// that are unloaded as drawn, decides what they and the adjusted springs carry. The distance shrinks
+// by about F/(K L) each time: force over stiffness and the size of the suspension.
 #pragma once
 
 #include <optional>
@@ -41,8 +51,9 @@ struct TrimRecord {
         double missed = 0;     // residual by the equilibrium leg's state
         double confirmed = 0;  // residual by the state of the second reference
     };
-    std::vector<Adjusted> adjusted;
+    std::vector<Adjusted> adjusted;  // of Trim::adjust, then of every balanced bushing
     std::vector<Met> conditions;
+    Trim::Bushings bushings = Trim::Bushings::unloaded;
     int iterations = 0;              // of Newton's method
     Leg confirmed_by = Leg::energy;  // or the series, where the energy leg does not apply
     Outcome outcome = Outcome::converged;
@@ -51,6 +62,8 @@ struct TrimRecord {
     bool reached() const { return outcome == Outcome::converged && detail.empty(); }
 };
 
+const char* name(Trim::Bushings bushings);  // "unloaded", "balanced"
+
 struct Trimmed {
     Scene scene;                       // with the result as plain data, and without a trim section
     std::optional<TrimRecord> record;  // empty where the scene requests no trim and is unchanged
@@ -58,7 +71,8 @@ struct Trimmed {
 
 // Throws std::invalid_argument for an ill-posed trim, naming the entries: different numbers of
 // conditions and adjustments, an adjustment that moves no condition, conditions that no adjustment
-// moves or that move only together. Where no solution is reached, or the second reference does not
+// moves or that move only together; a condition of a balanced trim that differs from its value as
+// drawn. Where no solution is reached, or the second reference does not
 // confirm it, the record has the reason and the scene is the one given.
 Trimmed trim(const Scene& scene);
 

@@ -9,6 +9,7 @@
 
 #include "elastocheck/read_scene.hpp"
 #include "models/reader/document/yaml.hpp"
+#include "models/reader/one_side.hpp"
 #include "models/reader/plausibility.hpp"
 
 namespace elastocheck::reader {
@@ -44,8 +45,8 @@ class VariedScene {
   private:
     const ParsedScene& scene_;
     std::vector<std::string> paths_;
-    Value tree_;
-    std::vector<Value*> places_;
+    std::vector<std::vector<Value*>> places_;  // of each path; two where it is of both sides
+    Trees trees_;
 };
 
 }  // namespace elastocheck::reader

@@ -202,22 +202,26 @@ void keep_each_once(std::vector<Number>& numbers) {
     std::erase_if(numbers, [&](const Number& number) { return !seen.insert(number.path).second; });
 }
 
-Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::string>* warnings) {
+// `twins`: definitions of the other side; its own are written to `own`.
+Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::string>* warnings,
+                const Definitions* twins, Definitions* own) {
     if (scene.value->kind == Value::Kind::nothing)
         scene.fail("empty; a scene begins with `elastocheck: 1`");
-    scene.only_keys({"elastocheck",     "name",     "units",    "mirror",     "gravity",
-                     "points",          "bodies",   "joints",   "springs",    "stops",
-                     "torsion_springs", "bushings", "beams",    "tyres",      "static_loads",
-                     "loads",           "trim",     "branches", "wheel",      "wheels",
-                     "probes",          "dampers",  "vehicle",  "definitions"});
+    scene.only_keys({"elastocheck",     "name",     "units",    "mirror",      "gravity",
+                     "points",          "bodies",   "joints",   "springs",     "stops",
+                     "torsion_springs", "bushings", "beams",    "tyres",       "static_loads",
+                     "loads",           "trim",     "branches", "wheel",       "wheels",
+                     "probes",          "dampers",  "vehicle",  "definitions", "one_side"});
     check_version(scene);
     (void)requested_definitions(scene);
     Scene result;
     result.source = *scene.file;
     result.name = scene.require("name").text("the name of the scene");
-    Definitions defs = read_definitions(scene);
+    Definitions defs = read_definitions(scene, twins);
     defs.folder = folder;
     read_wheels(scene, defs, result.wheels);
+    if (twins != nullptr) take_twin_bodies(*twins, defs);
+    if (own != nullptr) *own = defs;
     result.bodies = defs.bodies;
     for (const auto& [name, position] : defs.points) result.hardpoints.push_back({name, position});
 
@@ -260,6 +264,33 @@ Scene read_tree(const Cursor& scene, const Folder& folder, std::vector<std::stri
     return result;
 }
 
+// Without `record` the numbers are not listed, and nothing says where it is.
+Scene read_trees(const Trees& trees, const std::string& name, const Folder& folder, bool record,
+                 std::vector<std::string>* warnings) {
+    std::vector<Number> numbers, of_twins;
+    const auto cursor = [&](const Value& tree, std::vector<Number>& list) {
+        return Cursor{
+            .value = &tree, .path = "", .file = &name, .numbers = &list, .has_path = record};
+    };
+    Definitions twins, own;
+    std::optional<Scene> other;
+    if (!trees.twins.empty())
+        other = read_tree(cursor(trees.twins.front(), of_twins), folder, nullptr, nullptr, &twins);
+    Scene scene =
+        read_tree(cursor(trees.written, numbers), folder, warnings, other ? &twins : nullptr, &own);
+    if (other) take_twins(*own.mirror, *other, scene);
+    if (!record) return scene;
+    keep_each_once(numbers);
+    keep_each_once(of_twins);
+    const Mirror* mirror = own.mirror ? &*own.mirror : nullptr;
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+        if (sides_of(mirror, numbers[k].path))
+            numbers[k].sides = {{mirror->from, numbers[k].value},
+                                {mirror->to, other ? of_twins[k].value : numbers[k].value}};
+    scene.numbers = std::move(numbers);
+    return scene;
+}
+
 }  // namespace
 
 ParsedScene::ParsedScene(std::string_view text, std::string name, Folder folder)
@@ -267,31 +298,21 @@ ParsedScene::ParsedScene(std::string_view text, std::string name, Folder folder)
 
 Scene ParsedScene::read(std::span<const Setting> settings,
                         std::vector<std::string>* warnings) const {
-    Value tree = tree_;
-    apply(settings, tree, name_);
-    std::vector<Number> numbers;
-    Scene scene = read_tree({&tree, "", &name_, &numbers}, folder_, warnings);
-    keep_each_once(numbers);
-    scene.numbers = std::move(numbers);
-    return scene;
+    return read_trees(with_settings(tree_, settings, name_), name_, folder_, true, warnings);
 }
 
 VariedScene::VariedScene(const ParsedScene& scene, std::vector<std::string> paths)
-    : scene_(scene), paths_(std::move(paths)), tree_(scene.tree_) {
-    for (const std::string& path : paths_)
-        places_.push_back(&apply(setting(path, 0), tree_, scene.name_));
+    : scene_(scene), paths_(std::move(paths)) {
+    std::vector<Setting> settings;
+    for (const std::string& path : paths_) settings.push_back(setting(path, 0));
+    trees_ = with_settings(scene.tree_, settings, scene.name_, &places_);
 }
 
 Scene VariedScene::read(std::span<const double> values) {
-    for (std::size_t k = 0; k < places_.size(); ++k) places_[k]->number = values[k];
-    std::vector<Number> numbers;
+    for (std::size_t k = 0; k < places_.size(); ++k)
+        for (Value* place : places_[k]) place->number = values[k];
     try {
-        return read_tree({.value = &tree_,
-                          .path = "",
-                          .file = &scene_.name_,
-                          .numbers = &numbers,
-                          .has_path = false},
-                         scene_.folder_, nullptr);
+        return read_trees(trees_, scene_.name_, scene_.folder_, false, nullptr);
     } catch (const SceneError&) {  // again, to say where
         std::vector<Setting> settings;
         for (std::size_t k = 0; k < paths_.size(); ++k)
@@ -301,8 +322,7 @@ Scene VariedScene::read(std::span<const double> values) {
 }
 
 std::vector<RequestedDefinition> ParsedScene::definitions(std::span<const Setting> settings) const {
-    Value tree = tree_;
-    apply(settings, tree, name_);
+    const Value tree = with_settings(tree_, settings, name_).written;
     std::vector<Number> numbers;
     return requested_definitions({&tree, "", &name_, &numbers});
 }

@@ -11,6 +11,7 @@
 
 #include "models/reader/document/characters.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "models/reader/one_side.hpp"
 
 namespace elastocheck {
 namespace reader {
@@ -48,7 +49,7 @@ Reached follow(Value& value, std::string_view path) {
 
 }  // namespace
 
-Value& apply(const Setting& setting, Value& tree, const std::string& file) {
+Value& apply(const Setting& setting, Value& tree, const std::string& file, Repeated repeated) {
     const auto [value, rest] = follow(tree, setting.path);
     const std::string shown_path = shown(setting.path);
     const auto names = names_in(*value);
@@ -72,7 +73,8 @@ Value& apply(const Setting& setting, Value& tree, const std::string& file) {
         fail(file, value->line, shown_path,
              fmt::format("{} cannot be set; allowed: one line of plain text, up to {} bytes",
                          quote(text), longest_value));
-    if (value->is_set) fail(file, value->line, shown_path, "set twice");
+    if (value->is_set && repeated == Repeated::rejected)
+        fail(file, value->line, shown_path, "set twice");
     *value = {.kind = Value::Kind::scalar, .text = text, .line = value->line, .is_set = true};
     return *value;
 }
@@ -111,19 +113,42 @@ std::string edited(std::string line, const std::vector<Edit>& edits, const std::
 
 }  // namespace
 
-void apply(std::span<const Setting> settings, Value& tree, const std::string& file) {
-    for (const Setting& setting : settings) apply(setting, tree, file);
-}
-
 }  // namespace reader
 
-std::string rewrite_scene(std::string_view text, const std::string& name,
-                          std::span<const Setting> settings) {
+namespace {
+
+// Settings of one side alone are entries of the section `one_side`: the text with those that it lacks
+// at the section's beginning or, in a section of its own, at the end. The others remain to be replaced.
+std::string with_one_side(std::string text, const std::string& name,
+                          std::vector<Setting>& settings) {
     reader::Value tree = reader::parse_yaml(text, name);
-    {
-        reader::Value changed = tree;
-        reader::apply(settings, changed, name);  // rejects what cannot be set
-    }
+    std::string added;
+    std::erase_if(settings, [&](Setting& setting) {
+        if (setting.path.find('@') == std::string::npos) return false;
+        const std::string entry = "one_side." + setting.path;
+        if (reader::follow(tree, entry).rest.empty()) {
+            setting.path = entry;
+            return false;
+        }
+        added += fmt::format("  {}: {}\n", setting.path, setting.value);
+        return true;
+    });
+    if (added.empty()) return text;
+    const std::string head = "\none_side:\n";
+    if (const auto section = text.find(head); section != std::string::npos)
+        return text.insert(section + head.size(), added);
+    if (!text.ends_with('\n')) text += '\n';
+    return text + head.substr(1) + added;
+}
+
+}  // namespace
+
+std::string rewrite_scene(std::string_view original, const std::string& name,
+                          std::span<const Setting> wanted) {
+    (void)reader::with_settings(reader::parse_yaml(original, name), wanted, name);  // rejects
+    std::vector<Setting> settings(wanted.begin(), wanted.end());
+    const std::string text = with_one_side(std::string(original), name, settings);
+    reader::Value tree = reader::parse_yaml(text, name);
     std::map<int, std::vector<reader::Edit>> edits;  // by row
     for (const Setting& setting : settings) {
         const reader::Value* value = reader::follow(tree, setting.path).value;

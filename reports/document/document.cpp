@@ -420,6 +420,7 @@ void add_trim(json& scene_document, const compare::TrimRecord& trim) {
     scene_document["trim"] = {{"adjusted", adjusted},
                               {"conditions", conditions},
                               {"iterations", trim.iterations},
+                              {"bushings", compare::name(trim.bushings)},
                               {"confirmed_by", name(trim.confirmed_by)}};
 }
 

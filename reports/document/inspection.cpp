@@ -55,10 +55,13 @@ std::string words(const Size& size) {
 }
 
 std::string trim_words(const compare::TrimRecord& trim) {
-    std::string text =
-        fmt::format("\ntrim, found by the equilibrium leg in {} step{}, confirmed by {}\n",
-                    trim.iterations, trim.iterations == 1 ? "" : "s",
-                    trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series");
+    std::string text = fmt::format(
+        "\ntrim, found by the equilibrium leg in {} step{}, confirmed by {}; bushings are {}\n",
+        trim.iterations, trim.iterations == 1 ? "" : "s",
+        trim.confirmed_by == compare::Leg::energy ? "the energy leg" : "the series",
+        trim.bushings == Trim::Bushings::balanced
+            ? "balanced: the drawn position is the equilibrium"
+            : "unloaded as drawn");
     for (const auto& a : trim.adjusted)
         text += fmt::format("  {:<30} {:+.6g} {}{}{}\n", a.name, a.by, symbol(a.unit),
                             a.makes.empty() ? "" : ": ", a.makes);

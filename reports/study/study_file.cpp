@@ -111,8 +111,12 @@ struct Reading {
     void claim(const Cursor& at, const std::string& path, const std::string& variable) {
         if (path.starts_with("branches."))
             at.fail(path + ": branches are the same for all variants; allowed: other numbers");
-        const auto [other, is_new] = varied_by.try_emplace(path, variable);
-        if (!is_new) at.fail(fmt::format("{} is varied by '{}' too", path, other->second));
+        const std::string both = path.substr(0, path.find('@'));
+        for (const auto& [other, by] : varied_by)  // of both sides, and of one of them: once
+            if (other == path ||
+                (other.substr(0, other.find('@')) == both && (other == both || path == both)))
+                at.fail(fmt::format("{} is varied by '{}' too", path, by));
+        varied_by.emplace(path, variable);
     }
 
     Variable variable(const std::string& name, const Cursor& at) {
@@ -140,8 +144,8 @@ struct Reading {
                                          reader::did_you_mean(pattern, paths(), "numbers")));
             }
         } else {
-            const auto number = std::ranges::find(scene.numbers, name, &Number::path);
-            if (number == scene.numbers.end())
+            const auto number = find_number(scene, name);
+            if (!number)
                 at.fail("the scene has no such number" +
                         reader::did_you_mean(name, paths(), "numbers") +
                         "; a factor of numbers needs `scale: NUMBERS`");

@@ -238,5 +238,41 @@ TEST(Trim, SidesOfASymmetricPairGetTheSame) {
         EXPECT_NEAR(adjusted.by, 500, 1e-6) << adjusted.name;
 }
 
+// Bushings with preloads such that the drawn position is the equilibrium: every leg settles there,
+// also the one that had no part in the trim.
+TEST(Trim, BalancedBushingsKeepTheDrawnPosition) {
+    for (const char* name : {"double_wishbone", "front_axle"}) {
+        Scene scene = support::scene(name);
+        const auto moved = [&](Leg leg) {
+            const Trimmed found = trim(scene);
+            EXPECT_TRUE(found.record->reached()) << name << ": " << found.record->detail;
+            Scene still = found.scene;
+            still.branches = {
+                {.name = "none", .to = 1, .steps = 1, .unit = ParameterUnit::none, .drivers = {}}};
+            const Model model = compile(still);
+            const EquilibriumPath path = rest({"none", model, model.branches[0]}, leg);
+            EXPECT_FALSE(path.points.empty()) << path.detail;
+            double most = 0;
+            for (std::size_t b = 0; b < model.bodies.size() && !path.points.empty(); ++b)
+                most = std::max(most,
+                                (path.points.front().poses[b].r - model.bodies[b].design.r).norm());
+            return most;
+        };
+        EXPECT_GT(moved(Leg::equilibrium), 1e-5)
+            << name << ": unloaded as drawn, it settles beside it";
+        scene.trim->bushings = Trim::Bushings::balanced;
+        EXPECT_LT(moved(Leg::equilibrium), 1e-12) << name;
+        EXPECT_LT(moved(Leg::series), 1e-11) << name;
+        EXPECT_LT(moved(Leg::energy), 1e-9) << name;
+    }
+}
+
+TEST(Trim, BalancedBushingsHaveNoOtherPositionThanTheDrawnOne) {
+    Scene scene = support::scene("double_wishbone");
+    scene.trim->bushings = Trim::Bushings::balanced;
+    scene.trim->until[0].value = 0.01;
+    EXPECT_THROW((void)trim(scene), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace elastocheck::compare

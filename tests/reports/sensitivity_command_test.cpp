@@ -1,6 +1,8 @@
 // `elastocheck sensitivity`: output, files and exit codes.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/reports/command.hpp"
@@ -84,6 +86,36 @@ TEST(SensitivityCommand, NamesEveryLegThatMakesItInconclusive) {
     expect_says(
         "sensitivity " + scenes + "/pinned_bar.yaml --of tip_z --to branches.up.steps --points 1",
         3, {.out = {"NOT CONCLUSIVE\n  no derivative was compared"}});
+}
+
+// Under a mirror a number of both sides moves an output by the sum of what each side moves it by.
+TEST(SensitivityCommand, OfBothSidesIsTheSumOfEach) {
+    const Said said =
+        expect_says("sensitivity " + scenes +
+                        "/front_axle.yaml --of left.toe,right.camber,track --to "
+                        "points.tie_rod_outer_left.z,points.lower_ball_left.y,"
+                        "'points.tie_rod_outer_left.z@*',points.lower_ball_left.y@left,"
+                        "points.lower_ball_left.y@right --branch roll --points 1 --json",
+                    0);
+    std::map<std::string, std::map<std::string, double>> rates;  // by output and place, by number
+    const json table = json::parse(said.out)["derivatives"];
+    std::map<std::string, std::size_t> column;
+    for (std::size_t c = 0; c < table["columns"].size(); ++c)
+        column[table["columns"][c]["name"]] = c;
+    for (const json& row : table["rows"]) {
+        const std::string entry = row[column["output"]].get<std::string>() +
+                                  row[column["parameter"]].dump() + row[column["branch"]].dump();
+        rates[entry][row[column["number"]]] = row[column["derivative"]];
+    }
+    EXPECT_GE(rates.size(), 3);
+    for (const auto& [entry, by] : rates)
+        for (const std::string number :
+             {"points.tie_rod_outer_left.z", "points.lower_ball_left.y"}) {
+            const double both = by.at(number), left = by.at(number + "@left"),
+                         right = by.at(number + "@right");
+            EXPECT_NEAR(left + right, both, 1e-6 * (std::abs(left) + std::abs(right)) + 1e-9)
+                << entry;
+        }
 }
 
 // A number that decides which parts there are, or counts, has no derivative: the entry says so.

@@ -50,14 +50,14 @@ Units read_units(const Cursor& at) {
     return units;
 }
 
-void read_points(const Cursor& section, Definitions& defs) {
+void read_points(const Cursor& section, const Definitions* twins, Definitions& defs) {
     for (const auto& [name, at] : section.entries())
         defs.points[name] = vector(at, defs.units.length);
     if (defs.points.empty()) section.fail("empty; at least one hardpoint is needed");
     if (!defs.mirror) return;
     for (const auto& [name, at] : section.entries())
         if (const auto twin = twin_name(*defs.mirror, name, section))
-            defs.points[*twin] = reflected(defs.points.at(name));
+            defs.points[*twin] = twins ? twins->points.at(*twin) : reflected(defs.points.at(name));
 }
 
 void read_bodies(const Cursor& section, Definitions& defs) {
@@ -104,13 +104,19 @@ Vector3 named_axis(const Cursor& at) {
 
 }  // namespace
 
-Definitions read_definitions(const Cursor& scene) {
+void take_twin_bodies(const Definitions& twins, Definitions& defs) {
+    for (std::size_t b = 0; b < defs.bodies.size(); ++b)
+        if (is_twin(*defs.mirror, defs.bodies[b].name)) defs.bodies[b] = twins.bodies[b];
+}
+
+Definitions read_definitions(const Cursor& scene, const Definitions* twins) {
     Definitions defs;
     defs.units = read_units(scene.require("units"));
     if (const auto mirror = scene.optional("mirror")) defs.mirror = read_mirror(*mirror, scene);
-    read_points(scene.require("points"), defs);
+    read_points(scene.require("points"), twins, defs);
     read_bodies(scene.require("bodies"), defs);
     add_beam_bodies(scene, defs);
+    if (twins != nullptr) take_twin_bodies(*twins, defs);
     return defs;
 }
 

@@ -41,7 +41,9 @@ struct Definitions {
     std::optional<std::filesystem::path> folder;  // folder of the files that the scene refers to
 };
 
-Definitions read_definitions(const Cursor& scene);
+// `twins`: of the same scene with other numbers, from which the twins are taken.
+Definitions read_definitions(const Cursor& scene, const Definitions* twins = nullptr);
+void take_twin_bodies(const Definitions& twins, Definitions& defs);
 
 // Hardpoints closer than this coincide [m]: a direction or length between them would be round-off.
 inline constexpr double coincident = 1e-9;

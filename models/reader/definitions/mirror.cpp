@@ -86,6 +86,10 @@ std::optional<std::string> turned(const Mirror& mirror, std::string_view name) {
     return found ? std::optional(result) : std::nullopt;
 }
 
+bool is_twin(const Mirror& mirror, std::string_view name) {
+    return turned({mirror.to, mirror.from}, name).has_value();
+}
+
 std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name,
                                      const Cursor& section) {
     const auto twin = turned(mirror, name);

@@ -30,6 +30,9 @@ Mirror read_mirror(const Cursor& at, const Cursor& scene);
 // "leftover".
 std::optional<std::string> turned(const Mirror& mirror, std::string_view name);
 
+// Whether the name has the word `to`, so that it is of a twin.
+bool is_twin(const Mirror& mirror, std::string_view name);
+
 // The same for an entry of the section, which must not define the twin's name.
 std::optional<std::string> twin_name(const Mirror& mirror, const std::string& name,
                                      const Cursor& section);

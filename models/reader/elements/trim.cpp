@@ -129,8 +129,12 @@ void read_trim(const Cursor& scene, const Units& units, const Loads& loads, Driv
                Scene& result) {
     const auto at = scene.optional("trim");
     if (!at) return;
-    at->only_keys({"adjust", "until", "under"});
+    at->only_keys({"adjust", "until", "under", "bushings"});
     Trim trim;
+    if (const auto bushings = at->optional("bushings"))
+        trim.bushings = bushings->one_of("a kind of trim", {"unloaded", "balanced"}) == 0
+                            ? Trim::Bushings::unloaded
+                            : Trim::Bushings::balanced;
     trim.line = at->value->line;
     trim.adjust = read_adjustments(at->require("adjust"), loads, drivables, result);
     trim.until = read_conditions(at->require("until"), result, units);

@@ -68,9 +68,12 @@ Settings without(Settings settings, const std::vector<Number>& numbers) {
 Number number_of_path(const std::string& joined, const Scene& scene) {
     Number number;
     for (const std::string& path : compare::paths_in(joined)) {
-        const Number& one = named(
-            scene.numbers, path, [](const Number& n) { return n.path; }, "--vary", "number",
-            "numbers");
+        const auto of_one_side = find_number(scene, path);
+        const Number one = of_one_side
+                               ? *of_one_side
+                               : named(
+                                     scene.numbers, path, [](const Number& n) { return n.path; },
+                                     "--vary", "number", "numbers");
         if (number.path.empty()) number = one;
         if (one.value != number.value || one.unit != number.unit)
             throw std::invalid_argument(fmt::format(
@@ -208,7 +211,7 @@ Tolerances read_tolerances(std::string_view yaml, const std::string& file, const
     };
     for (const auto& [name, at] : whole.entries()) {
         if (name == "correlations") continue;
-        if (std::ranges::find(known, name) == known.end())
+        if (!find_number(scene, name))
             at.fail("the scene has no such number" + reader::did_you_mean(name, known, "numbers"));
         at.only_keys({"normal", "uniform"});
         const auto normal = at.optional("normal"), uniform = at.optional("uniform");

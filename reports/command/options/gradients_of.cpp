@@ -107,7 +107,16 @@ compare::Gradients gradients_of(const std::string& file, const Settings& setting
     outputs = of_names("--of", "output", "outputs", outputs, request.of,
                        [](const compare::Channel& c) { return c.name; });
     std::vector<std::string> names;
-    for (const Number& number : loaded.scene.numbers) names.push_back(number.path);
+    for (const Number& number : loaded.scene.numbers) {
+        names.push_back(number.path);
+        for (const auto& [side, value] : number.sides)  // of one side alone, where it is asked for
+            if (const std::string path = number.path + "@" + side;
+                std::ranges::any_of(request.to, [&](const std::string& word) {
+                    return word.find('@') != word.npos &&
+                           ::fnmatch(word.c_str(), path.c_str(), 0) == 0;
+                }))
+                names.push_back(path);
+    }
     std::set<std::string> wanted;
     for (const std::size_t k : matching("--to", "number", "numbers", names, request.to))
         wanted.insert(names[k]);

@@ -53,8 +53,11 @@ std::optional<Table> alignment(const JsonCursor& scene) {
 std::optional<Table> adjusted(const JsonCursor& scene) {
     const auto trim = scene.find("trim");
     if (!trim) return std::nullopt;
-    Table table{.caption = "The trim adjusted",
-                .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
+    Table table{
+        .caption = (*trim)["bushings"].text() == "balanced"
+                       ? "The trim adjusted; preloads of all bushings balance the drawn position"
+                       : "The trim adjusted; bushings are unloaded as drawn",
+        .columns = {{"what", true}, {"by"}, {"makes", true, true}}};
     for (const auto& a : (*trim)["adjusted"].items())
         table.rows.push_back(
             {a["name"].text(),

@@ -1,0 +1,125 @@
+// Trims, with bushings that are unloaded as drawn or balanced (elastocheck/trim.hpp).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "compare/comparison/trim_once.hpp"
+#include "compare/outputs/deformation.hpp"
+#include "elastocheck/trim.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+constexpr double in_place = 1e-12;  // [m, rad]: of a body that is where it is drawn
+constexpr int most_balances = 30;
+
+bool is_balanced(const Elastic& element) {
+    return std::holds_alternative<Bushing>(element.kind) &&
+           element.written_as == WrittenAs::itself && !element.active_only_where_driven;
+}
+
+// Of the body that is farthest from where it is drawn: its origin [m], or its rotation [rad].
+double farthest(const SettledTrim& settled) {
+    double most = 0;
+    for (std::size_t b = 0; b < settled.state.poses.size(); ++b) {
+        const Pose &drawn = settled.held.model.bodies[b].design, &now = settled.state.poses[b];
+        most = std::max({most, (now.r - drawn.r).norm(), now.p.angularDistance(drawn.p)});
+    }
+    return most;
+}
+
+// u'(e(x)) - u'(e(drawn)) of every bushing of the model, by name, in the axes that it is written in.
+std::map<std::string, Vector6> loads_of_bushings(const SettledTrim& settled) {
+    std::map<std::string, Vector6> loads;
+    const Model& model = settled.held.model;
+    const Equilibrium drawn = design_state(model);
+    for (std::size_t k = 0; k < model.elastics.size(); ++k) {
+        const Elastic& element = model.elastics[k];
+        if (!is_balanced(element)) continue;
+        const auto at = [&](const Equilibrium& state) {
+            return force(element.kind, deformation(element.kind, k, settled.held.branch, state));
+        };
+        loads[element.name] = (element.markers_swapped ? -1 : 1) * (at(settled.state) - at(drawn));
+    }
+    return loads;
+}
+
+void require_drawn_values(const Scene& scene) {
+    const Eigen::VectorXd differs = asked_from_drawn(scene);
+    for (Eigen::Index k = 0; k < differs.size(); ++k)
+        if (!(std::abs(differs[k]) <= acceptable))
+            throw std::invalid_argument(
+                fmt::format("'{}' differs from its value as drawn, and with balanced bushings the "
+                            "drawn position "
+                            "is the equilibrium; give its name alone, or `bushings: unloaded`",
+                            scene.trim->until[static_cast<std::size_t>(k)].name));
+}
+
+// What the record says of each balanced bushing.
+void record_preloads(const Scene& scene, const Scene& balanced, TrimRecord& record) {
+    for (std::size_t k = 0; k < scene.elastics.size(); ++k) {
+        if (!is_balanced(scene.elastics[k])) continue;
+        const auto preload_in = [&](const Scene& of) {
+            return std::get<Bushing>(of.elastics[k].kind).preload;
+        };
+        const Vector6 P = preload_in(balanced), by = P - preload_in(scene);
+        const double force = by.head<3>().norm();
+        record.adjusted.push_back(
+            {"bushings." + scene.elastics[k].name + ".preload", Unit::newton, force,
+             fmt::format("force ({:.5g}, {:.5g}, {:.5g}) N, moment ({:.4g}, {:.4g}, {:.4g}) N·m "
+                         "along its axes",
+                         P[0], P[1], P[2], P[3], P[4], P[5])});
+    }
+}
+
+Trimmed trim_by(const Scene& scene, Leg solver, bool confirm, TrimStart* start) {
+    if (!scene.trim) return {scene, std::nullopt};
+    if (scene.trim->bushings == Trim::Bushings::unloaded)
+        return trim_once(scene, solver, confirm, start, nullptr);
+    require_drawn_values(scene);
+    Scene loaded = scene;
+    TrimStart last;
+    if (start != nullptr) last = *start;
+    double distance = 0;
+    for (int balances = 0; balances < most_balances; ++balances) {
+        SettledTrim settled;
+        Trimmed found = trim_once(loaded, solver, false, &last, &settled);
+        if (!found.record->reached()) return {scene, found.record};
+        distance = farthest(settled);
+        if (distance <= in_place) {
+            if (start != nullptr) *start = last;
+            if (confirm) found = trim_once(loaded, solver, true, &last, nullptr);
+            if (!found.record->reached()) return {scene, found.record};
+            found.record->bushings = Trim::Bushings::balanced;
+            record_preloads(scene, found.scene, *found.record);
+            return found;
+        }
+        const auto loads = loads_of_bushings(settled);
+        for (Elastic& element : loaded.elastics)
+            if (const auto load = loads.find(element.name); load != loads.end())
+                std::get<Bushing>(element.kind).preload += load->second;
+    }
+    TrimRecord record;
+    record.outcome = Outcome::iteration_limit;
+    record.detail = fmt::format(
+        "the bushings are not balanced after {} corrections: a body still settles {:.3g} mm from "
+        "where it is drawn",
+        most_balances, 1e3 * distance);
+    return {scene, record};
+}
+
+}  // namespace
+
+const char* name(Trim::Bushings bushings) {
+    return bushings == Trim::Bushings::balanced ? "balanced" : "unloaded";
+}
+
+Trimmed trim(const Scene& scene) { return trim_by(scene, Leg::equilibrium, true, nullptr); }
+Trimmed trim_by_series(const Scene& scene, TrimStart* start) {
+    return trim_by(scene, Leg::series, false, start);
+}
+
+}  // namespace elastocheck::compare
