@@ -178,7 +178,8 @@ struct RollingWheel : LegTest {
                 }
             }
             EXPECT_TRUE(within(places, limit(1e-12))) << corner.name << ": " << branch;
-            if (effort) EXPECT_TRUE(within(forces, limit(1e-9))) << corner.name << ": " << branch;
+            if (!effort) continue;
+            EXPECT_TRUE(within(forces, limit(1e-9))) << corner.name << ": " << branch;
         }
     }
 };
