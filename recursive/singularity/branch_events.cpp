@@ -109,6 +109,8 @@ std::optional<double> suspect_between(SteppingState& s, const ContinuationSettin
 struct Traversal {
     bool through = false;             // the end was reached and no loss of stability was found
     std::optional<double> lost = {};  // parameter at which stability is lost
+    // parameter before which redundant joints become inconsistent
+    std::optional<double> consistent = {};
 };
 
 Traversal follow_by_long_steps(SteppingState& s, double to) {
@@ -132,7 +134,7 @@ Traversal follow_by_long_steps(SteppingState& s, double to) {
         next.p = to * ahead;
         const Trial trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         const bool accepted = trial.verdict == Verdict::accepted;
-        if (accepted && is_inconsistent_at(s, next, q, lambda)) return {};
+        if (accepted && is_inconsistent_at(s, next, q, lambda)) return {false, {}, node.p};
         if (accepted && negative_idle_stiffness(s, next.q, next.lambda) < 0) return {};
         const bool first = gone == 0, last = ahead == 1;
         if (trial.verdict == Verdict::past_singular_point ||
@@ -197,6 +199,8 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
     const bool sooner =
         traversal.lost &&
         !(event && std::abs(event->load) <= (1 + tolerance) * std::abs(*traversal.lost));
+    if (!event && traversal.consistent)
+        return Event{Outcome::inconsistent_constraints, *traversal.consistent};
     return sooner ? Event{Outcome::bifurcation_point, *traversal.lost} : event;
 }
 

@@ -15,7 +15,8 @@
 //
 // The cost is about fifteen factorisations. If a step is rejected at every length, or stability is
 // lost, `adaptive` follows the same branch. The method then ends where `adaptive` ends, or where
-// bisection found the loss of stability, whichever comes first.
+// bisection found the loss of stability, whichever comes first. Where redundant joints become
+// inconsistent and `adaptive` gives up, it ends before the long step that shows it.
 #pragma once
 
 #include <optional>
