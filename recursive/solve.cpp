@@ -156,7 +156,8 @@ bool settles_otherwise(const Method& method, Outcome outcome) {
     const auto* linear = std::get_if<Linear>(&method.kind);
     return (!linear || linear->follow == everything) &&
            (outcome == Outcome::limit_point || outcome == Outcome::bifurcation_point ||
-            outcome == Outcome::singular || outcome == Outcome::branch_lost);
+            outcome == Outcome::singular || outcome == Outcome::branch_lost ||
+            outcome == Outcome::inconsistent_constraints);
 }
 
 EquilibriumPath solve_centred(const Model& model, const Eigen::Vector3d& c, const Branch& branch,

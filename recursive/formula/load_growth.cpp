@@ -4,6 +4,29 @@
 #include "recursive/formula/inputs.hpp"
 
 namespace elastocheck::recursive {
+namespace {
+
+// A spring with a curve, as u'(x) - k x beside a linear spring k: the free length of the second
+// drives the force of both. Returns the second, with the force -F more.
+AxialSpring split(AxialSpring& spring, double k, double F) {
+    AxialSpring linear = spring;
+    linear.law = LinearRate{k};
+    linear.free_length += F / k;
+    Curve& curve = std::get<Curve>(spring.law);
+    for (std::size_t p = 0; p < curve.pieces.size(); ++p) {
+        curve.pieces[p][0] -= k * curve.knots[p == 0 ? 0 : p - 1];
+        curve.pieces[p][1] -= k;
+    }
+    return linear;
+}
+
+bool is_driven(const Branch& branch, int element) {
+    return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
+        return driven_element(driver.what) == element;
+    });
+}
+
+}  // namespace
 
 std::optional<Grown> grown(const Model& model, const Branch& branch) {
     Grown result{model, branch};
@@ -17,9 +40,23 @@ std::optional<Grown> grown(const Model& model, const Branch& branch) {
         if (double* free_length = driven_number(kind)) {
             // ℓ of a free length of zero
             const double length = deflections<double>(kind, Rest<double>{}, q)[0];
-            if (curve_of(kind, 0) != nullptr || !(length > 0) || length == *free_length) continue;
-            drivers.push_back({FreeLength{element}, *free_length - length, 0});
-            *free_length = length;
+            if (!(length > 0) || length == *free_length) continue;
+            if (curve_of(kind, 0) == nullptr) {
+                drivers.push_back({FreeLength{element}, *free_length - length, 0});
+                *free_length = length;
+            } else if (!is_driven(branch, element)) {
+                auto& spring = std::get<AxialSpring>(kind);
+                const double x = length - *free_length, force = gradient<double>(spring.law, x),
+                             rate = hessian<double>(spring.law, [&] { return x; });
+                if (force == 0 || !std::isfinite(force)) continue;
+                const double k_linear = std::max(std::abs(rate), std::abs(force) / length);
+                auto linear = model.elastics[k];
+                linear.kind = split(spring, k_linear, force);
+                drivers.push_back({FreeLength{static_cast<int>(result.model.elastics.size())},
+                                   -force / k_linear, 0});
+                result.model.elastics.push_back(linear);
+            }
+            continue;
         }
         if (Vector6<double>* wrench = preload(kind)) {
             const Vector6<double> stress =

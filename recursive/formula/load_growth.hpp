@@ -15,14 +15,12 @@
 namespace elastocheck::recursive {
 
 struct Grown {
-    Model
-        model;  // no static loads; linear springs and bushings have no force at the design position
+    Model model;    // no static loads; springs and bushings have no force at the design position
     Branch branch;  // the removed loads and forces as further drivers, with a start and no rate
 };
 
 // The same equations as (model, branch) at t = 1, for every a; none where the model has no such
-// force, since both homotopies are then the same. Springs with a curve keep their force at the
-// design position.
+// force, since both homotopies are then the same.
 std::optional<Grown> grown(const Model& model, const Branch& branch);
 
 }  // namespace elastocheck::recursive

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "recursive/diagnosis/finite.hpp"
 #include "recursive/formula/parameter.hpp"
 #include "recursive/series/expand.hpp"
@@ -461,58 +459,23 @@ double divide(Continuation& w, const State<double>& from, double reach) {
 }
 
 // A τ inside the expansion at which the path is unstable, although the end is stable; none if no
-// such τ is found. The determinant has a minimum there. The parabola through three values of it
-// predicts the minimum, and the value there replaces one of the three, until the value is negative,
-// or is positive and agrees with the prediction. If none is found, the state is left at the end.
+// such τ is found, and then the state is left at the end.
 std::optional<double> lost_inside(Continuation& w, const State<double>& from, double reach) {
-    // A predicted minimum below this fraction of the smaller end value, or of the range of the three
-    // values, is evaluated.
-    constexpr double dips = 0.5, curved = 0.02;
-    constexpr double foretold = 0.2;  // error of a prediction that counts as agreement, relative
-    // Smallest distance of a new point from the middle one, as a fraction of the interval.
-    constexpr double apart = 0.05;
-    constexpr int looks = 20;
     if (!w.stable) return std::nullopt;
     if (w.in_middle < 0) return reach / 2;
-    std::array<double, 3> tau{0, reach / 2, reach}, at{1, w.in_middle, determinant(w)};
-    const auto [lowest, highest] = std::ranges::minmax(at);
-    const double deep = std::max(dips * std::min(at[0], at[2]), curved * (highest - lowest));
-    const double a = w.at();
-    State<double> end;
-    Vector<double> lambda_end;
-    for (int look = 0; look < looks; ++look) {
-        const double before = (at[1] - at[0]) / (tau[1] - tau[0]),
-                     behind = (at[2] - at[1]) / (tau[2] - tau[1]);
-        const double bend = (behind - before) / (tau[2] - tau[0]);
-        const auto parabola = [&](double x) {
-            return at[0] + (x - tau[0]) * (before + bend * (x - tau[1]));
-        };
-        double there = (tau[0] + tau[1]) / 2 - before / (2 * bend);
-        const double least = parabola(there);
-        if (!(bend > 0) || !(there > tau[0] && there < tau[2]) || !(least < deep)) break;
-        const double nearest = apart * (tau[2] - tau[0]);
-        if (!(std::abs(there - tau[1]) > nearest))
-            there = tau[1] + (tau[2] - tau[1] > tau[1] - tau[0] ? nearest : -nearest);
-        if (look == 0) {
-            end = w.s.q;
-            lambda_end = w.s.lambda;
-        }
-        move_to(w, from, there);
-        if (factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to))
-            return there;
-        const double here = determinant(w);
-        if (std::abs(here - parabola(there)) <= foretold * least) break;
-        const bool left = there < tau[1];
-        if (here < at[1]) {
-            (left ? tau[2] : tau[0]) = tau[1];
-            (left ? at[2] : at[0]) = at[1];
-            tau[1] = there, at[1] = here;
-        } else {
-            (left ? tau[0] : tau[2]) = there;
-            (left ? at[0] : at[2]) = here;
-        }
-    }
-    if (lambda_end.size() > 0) {
+    const double a = w.at(), here = determinant(w);
+    const State<double> end = w.s.q;
+    const Vector<double> lambda_end = w.s.lambda;
+    bool moved = false;
+    const Dip lowest = lowest_determinant({1, w.in_middle, here}, [&](double t) {
+        moved = true;
+        move_to(w, from, t * reach);
+        return factorise_at(w.s, w.s.q, w.s.lambda) != Outcome::converged || is_past(w, w.to)
+                   ? -1
+                   : determinant(w);
+    });
+    if (lowest.value < 0) return lowest.t * reach;
+    if (moved) {
         w.go_to(a);
         w.s.q = end;
         w.s.lambda = lambda_end;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "recursive/stepping/adaptive.hpp"
 #include "recursive/stepping/event_location.hpp"
@@ -80,58 +79,29 @@ std::optional<double> lost_between(SteppingState& s, const ContinuationSettings&
     return std::nullopt;
 }
 
-// Parameter between two stable nodes at which the determinant most likely has the other sign, or
-// at which two modes may have become unstable; none if the determinant stays away from zero. It is
-// evaluated at the midpoint, then at the minimum of the parabola through the three lowest values.
+// Parameter between two stable nodes at which the determinant has the other sign, or at which two
+// modes may have become unstable; none if the determinant stays away from zero.
 std::optional<double> suspect_between(SteppingState& s, const ContinuationSettings& settings,
                                       const Node& from, const Node& to, double log_from,
                                       double log_to) {
-    // A predicted minimum below this fraction of the lowest value, or of the range of the three
-    // values, is evaluated.
-    constexpr double dips = 0.25, curved = 0.02;
     // Below this fraction of the larger end value two modes may have passed zero.
     constexpr double nearly = 0.01;
-    constexpr int most = 8;  // values
-    struct Value {
-        double t = 0, d = 0;  // fraction of the interval; determinant over that at `from`
-    };
     State<double> q = from.q;
     Vector<double> lambda = from.lambda;
+    const auto place = [&](double t) { return from.p + t * (to.p - from.p); };
     const auto at = [&](double t) {
         between(from, to, t, q, lambda);
-        go_to(s, settings.at(from.p + t * (to.p - from.p)));
+        go_to(s, settings.at(place(t)));
         const bool regular = factorise_at(s, q, lambda) == Outcome::converged;
         return regular && s.system.lu.orientation == from.orientation
                    ? std::exp2(log_determinant(s.system) - log_from)
                    : -1;
     };
-    const auto place = [&](double t) { return from.p + t * (to.p - from.p); };
-    std::vector<Value> known{{0, 1}, {0.5, at(0.5)}, {1, std::exp2(log_to - log_from)}};
-    for (;;) {
-        const auto lowest = std::ranges::min_element(known, {}, &Value::d);
-        if (lowest->d < 0) return place(lowest->t);
-        const auto first = std::clamp(lowest - known.begin() - 1, std::ptrdiff_t{0},
-                                      static_cast<std::ptrdiff_t>(known.size()) - 3);
-        const Value *const l = &known[static_cast<std::size_t>(first)], *const m = l + 1,
-                           *const r = l + 2;
-        const double rise = (m->d - l->d) / (m->t - l->t), later = (r->d - m->d) / (r->t - m->t),
-                     bend = (later - rise) / (r->t - l->t),
-                     vertex = (l->t + m->t) / 2 - rise / (2 * bend),
-                     least = m->d + (vertex - m->t) * (rise + bend * (vertex - l->t));
-        const auto is_near = [&](const Value& value) { return std::abs(value.t - vertex) < 1e-3; };
-        const bool inside = bend > 0 && vertex > l->t && vertex < r->t;
-        const double range = std::max(l->d, r->d) - lowest->d;
-        if (!inside || !(least < std::max(dips * lowest->d, curved * range)) ||
-            std::ranges::any_of(known, is_near) || known.size() == most) {
-            const double ends = std::max(known.front().d, known.back().d);
-            const bool between_ends = lowest->t > 0 && lowest->t < 1;
-            return between_ends && lowest->d < nearly * ends ? std::optional(place(lowest->t))
-                                                             : std::nullopt;
-        }
-        known.insert(
-            std::ranges::find_if(known, [&](const Value& value) { return value.t > vertex; }),
-            {vertex, at(vertex)});
-    }
+    const double end = std::exp2(log_to - log_from);
+    const Dip lowest = lowest_determinant({1, at(0.5), end}, at);
+    return lowest.t > 0 && lowest.t < 1 && lowest.value < nearly * std::max(1., end)
+               ? std::optional(place(lowest.t))
+               : std::nullopt;
 }
 
 // Result of following the branch with few steps. Stability lost inside may be regained before the
@@ -139,6 +109,8 @@ std::optional<double> suspect_between(SteppingState& s, const ContinuationSettin
 struct Traversal {
     bool through = false;             // the end was reached and no loss of stability was found
     std::optional<double> lost = {};  // parameter at which stability is lost
+    // parameter before which redundant joints become inconsistent
+    std::optional<double> consistent = {};
 };
 
 Traversal follow_by_long_steps(SteppingState& s, double to) {
@@ -162,7 +134,7 @@ Traversal follow_by_long_steps(SteppingState& s, double to) {
         next.p = to * ahead;
         const Trial trial = try_step(s, settings, node, curvature, lambda_curvature, next);
         const bool accepted = trial.verdict == Verdict::accepted;
-        if (accepted && is_inconsistent_at(s, next, q, lambda)) return {};
+        if (accepted && is_inconsistent_at(s, next, q, lambda)) return {false, {}, node.p};
         if (accepted && negative_idle_stiffness(s, next.q, next.lambda) < 0) return {};
         const bool first = gone == 0, last = ahead == 1;
         if (trial.verdict == Verdict::past_singular_point ||
@@ -227,6 +199,8 @@ std::optional<Event> watch(const Model& model, const Branch& branch, const Analy
     const bool sooner =
         traversal.lost &&
         !(event && std::abs(event->load) <= (1 + tolerance) * std::abs(*traversal.lost));
+    if (!event && traversal.consistent)
+        return Event{Outcome::inconsistent_constraints, *traversal.consistent};
     return sooner ? Event{Outcome::bifurcation_point, *traversal.lost} : event;
 }
 

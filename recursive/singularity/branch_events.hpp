@@ -9,14 +9,14 @@
 //
 // These tests do not detect stability that is lost inside a step and regained before its end. The
 // determinant is therefore evaluated at the midpoint of the first and the last step, and of the two
-// steps at a node where it has a minimum; then at the minimum of the parabola through its three
-// lowest values while that is near zero. Where it changes its sign or nearly vanishes, and where a
+// steps at a node where it has a minimum, and from there to its lowest value (stability.hpp). Where it changes its sign or nearly vanishes, and where a
 // tried step ends unstable, bisection locates the point. An unstable interval is missed if it is so
 // short that these values of the determinant show no dip; no minimum length is guaranteed.
 //
 // The cost is about fifteen factorisations. If a step is rejected at every length, or stability is
 // lost, `adaptive` follows the same branch. The method then ends where `adaptive` ends, or where
-// bisection found the loss of stability, whichever comes first.
+// bisection found the loss of stability, whichever comes first. Where redundant joints become
+// inconsistent and `adaptive` gives up, it ends before the long step that shows it.
 #pragma once
 
 #include <optional>

@@ -175,17 +175,63 @@ Outcome check_start_stability(SteppingState& s, const StartStability& start) {
     return Outcome::singular;
 }
 
-// d(t) = d₀ + b t + c t², 0 ≤ t ≤ 1, relative to the largest value; at its least d₀ - b² / 4c
-bool determinant_dips(double log_from, double log_middle, double log_to) {
+namespace {
+
+// Minimum of the parabola through d(t) at three t, in units of their interval: none if it has none
+// within the interval or `outside` of it. It dips below half of the least of the three, or below
+// 2 % of their range, which is the error of the parabola.
+std::optional<Dip> parabola_dips(const std::array<double, 3>& t, const std::array<double, 3>& d,
+                                 double outside) {
     constexpr double deep = 0.5, curved = 0.02;
+    const double before = (d[1] - d[0]) / (t[1] - t[0]), behind = (d[2] - d[1]) / (t[2] - t[1]),
+                 bend = (behind - before) / (t[2] - t[0]);
+    const double low = (t[0] + t[1]) / 2 - before / (2 * bend),
+                 value = d[0] + (low - t[0]) * (before + bend * (low - t[1]));
+    const auto [least, most] = std::ranges::minmax(d);
+    const double slack = outside * (t[2] - t[0]);
+    const bool near = bend > 0 && low > t[0] - slack && low < t[2] + slack;
+    return near && value < std::max(deep * least, curved * (most - least))
+               ? std::optional(Dip{low, value})
+               : std::nullopt;
+}
+
+}  // namespace
+
+bool determinant_dips(double log_from, double log_middle, double log_to) {
+    constexpr double deep = 0.5;
     const double most = std::max({log_from, log_middle, log_to});
     const double from = std::exp2(log_from - most), middle = std::exp2(log_middle - most),
                  to = std::exp2(log_to - most);
-    const double b = -3 * from + 4 * middle - to, c = 2 * (from - 2 * middle + to);
-    const double least = std::min({from, middle, to});
     return middle < deep * std::min(from, to) ||
-           (c > 0 && b < 0 && -b < 2 * c &&
-            from - b * b / (4 * c) < std::max(deep * least, curved * (1 - least)));
+           parabola_dips({0, 0.5, 1}, {from, middle, to}, 0).has_value();
+}
+
+Dip lowest_determinant(std::array<double, 3> d, const std::function<double(double)>& at) {
+    // Smallest distance of a new point from the others, as a fraction of their interval.
+    constexpr double apart = 0.05, outside = 0.1;
+    constexpr int looks = 20;
+    std::array<double, 3> t{0, 0.5, 1};
+    for (int look = 0; look < looks && d[1] >= 0; ++look) {
+        const auto dip = parabola_dips(t, d, outside);
+        if (!dip) break;
+        const double nearest = apart * (t[2] - t[0]);
+        double there = std::clamp(dip->t, t[0] + nearest, t[2] - nearest);
+        if (!(std::abs(there - t[1]) > nearest))
+            there = t[1] + (t[2] - t[1] > t[1] - t[0] ? nearest : -nearest);
+        const double value = at(there);
+        if (value < 0) return {there, value};
+        const bool left = there < t[1];
+        if (value < d[1]) {
+            (left ? t[2] : t[0]) = t[1];
+            (left ? d[2] : d[0]) = d[1];
+            t[1] = there, d[1] = value;
+        } else {
+            (left ? t[0] : t[2]) = there;
+            (left ? d[0] : d[2]) = value;
+        }
+    }
+    const auto lowest = static_cast<std::size_t>(std::ranges::min_element(d) - d.begin());
+    return {t[lowest], d[lowest]};
 }
 
 double least_eigenvalue(const Eigen::MatrixXd& Q) {

@@ -18,6 +18,9 @@
 // K includes the curvature of the joint reactions.
 #pragma once
 
+#include <array>
+#include <functional>
+
 #include "recursive/stepping/stepping_state.hpp"
 
 namespace elastocheck::recursive {
@@ -41,6 +44,15 @@ Outcome check_start_stability(SteppingState& s, const StartStability& start);
 // Whether the parabola through log₂ |determinant| at the ends and the middle of a step, taken as
 // values, falls below half of the least of them or below 2 % of their range in between.
 bool determinant_dips(double log_from, double log_middle, double log_to);
+
+// The lowest determinant found within a step, given its values at t = 0, ½ and 1, both ends
+// positive. `at` evaluates it: first where the parabola through these three has its minimum, then
+// with that value in the place of one of them, until a value is negative or the parabola no longer
+// dips. A minimum predicted a little outside the step counts too: the next step begins past it.
+struct Dip {
+    double t = 0, value = 0;
+};
+Dip lowest_determinant(std::array<double, 3> values, const std::function<double(double)>& at);
 
 // The smallest eigenvalue of the symmetric part of Q.
 double least_eigenvalue(const Eigen::MatrixXd& Q);

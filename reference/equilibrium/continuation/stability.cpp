@@ -312,11 +312,13 @@ bool constraints_keep_their_side(const System& system, const Linearisation& from
 namespace {
 
 // With s from 0 to 1, λ(s) = λ₀ + b s + c s²,  b = -3 λ₀ + 4 λ_m - λ₁,  c = 2 (λ₀ - 2 λ_m + λ₁),
-// has its least value λ₀ - b² / 4c where 0 < -b / 2c < 1.
+// has its least value λ₀ - b² / 4c at s = -b / 2c. A minimum predicted a little outside the step
+// may lie within it, and the next step begins past it.
 bool dips(double l_0, double l_m, double l_1, double round_off) {
     const double b = -3 * l_0 + 4 * l_m - l_1, c = 2 * (l_0 - 2 * l_m + l_1);
     const auto [least, most] = std::minmax({l_0, l_m, l_1});
-    return c > 0 && b < 0 && -b < 2 * c &&
+    constexpr double outside = 0.1;
+    return c > 0 && b < 2 * outside * c && -b < 2 * (1 + outside) * c &&
            l_0 - b * b / (4 * c) <
                std::max(deepest_dip * least, curved * (most - least)) - round_off;
 }
