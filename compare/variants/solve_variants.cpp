@@ -90,6 +90,15 @@ VariantSolver::VariantSolver(const Model& design, std::vector<StudyFigure> figur
     elastocheck::structure(design, structure_);
     place(design);
     for (Group& group : groups_) {
+        for (Way& way : group.ways)
+            if (std::ranges::any_of(way.readings, [&](const Reading& reading) {
+                    return outputs_[reading.figure].kind() == ChannelKind::characteristic;
+                })) {
+                const Branch side = ways(design.branches[way.branch])[way.side];
+                const BranchSide whole{side.name, on_branch(design, side), side};
+                (void)wheel_response(whole, {.leg = Leg::series}, steering_joint(design),
+                                     design_state(design), way.responses);
+            }
         group.design = followed(design, group.ways);
         group.analysis = recursive::analyse(group.design);
     }
@@ -160,11 +169,15 @@ Model VariantSolver::followed(const Model& model, const std::vector<Way>& of) co
     return result;
 }
 
-// Those of the design with the numbers of the variant, one a figure; none where it has others.
-std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& variant) const {
+bool VariantSolver::is_as_design(const Model& variant) const {
     std::vector<int> structure;
     elastocheck::structure(variant, structure);
-    const bool same = structure == structure_;
+    return structure == structure_;
+}
+
+// Those of the design with the numbers of the variant, one a figure; none where it has others.
+std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& variant) const {
+    const bool same = is_as_design(variant);
     std::vector<Channel> own = outputs_;
     if (same && std::ranges::none_of(own, holds_numbers)) return own;
     const auto all = same ? channels(without_joints(variant)) : figure_outputs(variant, with_sums_);
@@ -178,7 +191,8 @@ std::optional<std::vector<Channel>> VariantSolver::outputs(const Model& variant)
 }
 
 void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs, const Way& way,
-                         Leg leg, const EquilibriumPath& path, VariantFigures& into) const {
+                         const EquilibriumPath& path, Analyses analyses,
+                         VariantFigures& into) const {
     const Branch& branch = model.branches[way.branch];
     const Branch side = ways(branch)[way.side];
     std::string ended;
@@ -195,7 +209,6 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
 
     // The figures of one point at a time, so that a response is computed once.
     std::optional<BranchSide> whole;
-    Analyses analyses;
     std::vector<std::size_t> here;
     std::vector<Channel> wanted;
     for (std::size_t p = 0; p < reached; ++p) {
@@ -216,7 +229,14 @@ void VariantSolver::read(const Model& model, const std::vector<Channel>& outputs
                 steps.steps = points_;
                 whole = BranchSide{branch.name, on_branch(model, steps), steps};
             }
-            values = row_of(model, wanted, *whole, {.leg = leg}, path.points[p], analyses).values;
+            const auto row = [&] {
+                return row_of(model, wanted, *whole, {.leg = into.leg}, path.points[p], analyses)
+                    .values;
+            };
+            values = row();
+            // An idle mode of the design may be none here.
+            if (std::ranges::any_of(values, [](double x) { return std::isnan(x); }))
+                analyses = {}, values = row();
         } else {
             values = evaluate(model, side, wanted, path.points[p]);
         }
@@ -264,13 +284,14 @@ std::vector<VariantFigures> VariantSolver::solve(std::span<const Model> variants
     for (const Group& group : groups_) {
         std::vector<Model> models;
         for (const std::size_t v : which) models.push_back(followed(variants[v], group.ways));
-        recursive::solve_batch(group.design, group.analysis, models,
-                               {.points = points_, .wrenches = !only_motion_},
-                               [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
-                                   declined[v] = declined[v] || declines(path.outcome);
-                                   read(variants[which[v]], all_outputs[v], group.ways[w],
-                                        Leg::series, path, results[which[v]]);
-                               });
+        recursive::solve_batch(
+            group.design, group.analysis, models, {.points = points_, .wrenches = !only_motion_},
+            [&](std::size_t v, std::size_t w, const EquilibriumPath& path) {
+                declined[v] = declined[v] || declines(path.outcome);
+                const bool same = is_as_design(variants[which[v]]);
+                read(variants[which[v]], all_outputs[v], group.ways[w], path,
+                     same ? group.ways[w].responses : Analyses{}, results[which[v]]);
+            });
     }
     for (std::size_t k = 0; k < which.size(); ++k) {
         VariantFigures& result = results[which[k]];
@@ -298,7 +319,7 @@ VariantFigures VariantSolver::solve_alone(const Model& variant, Leg leg) const {
             side.steps = points_;
             const EquilibriumPath path =
                 walk(BranchSide{side.name, on_branch(variant, side), side}, {.leg = leg});
-            read(variant, *own, way, leg, path, result);
+            read(variant, *own, way, path, {}, result);
         }
     finish(result);
     return result;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/comparison/compliance.hpp"
 #include "compare/variants/study.hpp"
 #include "elastocheck/legs.hpp"
 #include "elastocheck/model.hpp"
@@ -58,6 +59,7 @@ class VariantSolver {
     struct Way {
         std::size_t branch = 0, side = 0;  // position in Model::branches, in ways() of it
         std::vector<Reading> readings = {};
+        Analyses responses = {};  // of the design, where a characteristic is read
     };
     struct Group {  // of ways that are followed together
         std::vector<Way> ways;
@@ -68,8 +70,9 @@ class VariantSolver {
     void place(const Model& design);
     Model followed(const Model& model, const std::vector<Way>& ways) const;
     std::optional<std::vector<Channel>> outputs(const Model& model) const;
-    void read(const Model& model, const std::vector<Channel>& outputs, const Way& way, Leg leg,
-              const EquilibriumPath& path, VariantFigures& into) const;
+    void read(const Model& model, const std::vector<Channel>& outputs, const Way& way,
+              const EquilibriumPath& path, Analyses analyses, VariantFigures& into) const;
+    bool is_as_design(const Model& model) const;  // but for numbers
     void finish(VariantFigures& figures) const;
 
     std::vector<StudyFigure> figures_;

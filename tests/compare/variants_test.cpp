@@ -315,6 +315,20 @@ TEST(VariantSolver, FindsTheFiguresOfEveryVariantAsAloneAndAsTheReference) {
     }
 }
 
+// The strut of the design spins freely, which its analysis holds; that of the variant is resisted.
+TEST(VariantSolver, ComputesCharacteristicsOfAVariantWithOtherIdleModes) {
+    const Model design = compile(read_scene(ELASTOCHECK_SCENES "/mcpherson.yaml"));
+    Model resisted = design;
+    for (Elastic& elastic : resisted.elastics)
+        if (elastic.name == "K2_strut_mount")
+            std::get<LinearStiffness>(std::get<Bushing>(elastic.kind).law).K(5, 5) = 100;
+    const VariantSolver solver(design, {figure_at("bump_steer", "jounce", 3000)});
+    const VariantFigures found = solver.solve(std::vector{resisted}).front(),
+                         expected = solver.solve_alone(resisted, Leg::equilibrium);
+    ASSERT_EQ(found.outcome, VariantOutcome::solved) << found.reason;
+    EXPECT_NEAR(found.values[0], expected.values[0], 1e-9 * std::abs(expected.values[0]));
+}
+
 // On the same points the extremes of a branch are those of its curve.
 TEST(VariantSolver, FindsExtremesOverABranchOfBothSides) {
     const std::string file = ELASTOCHECK_SCENES "/chrono_mcpherson_travel.yaml";
