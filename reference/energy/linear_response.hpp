@@ -15,7 +15,7 @@ namespace elastocheck::reference::energy {
 //
 //   J t = -∂Φ/∂s                  Zᵀ ((H + A) t + ∂²(V + λᵀΦ)/∂ξ∂s) = 0
 //
-// A is that of the acting dead moments (balance.hpp). A disturbing moment m on a body adds -m to
+// A is that of the acting loads without potential (balance.hpp). A disturbing moment m on a body adds -m to
 // the gradient: at the centre of a chart it has the potential -m·φ, whose A is of second order.
 //
 // Outcomes. not_conservative, too_large: as in solve() for one value. branch_lost: a bushing is at

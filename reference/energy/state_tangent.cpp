@@ -63,7 +63,7 @@ StateTangent tangent_at(const Model& model, const Branch& branch, const Equilibr
     t.S = t.scales.coordinates(n);
     t.D = t.scales.rows(model);
     t.lambda = t.scales.energy() * t.D.cwiseProduct(t.state.at.lambda);
-    t.K = t.state.H + moment_stiffness(t.prescribed, t.scales, n);
+    t.K = t.state.H + load_stiffness(t.prescribed, t.scales, state.poses);
     t.Z = t.state.modes.Z(Eigen::all, t.state.modes.resisting());
     t.idle = t.state.modes.idle_motions();
     if (t.Z.cols() > 0) t.W.compute(t.Z.transpose() * t.K * t.Z);

@@ -17,7 +17,7 @@ struct StateTangent {
     Prescribed prescribed;  // at the state's a
     Scales scales;
     Eigen::VectorXd S, D, lambda;            // lambda of Φ, SI
-    Eigen::MatrixXd K;                       // H + A, A that of dead moments
+    Eigen::MatrixXd K;                       // H + A, A that of loads without potential
     Eigen::MatrixXd Z, idle;                 // resisting motions, and idle ones
     Eigen::PartialPivLU<Eigen::MatrixXd> W;  // ZᵀKZ
     std::optional<Failure> failure;          // then nothing else is set

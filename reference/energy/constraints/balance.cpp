@@ -76,6 +76,7 @@ MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales&
         if (!sigma.isZero(0)) add_curvature(model.elastics[k].kind, sigma, chart, H);
     }
     for (const auto& force : prescribed.forces) add_curvature(force, chart, H);
+    for (const auto& brake : prescribed.brakes) add_curvature(dead_force(brake, chart), chart, H);
     int row = 0;
     for (std::size_t k = 0; k < model.constraints.size(); ++k) {
         const ConstraintKind& kind = model.constraints[k].kind;
@@ -86,16 +87,35 @@ MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales&
     return S.asDiagonal() * (0.5 * (H + H.transpose())) * S.asDiagonal() / scales.energy();
 }
 
-// With g the gradient of everything but the moment, in ground axes: ∂V/∂φ = Jᵀ g - m with
+// Dead moment m. With g the gradient of everything but m, in ground axes: ∂V/∂φ = Jᵀ g - m with
 // J = 1 + ½ φ̃ + ..., whereas the balance is g - m. They differ by
 // (1 - Jᵀ) g = ½ φ × g = ½ φ × m, since g = m at equilibrium.
-MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, int n) {
+//
+// Brake force f. The lever to the patch p = r_w + u_w, whereas the chart's lever s turns with the
+// carrier: the balance -(p - r) × f changes by f × (δp - δr - φ × s) more,
+// δp = δr_w - ũ_w φ_w.
+MatrixXd load_stiffness(const Prescribed& prescribed, const Scales& scales,
+                        const std::vector<Pose>& centre) {
+    const auto n = static_cast<Eigen::Index>(6 * centre.size());
     MatrixXd A = MatrixXd::Zero(n, n);
     for (const auto& moment : prescribed.moments) {
         const int row = 6 * moment.body + 3;
-        A.block<3, 3>(row, row) -= 0.5 * skew(moment.m) / scales.energy();
+        A.block<3, 3>(row, row) -= 0.5 * skew(moment.m);
     }
-    return A;
+    const Chart chart = chart_about(centre);
+    for (const auto& brake : prescribed.brakes) {
+        const int on = 6 * brake.body, wheel = 6 * brake.patch.body;
+        const Eigen::Matrix3d f = skew(brake.f);
+        const Point held = dead_force(brake, chart).at;
+        A.block<3, 3>(on + 3, on) -= f;
+        A.block<3, 3>(on + 3, on + 3) += f * skew(motion(chart[held.body], held.s_local).lever);
+        if (brake.patch.body == ground) continue;
+        A.block<3, 3>(on + 3, wheel) += f;
+        A.block<3, 3>(on + 3, wheel + 3) -=
+            f * skew(motion(chart[brake.patch.body], brake.patch.s_local).lever);
+    }
+    const VectorXd S = scales.coordinates(static_cast<int>(n));
+    return S.asDiagonal() * A * S.asDiagonal() / scales.energy();
 }
 
 Modes modes_of(const Balance& at, const MatrixXd& H) {

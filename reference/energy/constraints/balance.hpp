@@ -40,10 +40,10 @@ Eigen::VectorXd shortest(const Balance& at, const Eigen::VectorXd& Phi);
 Eigen::MatrixXd hessian(const Model& model, const Prescribed& prescribed, const Scales& scales,
                         const std::vector<Pose>& centre, const Eigen::VectorXd& lambda);
 
-// Unsymmetric stiffness A of a dead moment: with a small rotation φ of its body, the balance of
-// moments changes by ½ φ × m more than the gradient of the chart's potential does. In ξ
-// [6nb × 6nb].
-Eigen::MatrixXd moment_stiffness(const Prescribed& prescribed, const Scales& scales, int n);
+// Unsymmetric stiffness A of the loads without potential: by how much more than the gradient of the
+// chart's potential the balance changes about its centre. In ξ [6nb × 6nb].
+Eigen::MatrixXd load_stiffness(const Prescribed& prescribed, const Scales& scales,
+                               const std::vector<Pose>& centre);
 
 // Modes of motion that the constraints allow: eigenvectors of the reduced Hessian (reduced to
 // `along`).

@@ -31,8 +31,10 @@ std::vector<Vector3d> attachment_points(const Model& model, const Course& course
     };
     for (const auto& constraint : model.constraints) each_point(constraint.kind, add_point);
     for (const auto& elastic : model.elastics) each_point(elastic.kind, add_point);
-    for (const auto* prescribed : {&course.start, &course.rate})
+    for (const auto* prescribed : {&course.start, &course.rate}) {
         for (const auto& force : prescribed->forces) add_point(force.at);
+        for (const auto& brake : prescribed->brakes) add_point(brake.patch);
+    }
     return points;
 }
 
@@ -57,6 +59,7 @@ double extent_of(const std::vector<Vector3d>& points) {
 double loads_size(const Prescribed& prescribed, double length) {
     double size = 0;
     for (const auto& force : prescribed.forces) size += force.f.norm();
+    for (const auto& brake : prescribed.brakes) size += brake.f.norm();
     for (const auto& moment : prescribed.moments) size += moment.m.norm() / length;
     return size;
 }

@@ -17,7 +17,7 @@
 //   J t = -∂Φ/∂a               t = p + Z y,   p = -J⁺ ∂Φ/∂a
 //   Zᵀ (H t + b) = 0           y = -W⁻¹ Zᵀ (b + H p),   b = ∂²(V + λᵀΦ)/∂ξ∂a
 //
-// where a dead moment adds its unsymmetric part A to H (balance.hpp).
+// where loads without potential add their unsymmetric part A to H (balance.hpp).
 #include "reference/energy/minimise/branch.hpp"
 
 #include <fmt/format.h>
@@ -85,11 +85,10 @@ VectorXd resisted_increment(const Path& path, const State& from, const State& to
     return xi - idle * (idle.transpose() * xi);
 }
 
-// A of K = H + A; empty without an acting moment.
+// A of K = H + A; empty without a load without potential.
 std::optional<MatrixXd> unsymmetric_stiffness(const Path& path, const State& state) {
-    if (path.course.start.moments.empty() && path.course.rate.moments.empty()) return {};
-    return moment_stiffness(at(path.course, state.a), path.scales,
-                            static_cast<int>(state.H.rows()));
+    if (!path.course.start.without_potential() && !path.course.rate.without_potential()) return {};
+    return load_stiffness(at(path.course, state.a), path.scales, state.poses);
 }
 
 // Newton increment -Z (ZᵀKZ)⁻¹ Zᵀ b over the resisting modes, in ξ. The modes are those of H, so
@@ -140,8 +139,8 @@ bool is_spent(const Modes& first, const Modes& now) {
 // Classifies the singular point at which the softest mode z is spent. The tangent there is t = -z
 // (z · b) / w + ..., b the rate of the balance. It grows as the stiffness w falls, and the branch
 // turns back (limit point), unless z · b = 0 and another curve of equilibria crosses (bifurcation).
-// So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a dead
-// moment w is that of the minimum and does not classify the branch.
+// So w |t| keeps its value at a limit point, and goes to zero with w at a bifurcation. Under a load
+// without potential w is that of the minimum and does not classify the branch.
 Failure spent_mode(const Path& path, const Continuation& continuation, const VectorXd& t) {
     if (unsymmetric_stiffness(path, continuation.state))
         return Failure{Outcome::branch_lost, unstable};
@@ -347,8 +346,9 @@ Attempt minimum_from(const Path& path, double a, const std::vector<Pose>& start,
             state = std::move(attempt.state);
         }
         if (largest(moved_by) <= path.scales.roundoff) break;  // the next chart would be the same
-        if (prescribed.moments.empty()) continue;
-        // A new centre rotates the moments relative to the bodies. Without this Newton increment
+        if (!prescribed.without_potential()) continue;
+        // A new centre rotates the moments relative to the bodies, and moves the patches. Without this
+        // Newton increment
         // the charts converge only linearly.
         const VectorXd ahead =
             newton_increment(state, unsymmetric_stiffness(path, state), state.at.left);

@@ -40,8 +40,8 @@ Course settling_course(const Model& model, const Prescribed& held) {
             change.offset[index] = *measured - own_offset(kind) - held.offset[index];
     }
     drawn.offset += change.offset;
-    change.forces = sum(nothing_prescribed(model), -1, held).forces;
-    change.moments = sum(nothing_prescribed(model), -1, held).moments;
+    const Prescribed less = sum(nothing_prescribed(model), -1, held);
+    change.forces = less.forces, change.moments = less.moments, change.brakes = less.brakes;
     change.gap = constraints(model, drawn, design).Phi;
     change.preload = -stresses(model, held, design);
     return {held, change};

@@ -4,7 +4,7 @@
 //   r = r_c + Δr,   A = exp(φ) A_c,   x = (Δr, φ) of every body, [6nb]
 //
 // The minimisation runs in one chart. After each solution the chart is re-centred (`poses`), so φ
-// stays small and the first-order potential -m·φ of a dead moment becomes exact.
+// stays small and the first-order potentials of dead moments and brake forces become exact.
 #pragma once
 
 #include <vector>

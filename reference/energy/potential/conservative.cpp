@@ -9,7 +9,7 @@ namespace elastocheck::reference::energy {
 namespace {
 
 bool follows(const Load& load) {
-    return !has_potential(load.kind) && body_of(load.kind) != ground &&
+    return is_follower(load.kind) && body_of(load.kind) != ground &&
            !load_vector(load.kind).isZero(0);
 }
 

@@ -139,9 +139,9 @@ Element<1> element(const AxialSpring& spring, const Prescribed& prescribed, int 
 Element<6> element(const Bushing& bushing, const Prescribed& prescribed, int k,
                    const Chart& chart) {
     const Deformation<6> e = deformation(bushing, chart);
-    const Vector6 b = bushing.preload + prescribed.preload.col(k);
-    return element<6>(e, values(bushing.law, e.e_c - bushing.undeformed, e.delta),
-                      1 + prescribed.strength[k], b);
+    const Vector6 b = bushing.preload + prescribed.preload.col(k),
+                  e_0 = bushing.undeformed + prescribed.free_length[k] * Vector6::Unit(2);
+    return element<6>(e, values(bushing.law, e.e_c - e_0, e.delta), 1 + prescribed.strength[k], b);
 }
 
 // f(k, element) for every element with wanted(k), in the model's order.
@@ -244,12 +244,14 @@ void add_geometric(const Bushing& bushing, const Vector6& stress, const Chart& c
 // -f·Δp, and its gradient in (δr, δπ).
 double add_forces(const Prescribed& prescribed, const Chart& chart, VectorXd& g) {
     double change = 0;
-    for (const auto& force : prescribed.forces) {
+    const auto add = [&](const DeadForce& force) {
         const PointMotion at = motion(chart[force.at.body], force.at.s_local);
         change -= force.f.dot(at.dp);
         g.segment<3>(6 * force.at.body) -= force.f;
         g.segment<3>(6 * force.at.body + 3) -= at.lever.cross(force.f);
-    }
+    };
+    for (const auto& force : prescribed.forces) add(force);
+    for (const auto& brake : prescribed.brakes) add(dead_force(brake, chart));
     return change;
 }
 
@@ -294,13 +296,19 @@ VectorXd gradient_rate(const Model& model, const Prescribed& prescribed, const P
     for_each_element(model, prescribed, chart, is_driven, [&]<int N>(int k, const Element<N>& e) {
         Matrix<double, N, 1> stress_rate =
             rate.preload.col(k).head<N>() + rate.strength[k] * e.of_law;
-        if constexpr (N == 1) stress_rate -= e.stiffness * rate.free_length[k];
+        stress_rate -= e.stiffness.col(N == 1 ? 0 : 2) * rate.free_length[k];
         add_gradient<N>(e, stress_rate, g);
     });
     add_forces(rate, chart, g);
     to_chart(chart, g);
     add_moments(rate, chart, g);
     return g;
+}
+
+DeadForce dead_force(const BrakeForce& brake, const Chart& chart) {
+    const Placement &carrier = chart[brake.body], &wheel = chart[brake.patch.body];
+    const Vector3d lever = wheel.centre.r + wheel.A_c * brake.patch.s_local - carrier.centre.r;
+    return {{brake.body, carrier.A_c.transpose() * lever}, brake.f};
 }
 
 void add_curvature(const ElasticKind& element, const Vector6& stress, const Chart& chart,

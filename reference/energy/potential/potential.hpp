@@ -2,6 +2,9 @@
 //
 //   V(x; a) = Σ U(e(x); a) - Σ f(a)·p(x) - Σ m(a)·φ,   U(e; a) = s(a) u(e - e₀(a)) + b(a)ᵀ e
 //
+// A brake force has no potential, but at the centre of a chart that of a force at the point of the
+// carrier that is at the patch there (dead_force below).
+//
 // e(x) is an element's deformation: ℓ of a spring, (d, θ) of a bushing; u its law (laws.hpp), e₀
 // the spring's free length or the bushing's undeformed offset, b the preload. s = 1, except for
 // auxiliary elements while a model settles (settle.cpp). No forces are assembled: a gradient is
@@ -26,6 +29,9 @@ Potential potential(const Model& model, const Prescribed& prescribed, const Char
 //   ∂²V/∂x∂a = Σ Eᵀ (b' + s' ∂u/∂e - s ∂²u/∂e² e₀') - Σ (∂p/∂x)ᵀ f' - Σ m'
 Eigen::VectorXd gradient_rate(const Model& model, const Prescribed& prescribed,
                               const Prescribed& rate, const Chart& chart);
+
+// The dead force on the carrier with the same wrench at the centre of the chart.
+DeadForce dead_force(const BrakeForce& brake, const Chart& chart);
 
 // Adds to H [6nb × 6nb] the second derivatives, at the centre, of an element's deformation at a
 // constant stress σ (row 0 of springs), Σ σ ∂²e/∂x², and those of a force's -f·p. With

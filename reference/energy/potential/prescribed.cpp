@@ -1,8 +1,5 @@
 #include "reference/energy/potential/prescribed.hpp"
 
-#include <stdexcept>
-
-#include "models/kinds.hpp"
 #include "models/overloaded.hpp"
 
 namespace elastocheck::reference::energy {
@@ -21,7 +18,10 @@ void add(Prescribed& to, const LoadKind& load, double factor) {
                           // Models with followers are not solved, and their forces are not judged:
                           // conservative.hpp.
                           [](const FollowerForce&) {}, [](const FollowerMoment&) {},
-                          [](const BrakeForce&) {}},  // not yet: refused as without potential
+                          [&](const BrakeForce& brake) {
+                              if (brake.body != ground)
+                                  to.brakes.push_back({brake.patch, brake.body, factor * brake.f});
+                          }},
                load);
 }
 
@@ -33,13 +33,7 @@ void add(Prescribed& to, const Model& model, const Driven& driven, double factor
                        to.offset[model.joints.at(static_cast<std::size_t>(motion.joint)).driven] +=
                            factor;
                    },
-                   [&](const FreeLength& length) {
-                       const auto k = static_cast<std::size_t>(length.elastic);
-                       if (driven_number(model.elastics.at(k).kind) == nullptr)
-                           throw std::logic_error(
-                               "energy: a driven undeformed length of a bushing: not yet");
-                       to.free_length[length.elastic] += factor;
-                   },
+                   [&](const FreeLength& length) { to.free_length[length.elastic] += factor; },
                    [&](const Preload& preload) {
                        to.preload.col(preload.elastic) += factor * preload.direction;
                    }},
@@ -53,6 +47,7 @@ Prescribed nothing_prescribed(const Model& model) {
                elements = static_cast<Eigen::Index>(model.elastics.size());
     return {.forces = {},
             .moments = {},
+            .brakes = {},
             .offset = Eigen::VectorXd::Zero(constraints),
             .free_length = Eigen::VectorXd::Zero(elements),
             .preload = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, elements),
@@ -74,6 +69,8 @@ Prescribed sum(const Prescribed& f, double factor, const Prescribed& g) {
     Prescribed result = f;
     for (const auto& force : g.forces) result.forces.push_back({force.at, factor * force.f});
     for (const auto& moment : g.moments) result.moments.push_back({moment.body, factor * moment.m});
+    for (const auto& brake : g.brakes)
+        result.brakes.push_back({brake.patch, brake.body, factor * brake.f});
     result.offset += factor * g.offset;
     result.free_length += factor * g.free_length;
     result.preload += factor * g.preload;

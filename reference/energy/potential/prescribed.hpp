@@ -15,12 +15,17 @@ namespace elastocheck::reference::energy {
 struct Prescribed {
     std::vector<DeadForce> forces;    // on bodies only: a force on ground does no work
     std::vector<DeadMoment> moments;  // likewise
+    std::vector<BrakeForce> brakes;   // likewise, on their carriers
     Eigen::VectorXd offset;           // added to length, offset, angle of each constraint [m, rad]
-    Eigen::VectorXd free_length;      // added to the free length of each element [m]
+    // added to the free length of each spring, to the undeformed d_z of each bushing [m]
+    Eigen::VectorXd free_length;
     Eigen::Matrix<double, 6, Eigen::Dynamic>
         preload;               // added to that of each element [N, N·m]; row 0 of springs
     Eigen::VectorXd gap;       // Φ = gap instead of Φ = 0, row by row [m]
     Eigen::VectorXd strength;  // s - 1, s the factor of each element's law
+
+    // Whether loads act that have a potential only at the centre of a chart (chart.hpp).
+    bool without_potential() const { return !moments.empty() || !brakes.empty(); }
 };
 
 // No loads, all other quantities as in the model.

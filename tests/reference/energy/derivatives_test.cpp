@@ -8,6 +8,7 @@
 #include "reference/energy/constraints/balance.hpp"
 #include "reference/energy/potential/laws.hpp"
 #include "reference/energy/potential/relative_rotation.hpp"
+#include "reference/energy/potential/rotation.hpp"
 #include "support.hpp"
 
 namespace elastocheck::reference::energy {
@@ -99,6 +100,9 @@ std::vector<Case> potentials(Random& random) {
     });
     add("moment", two_bodies(random), [&](Prescribed& p) {
         p.moments = {{0, random.vector()}, {1, random.vector()}};
+    });
+    add("brake", two_bodies(random), [&](Prescribed& p) {
+        p.brakes = {{point(random, 1), 0, random.vector()}, {point(random, 0), 1, random.vector()}};
     });
     return cases;
 }
@@ -217,6 +221,7 @@ Prescribed random_rate(const Model& model, Random& random) {
     for (BodyId b = 0; b < 2; ++b) {
         rate.forces.push_back({point(random, b), random.vector()});
         rate.moments.push_back({b, random.vector()});
+        rate.brakes.push_back({point(random, 1 - b), b, random.vector()});
     }
     rate.offset = random.many(static_cast<int>(rate.offset.size()));
     rate.free_length = random.many(static_cast<int>(rate.free_length.size()));
@@ -347,6 +352,41 @@ TEST(Derivatives, HessianAgreesWithDifferencesOfTheGradient) {
         }
         EXPECT_LE((H - D).norm(), 1e-7 * H.norm()) << one.name;
         EXPECT_LE((H - H.transpose()).norm(), 1e-14 * H.norm()) << one.name;
+    }
+}
+
+// The balance in ground axes is the gradient at the centre of a chart, here recentred at every
+// state. Away from equilibrium that of the chart's potential, Jᵀ g, changes by ½ g × φ more.
+TEST(Derivatives, LoadsWithoutPotentialAddTheirStiffnessToTheHessian) {
+    Random random;
+    Scales scales;
+    scales.length = 0.7, scales.force = 1.3;
+    for (int repeat = 0; repeat < 20; ++repeat) {
+        const Model model = two_bodies(random);
+        Prescribed p = nothing_prescribed(model);
+        p.forces = {{point(random, 1), random.vector()}};
+        p.moments = {{0, random.vector()}};
+        p.brakes = {{point(random, 1), 0, random.vector()}, {point(random, 0), 1, random.vector()}};
+        const auto centre = std::vector{random.pose(), random.pose()};
+        const VectorXd S = scales.coordinates(12);
+        const auto balanced = [&](const std::vector<Pose>& at) -> VectorXd {
+            return S.cwiseProduct(potential(model, p, chart_about(at)).gradient) / scales.energy();
+        };
+        MatrixXd K = hessian(model, p, scales, centre, VectorXd()) +
+                     load_stiffness(p, scales, centre),
+                 D(12, 12);
+        const VectorXd g = balanced(centre);
+        for (const int turn : {3, 9}) K.block<3, 3>(turn, turn) -= 0.5 * skew(g.segment<3>(turn));
+        for (int i = 0; i < 12; ++i) {
+            VectorXd sides[2];
+            for (const int side : {0, 1}) {
+                Chart chart = chart_about(centre);
+                move_to(chart, S.cwiseProduct((side ? 1e-5 : -1e-5) * VectorXd::Unit(12, i)));
+                sides[side] = balanced(poses(chart));
+            }
+            D.col(i) = (sides[1] - sides[0]) / 2e-5;
+        }
+        EXPECT_LE((K - D).norm(), 1e-8 * K.norm());
     }
 }
 
