@@ -195,7 +195,6 @@ TEST_P(RollingWheel, CarriesDeadForcesAtItsLowestPoint) {
 }
 
 TEST_P(RollingWheel, IsHeldToItsCarrierByTheBrake) {
-    if (leg().kind != Leg::recursive) GTEST_SKIP() << "not yet";
     for (const Corner& corner : corners())
         expect(corner, "{load: brake, from: -1500, to: 3000, steps: 40}",
                [&](double F, double alpha) {
@@ -221,7 +220,6 @@ TEST_P(RollingWheel, IsLiftedByAJackUnderItsLowestPoint) {
 
 // Down to where the tyre leaves the road, and the corner hangs on its spring: α = -M_0 / k.
 TEST_P(RollingWheel, StandsOnATyreThatOnlyPushes) {
-    if (leg().kind != Leg::recursive) GTEST_SKIP() << "not yet";
     for (const Corner& corner : corners())
         expect(corner, "{drive: tyres.t.road, from: -0.25, to: 0.1, steps: 40}",
                [&](double h, double alpha) {
