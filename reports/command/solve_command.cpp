@@ -9,6 +9,7 @@
 #include "compare/comparison/elements.hpp"
 #include "compare/comparison/legs.hpp"
 #include "compare/outputs/rates.hpp"
+#include "compare/warnings/lift_off.hpp"
 #include "elastocheck/channels.hpp"
 #include "recursive/series/path.hpp"
 #include "recursive/soft_motion.hpp"
@@ -141,6 +142,9 @@ int solve(const SolveRequest& request, const Delivery& delivery) {
             whole.outcome = path.outcome, whole.detail = path.detail, whole.counts = path.counts;
             kept.push_back(std::move(whole));
         }
+        for (const auto& event : compare::lift_offs(
+                 model, branch, leg == compare::Leg::recursive ? compare::Leg::series : leg))
+            print_error("{}: {}\n", branch.name, event.text());
         for (std::size_t w = 0; w < sides.size(); ++w)
             if (approximate && last[w] && is_end(sides[w].branch, last[w]->load))
                 print_error("{}: {}: {}\n", who, branch.name,

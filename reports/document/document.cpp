@@ -9,6 +9,7 @@
 #include "compare/outputs/curve.hpp"
 #include "compare/studies/findings.hpp"
 #include "compare/tables/rows.hpp"
+#include "compare/warnings/lift_off.hpp"
 #include "compare/warnings/plausibility.hpp"
 #include "models/overloaded.hpp"
 #include "recursive/diagnosis/diagnosis.hpp"
@@ -244,6 +245,13 @@ json rate_errors_json(const std::vector<compare::RateError>& rates) {
     return list;
 }
 
+json events_json(const Model& model, const Branch& branch) {
+    json list = json::array();
+    for (const auto& event : compare::lift_offs(model, branch, Leg::equilibrium))
+        list.push_back(event.text());
+    return list;
+}
+
 // Residuals of the equilibrium leg's states in the equations of the energy leg, and their bounds,
 // where the scene is too large for states of the energy leg; null where the energy leg judges as
 // usual.
@@ -318,6 +326,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"bounds", compare::describe(branch.bounds)},
              {"inconclusive", branch.inconclusive.texts()},
              {"case", load_case(model, model.branches[b])},
+             {"events", events_json(model, model.branches[b])},
              {"pushes", pushes_json(model, model.branches[b])},
              {"efforts", efforts_json(model.branches[b], comparison.channels)},
              {"wheel_loads",

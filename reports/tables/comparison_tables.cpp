@@ -10,6 +10,7 @@
 #include "compare/deviation/agreement.hpp"
 #include "compare/outputs/readings.hpp"
 #include "compare/studies/findings.hpp"
+#include "compare/warnings/lift_off.hpp"
 
 namespace elastocheck::reports {
 namespace {
@@ -263,6 +264,8 @@ std::string tables(const Model& model, const compare::Comparison& comparison) {
         fmt::format_to(out, "\n\n");
         deviation_table(comparison, branch, text);
         rates(errors, branch, text);
+        for (const auto& event : compare::lift_offs(model, definition, Leg::equilibrium))
+            fmt::format_to(out, "  {}\n", event.text());
         fmt::format_to(out, "\n");
         legs_table(branch, text);
         proofs(branch, text);

@@ -57,14 +57,18 @@ std::optional<Contact> contact_of(const Curve& u) {
                       : Contact{u.knots[u.knots.size() - n], false, u.pieces[u.knots.size() - n]};
 }
 
-std::string spring_words(const ScalarLaw& law) {
+std::string spring_words(const ScalarLaw& law, WrittenAs written_as) {
     return std::visit(
         overloaded{[](const LinearRate& u) { return "axial spring, " + rate_words(u.k, lengths); },
-                   [](const Curve& u) {
+                   [&](const Curve& u) {
                        const auto contact = contact_of(u);
                        if (!contact) return "axial spring, " + range_words(u, lengths);
                        const auto& [touches, longer, piece] = *contact;
                        const bool straight = piece[2] == 0 && piece[3] == 0;
+                       if (written_as == WrittenAs::itself)
+                           return fmt::format(
+                               "axial spring with loose seats, {}",
+                               straight ? rate_words(piece[1], lengths) : range_words(u, lengths));
                        return fmt::format("stop, touches when {:.4g} mm {}, {}",
                                           1e3 * std::abs(touches), longer ? "longer" : "shorter",
                                           straight ? rate_words(std::abs(piece[1]), lengths)
@@ -218,11 +222,11 @@ std::vector<ElementLine> elements(const Scene& scene, const Model& model) {
             continue;
         }
         std::string words;
-        each_member(elastic.kind,
-                    overloaded{[&](const ScalarLaw& law) { words = spring_words(law); },
-                               [&](const SpatialLaw& law) {
-                                   words = bushing_words(written, elastic, law);
-                               }});
+        each_member(
+            elastic.kind,
+            overloaded{
+                [&](const ScalarLaw& law) { words = spring_words(law, elastic.written_as); },
+                [&](const SpatialLaw& law) { words = bushing_words(written, elastic, law); }});
         lines.push_back({elastic.name, body(i) + " - " + body(j), words});
     }
     return lines;

@@ -172,6 +172,15 @@ TEST(Driven, ElementsMoveByTheirFreeLengthOrPreload) {
     EXPECT_DOUBLE_EQ(b[2].drivers[1].rate, 0.003);  // 3 N·mm per N
 }
 
+TEST(Driven, PreloadOfALinearSpringWithLooseSeatsIsAFreeLength) {
+    const Scene scene =
+        parsed(replaced(rig("  force: {drive: springs.coil.preload, to: 200, steps: 1}"),
+                        "rate: 40, preload", "rate: 40, seats: free, preload"));
+    const Driver& driver = scene.branches.at(0).drivers.at(0);
+    EXPECT_EQ(std::get<FreeLength>(driver.what).elastic, 0);
+    EXPECT_DOUBLE_EQ(driver.rate * scene.branches[0].to, 0.005);
+}
+
 TEST(Driven, TheFirstQuantityGivesTheParameterItsUnit) {
     const Scene scene =
         parsed(rig("  both: {drive: {joints.hinge: 1, joints.slide: 0.5}, to: 90, steps: 1}"));

@@ -89,6 +89,35 @@ TEST(Stops, MayBeClosedAtTheDesignPosition) {
     EXPECT_EQ(force_as_drawn(element<AxialSpring>(scene, "coil.rebound_stop")), 0);
 }
 
+// The law of fixed seats where that pushes, else none. Tables that cross zero between their rows, at
+// a row, on a flat part, outside the rows, or never.
+TEST(LooseSeats, PushAndDoNotPull) {
+    for (const char* law : {"rate: 30", "rate: 0", "curve: {table: [[-50, -900], [30, 400]]}",
+                            "curve: {table: [[-50, -900], [0, 0], [50, 1400]]}",
+                            "curve: {table: [[-50, -900], [-9, 0], [9, 0], [50, 1400]]}",
+                            "curve: {table: [[-50, -900], [-9, -100]]}",
+                            "curve: {table: [[-50, -900], [-9, -100], [0, -100]]}",
+                            "curve: {table: [[20, 100], [50, 1400]]}"})
+        for (const char* bounded : {"", ", outside: unknown"}) {
+            std::string text = law;
+            if (text.back() == '}') text.insert(text.size() - 1, bounded);
+            if (*bounded != 0 && text.find("[50, 1400]") == text.npos) continue;
+            if (*bounded != 0 && text.find("[20, 100]") != text.npos) continue;
+            const auto spring = [&](const char* seats) {
+                return element<AxialSpring>(
+                    laws(spring_with(text + ", free_length: 400, seats: " + seats)), "coil");
+            };
+            const AxialSpring fixed = spring("fixed"), free = spring("free");
+            for (int mm = -100; mm <= 100; ++mm)
+                EXPECT_NEAR(force(free.law, 1e-3 * mm), std::min(0., force(fixed.law, 1e-3 * mm)),
+                            1e-10)
+                    << text << " at " << mm;
+            if (*bounded != 0) {
+                EXPECT_GT(std::get<Curve>(free.law).knots.back(), 1e3);
+            }
+        }
+}
+
 // The open range of a stop is unbounded even if its closed range is bounded.
 TEST(Stops, AreKnownWhereTheyAreOpen) {
     const std::string curve =

@@ -321,10 +321,8 @@ class AdmWriter {
     }
     void write(const Elastic& elastic, const AxialSpring& spring) {
         const Curve* curve = curve_of(spring.law);
-        const bool is_stop = elastic.written_as == WrittenAs::stop;
-        if (curve && !is_stop && curve->knots.size() < 2)
-            return miss("element '" + elastic.name + "'",
-                        "its law is not a table and cannot be a SPLINE");
+        const bool is_contact = curve && (elastic.written_as == WrittenAs::stop ||
+                                          curve->pieces.back() == std::array<double, 4>{});
         const int I = marker(spring.i.body, spring.i.s_local),
                   J = marker(spring.j.body, spring.j.s_local);
         if (!curve) {
@@ -334,9 +332,9 @@ class AdmWriter {
                             real(spring.free_length));
             return;
         }
-        if (is_stop && curve->knots.size() > 1)
+        if (is_contact && curve->knots.size() > 1)
             return write_contact(elastic.name, spring, *curve, I, J);
-        if (is_stop) {  // one knot: a rate on one side of it, zero force on the other
+        if (is_contact) {  // one knot: a rate on one side of it, zero force on the other
             const double touches = spring.free_length + curve->knots[0];
             const double below = curve->pieces[0][1], above = curve->pieces[1][1];
             statement("SFORCE", next_sforce_++, elastic.name, "TRANSLATIONAL", I, J);

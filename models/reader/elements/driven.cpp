@@ -67,6 +67,8 @@ void add_spring(int k, const std::string& name, const ScalarLaw& law, const Unit
         result.table[name + field] = {kind, unit, FreeLength{k}, factor, std::nullopt};
     };
     const double* rate = rate_of(law);
+    if (const Curve* curve = curve_of(law); curve != nullptr && curve->knots.size() == 1)
+        rate = &curve->pieces.front()[1];  // of a spring with loose seats while it pushes
     if (rate != nullptr && *rate == 0) {
         for (const char* field : {".free_length", ".preload"})
             result.not_driven[name + field] = "of a spring of rate zero, on which it has no effect";

@@ -55,12 +55,15 @@ void add_stops(const std::string& name, const Cursor& at, const AxialSpring& end
 
 std::vector<Elastic> read_spring(const std::string& name, const Cursor& at,
                                  const Definitions& defs) {
-    at.only_keys({"bodies", "from", "to", "rate", "curve", "free_length", "preload", "bump_stop",
-                  "rebound_stop"});
+    at.only_keys({"bodies", "from", "to", "rate", "curve", "free_length", "preload", "seats",
+                  "bump_stop", "rebound_stop"});
     const AxialSpring ends = read_ends(at, defs);
     AxialSpring spring = ends;
     spring.law = read_law(at, of_springs(defs.units), defs);
     spring.free_length = free_length(at, ends.free_length, spring.law, defs);
+    if (const auto seats = at.optional("seats");
+        seats && seats->one_of("a kind of seats", {"fixed", "free"}) == 1)
+        spring.law = pushing_only(*seats, spring.law, defs.units.force);
     std::vector<Elastic> result{{name, spring}};
     add_stops(name, at, ends, "bump_stop", "rebound_stop", defs, result);
     return result;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "models/kinds.hpp"
 #include "models/laws.hpp"
 #include "models/overloaded.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double round_off = 1e-12;  // relative, of forces that should be equal
 
-// An open stop has a known law (zero force): its first knot lies beyond any motion [m].
+// Where there is no force the law is known: its last knot there lies beyond any motion [m].
 constexpr double beyond_all = 1e6;
 
 // The points with x ≥ 0, preceded by their mirror images -f(-x).
@@ -163,6 +164,28 @@ double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const
     return std::visit(
         overloaded{of_rate, [&](const Curve& u) { return deflection_at(at, u, force, unit); }},
         law);
+}
+
+ScalarLaw pushing_only(const Cursor& at, const ScalarLaw& law, const Unit& unit) {
+    if (is_zero(law)) return law;
+    if (const double* k = rate_of(law)) return Curve{{0}, {{0, *k, 0, 0}, {}}};
+    Curve curve = *curve_of(law);
+    std::size_t n = 0;  // knots where it pushes
+    while (n < curve.knots.size() && curve.pieces[n + 1][0] < 0) ++n;
+    const bool always = n == curve.knots.size();
+    if (always && (!curve.known_outside || curve.pieces.back()[1] == 0)) return law;
+    const bool at_knot = !always && curve.pieces[n + 1][0] == 0;
+    const double leaves = at_knot ? curve.knots[n] : deflection_at(at, law, 0, unit);
+    if (n == 0) curve.pieces[0][0] = 0;  // about the new first knot, straight
+    curve.knots.resize(n);
+    curve.pieces.resize(n + 1);
+    curve.knots.push_back(leaves);
+    curve.pieces.emplace_back();
+    if (!curve.known_outside) {
+        curve.knots.push_back(leaves + beyond_all);
+        curve.pieces.emplace_back();
+    }
+    return curve;
 }
 
 }  // namespace elastocheck::reader

@@ -24,4 +24,8 @@ Curve read_stop(const Cursor& at, Stop stop, const Definitions& defs);
 // none or several.
 double deflection_at(const Cursor& at, const ScalarLaw& law, double force, const Unit& unit);
 
+// The law of a spring with loose seats, which only pushes: without force beyond the deflection at
+// which the law has none.
+ScalarLaw pushing_only(const Cursor& at, const ScalarLaw& law, const Unit& unit);
+
 }  // namespace elastocheck::reader

@@ -63,6 +63,12 @@ std::optional<Section> forces_section(const JsonCursor& scene) {
                              [&](const Largest& l) { return size_of(l.force); });
     Section section{
         .id = "forces", .title = "Forces in bushings, springs and links", .part = Part::behaviour};
+    std::vector<std::string> events;
+    for (const auto& branch : scene["branches"].items())
+        if (const auto of = branch.find("events"))
+            for (const auto& event : of->texts())
+                events.push_back(fmt::format("{} ({})", event, branch["name"].text()));
+    if (!events.empty()) section.words["events"] = enumerated(events);
     if (largest.size() > most_elements) {
         section.words["left_out"] = whole_number(static_cast<long>(largest.size() - most_elements));
         largest.resize(most_elements);
