@@ -221,14 +221,16 @@ Drawn drawn(const Scene& scene) {
 
 constexpr double by_far = 2;
 
-// Of a link, or of a body between two joints.
+// Of a link by the sum of both distances; of a body between two joints, whose neighbours may be long,
+// by each.
 std::string exchanged_ends(const Drawn& d, const std::string& name, const Attached& i,
-                           const Attached& j) {
+                           const Attached& j, bool by_each) {
     const double own = d.nearest(i.body, i.at, i.connection),
                  other = d.nearest(j.body, i.at, j.connection),
-                 both = own + d.nearest(j.body, j.at, j.connection),
-                 exchanged = other + d.nearest(i.body, j.at, i.connection);
-    if (!(std::isfinite(both) && both > by_far * exchanged)) return {};
+                 own_j = d.nearest(j.body, j.at, j.connection),
+                 other_j = d.nearest(i.body, j.at, i.connection);
+    if (!(std::isfinite(own + own_j) && own + own_j > by_far * (other + other_j))) return {};
+    if (by_each && !(own > by_far * other && own_j > by_far * other_j)) return {};
     return fmt::format(
         "'{}': its end on '{}' is {:.0f} mm from the other points of '{}' and {:.0f} mm from those "
         "of '{}'; are its ends exchanged?",
@@ -248,7 +250,8 @@ std::string exchanged_joints(const Drawn& d, BodyId body) {
     for (std::size_t k = 0; k < ends.size(); ++k)
         for (std::size_t l = 0; l < k; ++l)
             if (ends[k].body != ends[l].body)
-                if (auto note = exchanged_ends(d, d.name(body), ends[l], ends[k]); !note.empty())
+                if (auto note = exchanged_ends(d, d.name(body), ends[l], ends[k], true);
+                    !note.empty())
                     return note;
     return {};
 }
@@ -302,7 +305,7 @@ std::vector<std::string> misplaced_points(const Scene& scene) {
     const Drawn all = drawn(scene);
     for (const auto& c : all.connections) {
         if (c.is_link()) {
-            add(exchanged_ends(all, c.name, c.i, c.j));
+            add(exchanged_ends(all, c.name, c.i, c.j, false));
             continue;
         }
         add(wrong_body(all, c.name, c.i, c.j));
