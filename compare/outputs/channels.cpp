@@ -142,6 +142,7 @@ double read(const Configuration& at, const Total& c) {
 }
 // Need more than the state.
 double read(const Configuration&, const OfElement&) { return std::nan(""); }
+double read(const Configuration&, const WheelLoad&) { return std::nan(""); }
 double read(const Configuration&, const Characteristic&) { return std::nan(""); }
 double read(const Configuration& at, const Defined& c) {
     return c.value(at.model, c.wheel, at.state);
@@ -433,6 +434,18 @@ std::vector<Channel> channels(const Model& model) {
     for (std::size_t k = 0; k < model.dampers.size(); ++k)
         add_compression(list, design, model.dampers[k].name, "damper", model.dampers[k].i,
                         model.dampers[k].j);
+    for (std::size_t w = 0; w < model.wheels.size(); ++w) {
+        const std::string& name = model.wheels[w].name;
+        list.push_back(
+            {.name = name + (name.empty() ? "" : ".") + "wheel_load",
+             .unit = Unit::newton,
+             .main = false,
+             .reads = WheelLoad{w},
+             .definition = "vertical force of the road on the wheel, positive up: of its tyre, its "
+                           "jacks, and forces at its contact patch or centre, static ones included "
+                           "(weights are loads of their bodies); undefined where another force on "
+                           "the wheel's body may be the road's or not"});
+    }
     for (const int k : joints_moved(model)) add_effort(list, model, k);
     for (std::size_t k = 0; k < model.joints.size(); ++k) {
         const ModelJoint& joint = model.joints[k];

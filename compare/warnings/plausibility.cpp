@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -154,58 +155,120 @@ std::optional<Implausible> rearward(const AtRest& state, const Wheel& wheel) {
 struct Attached {
     BodyId body;
     Vector3d at;
+    std::size_t connection = std::string::npos;  // none: the origin of the body
 };
 struct Connection {
     std::string name;
     Attached i, j;
+
+    bool is_link() const { return (i.at - j.at).norm() > 1e-3; }  // [m]
+};
+struct Drawn {
+    const Scene& scene;
+    std::vector<Connection> connections{};
+    std::map<BodyId, std::vector<Attached>> points{};
+
+    // of a body without those of one connection
+    double nearest(BodyId body, const Vector3d& p, std::size_t without) const {
+        double least = infinity;
+        if (const auto of = points.find(body); of != points.end())
+            for (const auto& point : of->second)
+                if (point.connection != without) least = std::min(least, (point.at - p).norm());
+        return least;
+    }
+    double extent(BodyId body, std::size_t without) const {
+        double largest = 0;
+        for (const auto& a : points.at(body))
+            for (const auto& b : points.at(body))
+                if (a.connection != without && b.connection != without)
+                    largest = std::max(largest, (a.at - b.at).norm());
+        return largest;
+    }
+    std::string name(BodyId body) const {
+        return body == ground ? "ground" : scene.bodies[static_cast<std::size_t>(body)].name;
+    }
 };
 
-std::vector<Connection> connections(const Scene& scene) {
+Drawn drawn(const Scene& scene) {
+    Drawn all{scene};
     std::vector<Pose> poses;
-    for (const auto& body : scene.bodies) poses.push_back(body.design);
-    std::vector<Connection> list;
+    for (const auto& body : scene.bodies) {
+        all.points[static_cast<BodyId>(poses.size())].push_back(
+            {static_cast<BodyId>(poses.size()), body.design.r});
+        poses.push_back(body.design);
+    }
     const auto add = [&](const std::string& name, const auto& kind) {
         std::vector<Attached> ends;
         each_point(kind, [&](const auto& end) {
-            ends.push_back({end.body, position(poses, end.body, end.s_local)});
+            ends.push_back(
+                {end.body, position(poses, end.body, end.s_local), all.connections.size()});
         });
         if (ends.size() != 2) return;
-        const auto same = [&](const Connection& c) {  // a stop beside its spring, a drive
+        const auto same = [&](const Attached& a) {  // a stop beside its spring, a drive
+            if (a.connection == std::string::npos || !a.at.isApprox(ends[0].at)) return false;
+            const Connection& c = all.connections[a.connection];
             return c.i.body == ends[0].body && c.j.body == ends[1].body &&
                    c.i.at.isApprox(ends[0].at) && c.j.at.isApprox(ends[1].at);
         };
-        if (std::ranges::none_of(list, same)) list.push_back({name, ends[0], ends[1]});
+        if (std::ranges::any_of(all.points[ends[0].body], same)) return;
+        all.connections.push_back({name, ends[0], ends[1]});
+        for (const auto& end : ends) all.points[end.body].push_back(end);
     };
     for (const auto& joint : scene.joints) add(joint.name, joint.kind);
     for (const auto& elastic : scene.elastics) add(elastic.name, elastic.kind);
-    return list;
+    return all;
 }
 
-// The points of a body without those of one connection.
-std::vector<Vector3d> others(const Scene& scene, const std::vector<Connection>& all,
-                             const Connection& without, BodyId body) {
-    std::vector<Vector3d> points;
-    if (body != ground) points.push_back(scene.bodies[static_cast<std::size_t>(body)].design.r);
-    for (const auto& c : all)
-        for (const Attached* end : {&c.i, &c.j})
-            if (&c != &without && end->body == body) points.push_back(end->at);
-    return points;
+constexpr double by_far = 2;
+
+// Of a link by the sum of both distances; of a body between two joints, whose neighbours may be long,
+// by each.
+std::string exchanged_ends(const Drawn& d, const std::string& name, const Attached& i,
+                           const Attached& j, bool by_each) {
+    const double own = d.nearest(i.body, i.at, i.connection),
+                 other = d.nearest(j.body, i.at, j.connection),
+                 own_j = d.nearest(j.body, j.at, j.connection),
+                 other_j = d.nearest(i.body, j.at, i.connection);
+    if (!(std::isfinite(own + own_j) && own + own_j > by_far * (other + other_j))) return {};
+    if (by_each && !(own > by_far * other && own_j > by_far * other_j)) return {};
+    return fmt::format(
+        "'{}': its end on '{}' is {:.0f} mm from the other points of '{}' and {:.0f} mm from those "
+        "of '{}'; are its ends exchanged?",
+        name, d.name(i.body), 1e3 * own, d.name(i.body), 1e3 * other, d.name(j.body));
 }
 
-double nearest(const std::vector<Vector3d>& points, const Vector3d& p) {
-    double least = infinity;
-    for (const auto& point : points) least = std::min(least, (point - p).norm());
-    return least;
-}
-double extent(const std::vector<Vector3d>& points) {
-    double largest = 0;
-    for (const auto& a : points)
-        for (const auto& b : points) largest = std::max(largest, (a - b).norm());
-    return largest;
+// Of the first two joints of a body on other bodies that are exchanged; a hub has many.
+std::string exchanged_joints(const Drawn& d, BodyId body) {
+    constexpr std::size_t most = 8;
+    std::vector<Attached> ends;  // on the other bodies
+    for (const auto& point : d.points.at(body)) {
+        if (point.connection == std::string::npos) continue;
+        const Connection& c = d.connections[point.connection];
+        if (!c.is_link()) ends.push_back(c.i.body == body ? c.j : c.i);
+    }
+    if (ends.size() > most) return {};
+    for (std::size_t k = 0; k < ends.size(); ++k)
+        for (std::size_t l = 0; l < k; ++l)
+            if (ends[k].body != ends[l].body)
+                if (auto note = exchanged_ends(d, d.name(body), ends[l], ends[k], true);
+                    !note.empty())
+                    return note;
+    return {};
 }
 
-std::string body_name(const Scene& scene, BodyId body) {
-    return body == ground ? "ground" : scene.bodies[static_cast<std::size_t>(body)].name;
+std::string wrong_body(const Drawn& d, const std::string& name, const Attached& of,
+                       const Attached& other) {
+    constexpr double apart = 1e-3, far = 1;  // [m]
+    const double away = d.nearest(of.body, of.at, of.connection);
+    if (of.body == ground || !std::isfinite(away) || away <= far) return {};
+    const double size = d.extent(of.body, of.connection),
+                 near = d.nearest(other.body, of.at, other.connection);
+    if (size <= apart || away <= by_far * size || away <= by_far * near) return {};
+    return fmt::format(
+        "'{}' is {:.0f} mm from the other points of '{}', which extend over {:.0f} mm, and {:.0f} "
+        "mm from those of '{}'; is '{}' the body meant?",
+        name, 1e3 * away, d.name(of.body), 1e3 * size, 1e3 * near, d.name(other.body),
+        d.name(of.body));
 }
 
 }  // namespace
@@ -235,36 +298,21 @@ std::vector<Implausible> implausible(const Model& model) {
 }
 
 std::vector<std::string> misplaced_points(const Scene& scene) {
-    constexpr double by_far = 2, apart = 1e-3, far = 1;  // [m]
     std::vector<std::string> notes;
-    const auto all = connections(scene);
-    for (const auto& c : all) {
-        const auto of_i = others(scene, all, c, c.i.body), of_j = others(scene, all, c, c.j.body);
-        if ((c.i.at - c.j.at).norm() > apart) {
-            const double own = nearest(of_i, c.i.at) + nearest(of_j, c.j.at),
-                         exchanged = nearest(of_j, c.i.at) + nearest(of_i, c.j.at);
-            if (std::isfinite(own) && own > by_far * exchanged)
-                notes.push_back(fmt::format(
-                    "'{}': its end on '{}' is {:.0f} mm from the other points of '{}' and {:.0f} "
-                    "mm from those of '{}'; are its ends exchanged?",
-                    c.name, body_name(scene, c.i.body), 1e3 * nearest(of_i, c.i.at),
-                    body_name(scene, c.i.body), 1e3 * nearest(of_j, c.i.at),
-                    body_name(scene, c.j.body)));
+    const auto add = [&](std::string note) {
+        if (!note.empty()) notes.push_back(std::move(note));
+    };
+    const Drawn all = drawn(scene);
+    for (const auto& c : all.connections) {
+        if (c.is_link()) {
+            add(exchanged_ends(all, c.name, c.i, c.j, false));
             continue;
         }
-        for (const auto& [body, mine, other, theirs] :
-             {std::tuple(c.i.body, &of_i, c.j.body, &of_j), {c.j.body, &of_j, c.i.body, &of_i}}) {
-            const double size = extent(*mine), away = nearest(*mine, c.i.at),
-                         near = nearest(*theirs, c.i.at);
-            if (body != ground && size > apart && std::isfinite(away) && away > far &&
-                away > by_far * size && away > by_far * near)
-                notes.push_back(fmt::format(
-                    "'{}' is {:.0f} mm from the other points of '{}', which extend over {:.0f} mm, "
-                    "and {:.0f} mm from those of '{}'; is '{}' the body meant?",
-                    c.name, 1e3 * away, body_name(scene, body), 1e3 * size, 1e3 * near,
-                    body_name(scene, other), body_name(scene, body)));
-        }
+        add(wrong_body(all, c.name, c.i, c.j));
+        add(wrong_body(all, c.name, c.j, c.i));
     }
+    for (std::size_t body = 0; body < scene.bodies.size(); ++body)
+        add(exchanged_joints(all, static_cast<BodyId>(body)));
     return notes;
 }
 

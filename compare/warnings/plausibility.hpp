@@ -21,8 +21,9 @@ std::vector<Implausible> implausible(const Model& model);
 
 // Points that probably belong to another body, from the distances in the design position:
 //
-//   ends exchanged  the ends of a spring or link are together more than twice as far from the other
-//                   points of their own bodies as from those of the other end's body
+//   ends exchanged  the ends of a spring or link, or of a body between two joints, are together more
+//                   than twice as far from the other points of their own bodies as from those of the
+//                   other end's body
 //   wrong body      a joint is more than 1 m and twice their extent away from the other points of a body,
 //                   and less than half as far from those of its other body
 std::vector<std::string> misplaced_points(const Scene& scene);

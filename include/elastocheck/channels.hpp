@@ -125,6 +125,11 @@ struct AxialForce {
     int joint = 0;       // position in Model::joints
     int constraint = 0;  // position in Model::constraints, a DistanceBetween
 };
+// Vertical force of the road on a wheel (compare/outputs/wheel_load.hpp); evaluated with a branch only.
+struct WheelLoad {
+    static constexpr ChannelKind kind = ChannelKind::element;
+    std::size_t wheel = 0;  // position in Model::wheels
+};
 // Driver effort of a joint, work-conjugate to the driven offset: effort · d(offset) is the work of
 // the driver. With the wrench (F, M) of the joint on its body i:
 //   distance between p_i and p_j    F · (p_i - p_j) / |p_i - p_j|     pushes them apart
@@ -160,8 +165,9 @@ struct Defined {
     double (*value)(const Model& model, std::size_t wheel, const Equilibrium& state) = nullptr;
     std::size_t wheel = 0;
 };
-using Reads = std::variant<Coordinate, Toe, Camber, Steering, Track, Ackermann, Compression, Effort,
-                           Reaction, Total, OfElement, AxialForce, Characteristic, Defined>;
+using Reads =
+    std::variant<Coordinate, Toe, Camber, Steering, Track, Ackermann, Compression, Effort, Reaction,
+                 Total, OfElement, AxialForce, WheelLoad, Characteristic, Defined>;
 
 // Value of an output that is undefined, for example the length of an arm whose end is at infinity.
 // NaN means a failure.
@@ -198,6 +204,7 @@ struct Channel {
 //   ackermann                of two opposite wheels at the front of a vehicle
 //   PROBE_x, _y, _z          position of a probe
 //   NAME.compression         of every spring and damper
+//   wheel_load               vertical force of the road on every wheel, positive up
 //   JOINT.drive_force or .drive_moment   effort of the driver, of every joint moved by some branch
 //   JOINT.force_x ... moment_z           wrench of a joint on its first body
 std::vector<Channel> channels(const Model& model);
@@ -209,8 +216,8 @@ std::vector<Channel> totals(const Model& model, std::span<const std::vector<int>
 // Position of a channel by its name, or -1.
 int find_channel(std::span<const Channel> channels, std::string_view name);
 
-// Channel values at one equilibrium, in the same order. NaN for a characteristic, which needs more
-// than the state.
+// Channel values at one equilibrium, in the same order. NaN for a characteristic, an element and a
+// wheel load, which need more than the state.
 std::vector<double> evaluate(const Model& model, std::span<const Channel> channels,
                              const Equilibrium& state);
 std::vector<double> evaluate(const Model& model, const Equilibrium& state);  // of channels(model)

@@ -109,11 +109,11 @@ void check_vehicle(const Cursor& scene, const Units& units, std::vector<std::str
         const Cursor given = vehicle->require(field);
         const double value = units.length.si(given.number());
         if (value >= from && value <= to) continue;
-        warnings.push_back(
-            at(given,
-               fmt::format("{:.6g} {} is {:.6g} m, plausible: {} to {} m; `units` says the "
-                           "length is in {}",
-                           given.number(), units.length.name, value, from, to, units.length.name)));
+        warnings.push_back(at(
+            given,
+            fmt::format("{:.6g} {}, expected {:g} to {:g} {}; `units` says that lengths are in {}",
+                        given.number(), units.length.name, units.length.written(from),
+                        units.length.written(to), units.length.name, units.length.name)));
     }
 }
 

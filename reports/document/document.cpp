@@ -328,10 +328,7 @@ void add_comparison(json& scene_document, const Scene& scene, const Model& model
              {"case", load_case(model, model.branches[b])},
              {"events", events_json(model, model.branches[b])},
              {"pushes", pushes_json(model, model.branches[b])},
-             {"efforts", efforts_json(model.branches[b], comparison.channels)},
-             {"wheel_loads",
-              wheel_loads_json(model, model.branches[b], comparison.channels,
-                               branch.runs[static_cast<std::size_t>(Leg::equilibrium)].curve)}});
+             {"efforts", efforts_json(model.branches[b], comparison.channels)}});
         if (branch.every > 1) one["steps"] = branch.steps;
         branches.push_back(std::move(one));
     }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "compare/outputs/curve.hpp"
+#include "compare/outputs/wheel_load.hpp"
 #include "compare/tables/rows.hpp"
 #include "models/kinds.hpp"
 #include "models/overloaded.hpp"
@@ -16,46 +17,6 @@ namespace elastocheck::reports {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-// From the nearer of centre and patch on the point's body; infinite if neither is on it.
-double away(const Wheel& wheel, const Point& point) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Point& own : {Point{wheel.body, wheel.centre_local}, wheel.contact})
-        if (own.body == point.body) least = std::min(least, (own.s_local - point.s_local).norm());
-    return least;
-}
-
-// The wheel on this body: of several, the one whose centre or patch is nearest to the point.
-std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
-    std::optional<std::size_t> found;
-    for (std::size_t w = 0; w < model.wheels.size(); ++w)
-        if (const double here = away(model.wheels[w], point);
-            std::isfinite(here) && (!found || here < away(model.wheels[*found], point)))
-            found = w;
-    return found;
-}
-
-// The wheel whose centre or patch is at this point.
-std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
-    constexpr double same = 1e-6;  // [m]
-    const auto wheel = wheel_near(model, point);
-    return wheel && away(model.wheels[*wheel], point) < same ? wheel : std::nullopt;
-}
-
-// The wheel that a joint lifts or holds, if it is a jack.
-std::optional<std::size_t> wheel_on_jack(const Model& model, int joint) {
-    const ModelJoint& j = model.joints[static_cast<std::size_t>(joint)];
-    if (!j.active_only_where_driven || j.j != ground) return std::nullopt;
-    return wheel_at(model, j.at);
-}
-
-// The wheel on this element, if it is a tyre.
-std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
-    const Elastic& e = model.elastics[static_cast<std::size_t>(elastic)];
-    if (e.written_as != WrittenAs::tyre) return std::nullopt;
-    const Marker& on = std::get<Bushing>(e.kind).j;
-    return wheel_at(model, {on.body, on.s_local});
-}
 
 bool is_effort_of(const compare::Channel& channel, int joint) {
     const auto* effort = std::get_if<compare::Effort>(&channel.reads);
@@ -81,7 +42,7 @@ void add(Effects& effects, const Model& model, const LoadKind& load, double rate
                 std::ranges::count(model.wheels, model.wheels[w].body, &Wheel::body) == 1)
                 effects.push[w] -= rate * model.wheels[w].side * load_vector(load).z();
     } else {
-        const auto wheel = wheel_near(model, *member<Point>(load));
+        const auto wheel = compare::wheel_near(model, *member<Point>(load));
         const Eigen::Vector3d v = load_vector(load), f = v.cwiseAbs();
         if (!wheel)
             effects.other = true;
@@ -91,8 +52,10 @@ void add(Effects& effects, const Model& model, const LoadKind& load, double rate
             effects.across = true;
             effects.push[*wheel] -= rate * model.wheels[*wheel].side * v.y();
         } else {
+            const Wheel& on = model.wheels[*wheel];
+            const Point& at = *member<Point>(load);
             const bool at_centre =
-                (model.wheels[*wheel].centre_local - member<Point>(load)->s_local).norm() < 1e-6;
+                at.body == on.body && (on.centre_local - at.s_local).norm() < 1e-6;
             (at_centre ? effects.along_centre : effects.along_patch) = true;
             effects.push[*wheel] += (at_centre ? rate : -rate) * v.x();
         }
@@ -113,84 +76,13 @@ Effects effects_of(const Model& model, const Branch& branch) {
         if (const Load* load = driven_load(driver.what))
             add(effects, model, load->kind, driver.rate);
         else if (const int joint = driven_joint(driver.what); joint >= 0)
-            raise(wheel_on_jack(model, joint), effects.steers);
+            raise(compare::wheel_on_jack(model, joint), effects.steers);
         else if (const int element = driven_element(driver.what); element >= 0)
-            raise(wheel_on_tyre(model, element), effects.other);
+            raise(compare::wheel_on_tyre(model, element), effects.other);
         else
             effects.other = true;
     }
     return effects;
-}
-
-// Force of the road on a wheel: force + slope · a, efforts of jacks, and a tyre, which only pushes.
-// Weights are loads of their bodies, not of the road.
-struct WheelForce {
-    bool known = true;                   // no other force on the wheel's body may be the road's
-    double force = 0, slope = 0;         // [N], [N per unit of a]
-    double tyre_rate = 0;                // [N/m], 0 where none stands on the branch
-    double road = 0, road_slope = 0;     // rise of the patch that unloads the tyre [m], [m per a]
-    std::vector<std::size_t> efforts{};  // channels
-    std::size_t patch = 0;               // channel of the height of the patch [mm]
-    double drawn_patch = 0;              // [mm]
-};
-
-void add_load(std::vector<WheelForce>& wheels, const Model& model, const LoadKind& load,
-              double start, double rate) {
-    if (is_moment(load)) return;
-    const Point& at = *member<Point>(load);
-    const double up = load_vector(load).z();
-    const auto w = wheel_at(model, at);
-    for (std::size_t k = 0; k < wheels.size(); ++k)
-        if (std::isfinite(away(model.wheels[k], at)) && (is_follower(load) || (!w && up != 0)))
-            wheels[k].known = false;
-    if (w) wheels[*w].force += start * up, wheels[*w].slope += rate * up;
-}
-
-std::vector<WheelForce> wheel_forces(const Model& model, const Branch& branch,
-                                     const std::vector<compare::Channel>& channels) {
-    std::vector<WheelForce> wheels(model.wheels.size());
-    for (const auto& load : model.static_loads)
-        if (!load.name.starts_with("gravity.")) add_load(wheels, model, load.kind, 1, 0);
-    for (const auto& driver : branch.drivers) {
-        if (const Load* load = driven_load(driver.what)) {
-            add_load(wheels, model, load->kind, driver.start, driver.rate);
-        } else if (const int joint = driven_joint(driver.what); joint >= 0) {
-            if (const auto w = wheel_on_jack(model, joint))
-                for (std::size_t c = 0; c < channels.size(); ++c)
-                    if (is_effort_of(channels[c], joint)) wheels[*w].efforts.push_back(c);
-        } else if (const int e = driven_element(driver.what);
-                   const auto w = wheel_on_tyre(model, e)) {
-            const auto& tyre = std::get<Bushing>(model.elastics[static_cast<std::size_t>(e)].kind);
-            wheels[*w].tyre_rate = model.wheels[*w].tyre_rate;
-            wheels[*w].road += tyre.undeformed.z() + driver.start;
-            wheels[*w].road_slope += driver.rate;
-        }
-    }
-    const auto drawn = compare::evaluate(model, channels, compare::design_state(model));
-    for (std::size_t w = 0; w < wheels.size(); ++w) {
-        const std::string& name = model.wheels[w].name;
-        const int patch =
-            compare::find_channel(channels, name + (name.empty() ? "" : ".") + "contact_patch_z");
-        wheels[w].known = wheels[w].known && patch >= 0;
-        if (patch >= 0)
-            wheels[w].patch = static_cast<std::size_t>(patch),
-            wheels[w].drawn_patch = drawn[wheels[w].patch];
-    }
-    return wheels;
-}
-
-std::vector<double> loads_of(const WheelForce& wheel, const compare::Curve& curve) {
-    std::vector<double> loads;
-    const double unit = compare::in_unit(curve.unit);
-    for (std::size_t k = 0; wheel.known && k < curve.a.size(); ++k) {
-        const double a = curve.a[k] / unit,
-                     rise = 1e-3 * (curve.values[k][wheel.patch] - wheel.drawn_patch);
-        double sum = wheel.force + wheel.slope * a +
-                     wheel.tyre_rate * std::max(0.0, wheel.road + wheel.road_slope * a - rise);
-        for (const auto c : wheel.efforts) sum += curve.values[k][c];
-        loads.push_back(sum);
-    }
-    return loads;
 }
 
 const compare::Curve& truth_of(const compare::BranchComparison& branch) {
@@ -200,7 +92,7 @@ const compare::Curve& truth_of(const compare::BranchComparison& branch) {
 bool holds_a_wheel(const Model& model, const Branch& branch) {
     return std::ranges::any_of(branch.drivers, [&](const Driver& driver) {
         const int joint = driven_joint(driver.what);
-        return joint >= 0 && wheel_on_jack(model, joint);
+        return joint >= 0 && compare::wheel_on_jack(model, joint);
     });
 }
 
@@ -244,16 +136,6 @@ json efforts_json(const Branch& branch, const std::vector<compare::Channel>& cha
     return efforts;
 }
 
-json wheel_loads_json(const Model& model, const Branch& branch,
-                      const std::vector<compare::Channel>& channels, const compare::Curve& curve) {
-    json loads = json::object();
-    const auto forces = wheel_forces(model, branch, channels);
-    for (std::size_t w = 0; w < forces.size(); ++w)
-        loads[model.wheels[w].name] =
-            forces[w].known ? json(loads_of(forces[w], curve)) : json(nullptr);
-    return loads;
-}
-
 json wheels_json(const Model& model, const compare::Comparison& comparison) {
     json names = json::array(), vehicle = nullptr;
     for (const auto& wheel : model.wheels)
@@ -266,7 +148,6 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
     const auto on = static_cast<std::size_t>(free - model.branches.begin()) % model.branches.size();
     const compare::Curve& curve = truth_of(comparison.branches[on]);
     const auto drawn = compare::evaluate(model, comparison.channels, compare::design_state(model));
-    const auto forces = wheel_forces(model, model.branches[on], comparison.channels);
     std::vector<compare::StaticRow> rows;
     for (std::size_t w = 0; w < model.wheels.size(); ++w) {
         const std::string& wheel = model.wheels[w].name;
@@ -276,6 +157,7 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
                 std::visit(overloaded{[&](const compare::Toe& r) { return r.wheel == w; },
                                       [&](const compare::Camber& r) { return r.wheel == w; },
                                       [&](const compare::Steering& r) { return r.wheel == w; },
+                                      [&](const compare::WheelLoad& r) { return r.wheel == w; },
                                       [](const auto&) { return false; }},
                            channel.reads);
             if (mine)
@@ -284,9 +166,6 @@ json wheels_json(const Model& model, const compare::Comparison& comparison) {
                                 curve.a.empty() ? std::numeric_limits<double>::quiet_NaN()
                                                 : curve.values[curve.start][c]});
         }
-        if (const auto loads = loads_of(forces[w], curve); !loads.empty())
-            rows.push_back({wheel, "wheel_load", "N", std::numeric_limits<double>::quiet_NaN(),
-                            loads[curve.start]});
     }
     return {{"names", names},
             {"vehicle", vehicle},

@@ -1,4 +1,4 @@
-// Wheels in result.json: static alignment, wheel loads, and what each branch does to the wheels.
+// Wheels in result.json: static alignment and wheel loads, and what each branch does to the wheels.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -21,13 +21,6 @@ nlohmann::ordered_json pushes_json(const Model& model, const Branch& branch);
 // Outputs with the force or moment of the joints that the parameter moves: "rack.drive_force".
 nlohmann::ordered_json efforts_json(const Branch& branch,
                                     const std::vector<compare::Channel>& channels);
-
-// Vertical force of the road on each wheel [N] at the points of the curve: of its tyre, its jacks, and
-// forces at its centre or contact patch, static ones included; weights are not part of it. By the
-// wheel's name. null where another force on the wheel's body may be the road's or not.
-nlohmann::ordered_json wheel_loads_json(const Model& model, const Branch& branch,
-                                        const std::vector<compare::Channel>& channels,
-                                        const compare::Curve& curve);
 
 // "wheels": names and sides, "vehicle", and "static": rows of compare::StaticRow, settled on the
 // first branch that holds no wheel, else on the first.

@@ -210,14 +210,6 @@ std::vector<double> SweepCurve::channel(const std::string& name) const {
     });
 }
 
-std::vector<double> SweepCurve::wheel_load(const std::string& wheel) const {
-    return joined(*this, [&](std::size_t k) {
-        const auto loads = branches[k].find("wheel_loads");
-        const auto mine = loads ? loads->find(wheel) : std::nullopt;
-        return mine ? mine->numbers() : std::vector<double>{};
-    });
-}
-
 std::string WheelInfo::channel(std::string_view quantity) const {
     return name.empty() ? std::string(quantity) : fmt::format("{}.{}", name, quantity);
 }

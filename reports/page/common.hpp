@@ -78,7 +78,6 @@ struct SweepCurve {
     std::size_t start = 0;  // the point nearest to a = 0
 
     std::vector<double> channel(const std::string& name) const;  // empty if there is none
-    std::vector<double> wheel_load(const std::string& wheel) const;
 
     std::vector<JsonCursor> branches{};
     std::vector<LegCurve> curves{};

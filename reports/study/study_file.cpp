@@ -23,6 +23,7 @@
 #include "models/overloaded.hpp"
 #include "models/reader/document/cursor.hpp"
 #include "models/reader/document/suggestions.hpp"
+#include "models/reader/elements/vanishing.hpp"
 #include "reports/files/csv_table.hpp"
 #include "reports/files/files.hpp"
 #include "reports/files/provenance.hpp"
@@ -482,6 +483,7 @@ void check_ends(const Study& study, const reader::ParsedScene& parsed, const Cur
             at[static_cast<Index>(j)] = end;
             try {
                 variants.scene(at);
+            } catch (const reader::LengthVanishes&) {  // geometry, not a mistake: a row
             } catch (const SceneError& error) {
                 variables.require(study.variables[j].name)
                     .fail(fmt::format("{:g} can be drawn, and with it the scene is invalid: {}",

@@ -71,12 +71,14 @@ TEST(Channels, LengthsAreInMillimetresAndReactionsKeepTheirJoint) {
     // Centre, toe, camber, travel; patch position, track and wheelbase change; four of the steering
     // axis; spring and damper.
     const std::size_t kinematic = 6 + 5 + 4 + 2;
-    EXPECT_EQ(list.size(), kinematic + 6 * model.joints.size());
+    EXPECT_EQ(list.size(), kinematic + 1 + 6 * model.joints.size());
     EXPECT_EQ(list[0].name, "wheel_centre_x");
     EXPECT_STREQ(symbol(list[0].unit), "mm");
-    EXPECT_EQ(list[kinematic].name, "ball_joint.force_x");
-    EXPECT_EQ(list[kinematic].joints(), std::vector<int>{0});
-    EXPECT_FALSE(list[kinematic].main || list[kinematic].kinematic());
+    EXPECT_EQ(list[kinematic].name, "wheel_load");
+    EXPECT_EQ(list[kinematic + 1].name, "ball_joint.force_x");
+    EXPECT_EQ(list[kinematic + 1].joints(), std::vector<int>{0});
+    for (std::size_t c = kinematic; c < list.size(); ++c)
+        EXPECT_FALSE(list[c].main || list[c].kinematic()) << c;
     for (std::size_t c = 5; c < kinematic; ++c)
         EXPECT_TRUE(!list[c].main && list[c].kinematic()) << c;
 }

@@ -204,6 +204,32 @@ TEST(Measurement, OfALoopIsComparedByTheMeanOfBothWays) {
     EXPECT_TRUE(one_way["loops"].empty());
 }
 
+// Friction of a rig: the wheel load is 100 N more on the way up, 100 N less on the way down.
+TEST(Measurement, OfTheWheelLoadIsComparedWithItsLoop) {
+    const auto& all = axle().comparison;
+    const auto points = std::ssize(all.branch("parallel").run(compare::Leg::equilibrium).curve.a);
+    std::string csv = "Test,Wheel Travel LH [mm],Wheel Load LH [N],Wheel Load RH [kN]\n";
+    const auto point = [&](std::ptrdiff_t at, double friction) {
+        const auto k = static_cast<std::size_t>(at);
+        csv += fmt::format("Bounce,{:.6f},{:.3f},{:.6f}\n",
+                           value_at(all, "parallel", "left.travel", k),
+                           value_at(all, "parallel", "left.wheel_load", k) + friction,
+                           value_at(all, "parallel", "right.wheel_load", k) / 1e3);
+    };
+    for (std::ptrdiff_t k = 0; k < points - 1; ++k) point(k, 100);
+    for (std::ptrdiff_t k = points - 1; k >= 0; --k) point(k, k + 1 == points ? 0 : -100);
+    const json m = axle().measured(csv);
+    ASSERT_EQ(m["loops"].size(), 1u) << m["loops"];
+    EXPECT_EQ(m["loops"][0]["channel"], "left.wheel_load");
+    EXPECT_NEAR(m["loops"][0]["width"].get<double>(), 200, 5);
+    ASSERT_EQ(m["readings"].size(), 1u);
+    const auto& rows = m["readings"][0]["channels"];
+    ASSERT_EQ(rows.size(), 2u) << rows;
+    EXPECT_LE(rows[0]["equilibrium"]["rms"].get<double>(), 40) << rows[0];
+    EXPECT_EQ(rows[1]["channel"], "right.wheel_load");
+    EXPECT_LE(rows[1]["equilibrium"]["rms"].get<double>(), 1) << rows[1];
+}
+
 // Sign, unit and definition of a column that does not fit.
 TEST(Measurement, ThatDoesNotFitIsTriedBySignsUnitsAndDefinitions) {
     static const Solved rigid(support::scene("double_wishbone_rigid"), 10, "series");

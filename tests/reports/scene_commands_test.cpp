@@ -10,6 +10,7 @@
 #include "compare/warnings/plausibility.hpp"
 #include "elastocheck/read_scene.hpp"
 #include "tests/reports/command.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace elastocheck {
 namespace {
@@ -322,7 +323,7 @@ TEST(Mistakes, ImplausibleNumbersAreWarningsWithTheirLine) {
         {{{"under: {vertical: 3500}", "under: {vertical: 3.5}"}},
          {"a.yaml:70: trim.under.vertical: a static wheel load of 3.5 N, plausible: 50 to "}},
         {{{"wheelbase: 2.7,", "wheelbase: 2700,"}},
-         {"a.yaml:87: vehicle.wheelbase: 2700 m is 2700 m, plausible: 0.5 to 10 m"}},
+         {"a.yaml:87: vehicle.wheelbase: 2700 m, expected 0.5 to 10 m; `units` says that"}},
         {{{"contact: [-0.04, 1.10, -0.346]", "contact: [-0.04, 1.10, 0.246]"}},
          {"a.yaml:81: wheel: the contact patch is above the wheel centre; does z point up?"}},
     };
@@ -400,6 +401,16 @@ TEST(Mistakes, PointsFarFromTheirBodyAreNotedByInspect) {
     const auto notes = compare::misplaced_points(parse_scene(axle, "axle.yaml"));
     ASSERT_EQ(notes.size(), 2u);
     expect_parts(notes[0], {"'lower_ball_left' is ", "is 'wheel_right' the body meant?"});
+    const std::string link = with(text_of(scenes + "/multi_link.yaml"),
+                                  {{"bodies: [lateral, subframe]", "bodies: [lateral, knuckle]"},
+                                   {"{type: spherical, bodies: [lateral, knuckle]",
+                                    "{type: spherical, bodies: [lateral, subframe]"}});
+    const auto of_link = compare::misplaced_points(parse_scene(link, "link.yaml"));
+    ASSERT_FALSE(of_link.empty());
+    expect_parts(of_link.back(),
+                 {"'lateral': its end on 'subframe' is ", "are its ends exchanged?"});
+    for (const auto& name : support::scene_names())
+        EXPECT_TRUE(compare::misplaced_points(support::scene(name)).empty()) << name;
 }
 
 // A drop link that goes over centre 63 mm below the design position. The place is told once, with the

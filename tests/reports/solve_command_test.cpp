@@ -673,5 +673,29 @@ TEST(SolveCommand, MemoryDoesNotGrowWithTheStepsItTakes) {
     }
 }
 
+// 40 kg on the hub and 4000 N under the wheel: the road exerts what is applied to the tyre.
+TEST(SolveCommand, PrintsTheForceOfTheRoad) {
+    const Folder folder;
+    const std::string file = folder.write("wheel_load.yaml", R"(elastocheck: 1
+name: Semi-trailing arm
+units: {length: mm, angle: deg, force: N}
+points: {outer: [500, 900, 0], inner: [420, 600, -50], seat: [150, 800, 0], top: [150, 800, 300],
+         centre: [0, 1100, 0], patch: [0, 1100, -320]}
+bodies: {arm: {origin: seat}, hub: {origin: centre, mass: 40}}
+gravity: [0, 0, -9.81]
+joints:
+  axis: {type: revolute, bodies: [arm, ground], at: outer, axis: [inner, outer]}
+  hub: {type: fixed, bodies: [arm, hub], at: centre}
+springs: {coil: {bodies: [arm, ground], from: seat, to: top, rate: 90, preload: 3000}}
+loads: {vertical: {on: hub, at: patch, force: [0, 0, 1]}}
+trim: {adjust: [springs.coil.preload], until: {travel: 0}, under: {vertical: 4000}}
+branches: {travel: {drive: travel, from: -60, to: 60, steps: 2}}
+wheel: {body: hub, centre: centre, contact_patch: patch, spin_axis: y, side: left}
+)");
+    for (const char* method : {"series", "equilibrium", "energy"})
+        expect_says(fmt::format("solve --channels wheel_load --method {} {}", method, file), 0,
+                    {.out = {"wheel_load [N]\n", ",4000"}});
+}
+
 }  // namespace
 }  // namespace elastocheck

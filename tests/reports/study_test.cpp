@@ -202,6 +202,44 @@ figures: {height: centre_z@up:3000}
 
 // ---- Threads, shards, interruption, extension: one content.
 
+// The link is 102 mm long as drawn, and from 100 to 110 mm in the variants.
+TEST_F(StudyCommand, AVariantThatDrivesALengthThroughZeroIsARowWithItsReason) {
+    const std::string rod = R"(elastocheck: 1
+name: actuator
+units: {length: mm, angle: deg, force: N}
+points: {end: [400, 0, 0], base: [400, 20, 100]}
+bodies: {block: {origin: end}}
+joints: {rod: {type: distance, bodies: [block, ground], from: end, to: base}}
+bushings:
+  k: {bodies: [ground, block], at: end, rates: [50, 50, 50], rotational_rates: [10, 10, 10]}
+branches: {b: {drive: joints.rod, to: -101, steps: 10}}
+probes: {end: {on: block, at: end}}
+)";
+    const std::string file = R"(elastocheck_study: 1
+scene: rod.yaml
+variables: {points.base.y: {uniform: {half_width: 25}}}
+design: {kind: monte_carlo, count: 20, seed: 1}
+figures: {z: end_z@b:-80.8}
+)";
+    write("rod.yaml", rod);
+    expect_said(study(file, "-o out --csv rows.csv"), 0, {.out = {"20 of 20 variants: "}});
+    int vanishes = 0;
+    const auto rows = cells_of(text_of(path / "rows.csv"));
+    ASSERT_EQ(rows.size(), 21u);
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+        const bool reaches = std::hypot(std::stod(rows[k][3]), 100) > 101;
+        EXPECT_EQ(rows[k][1] == "solved", reaches) << rows[k].back();
+        if (!reaches)
+            expect_parts(rows[k].back(), {"rod.yaml:9: branches.b.to: ", "its length is zero"});
+        vanishes += !reaches;
+    }
+    EXPECT_GT(vanishes, 2);
+    EXPECT_LT(vanishes, 18);
+    write("rod.yaml", replaced(rod, "to: -101", "to: -150"));
+    expect_said(study(file, "-o other"), 2,
+                {.err = {"rod.yaml:9: branches.b.to: '-150' would leave"}});
+}
+
 TEST_F(StudyCommand, HasOneContentOnAnyThreadsAndInShards) {
     const std::string one = content(study(mcpherson, "-o one --jobs 1"));
     ASSERT_EQ(one.size(), 16u) << one;

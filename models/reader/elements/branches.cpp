@@ -22,6 +22,7 @@
 #include "models/reader/document/limits.hpp"
 #include "models/reader/document/suggestions.hpp"
 #include "models/reader/elements/sections.hpp"
+#include "models/reader/elements/vanishing.hpp"
 #include "models/vanishing_length.hpp"
 
 namespace elastocheck::reader {
@@ -192,13 +193,17 @@ void require_lengths(const Cursor& branch, const Model& model, std::size_t b) {
                                  ? branch.require("hold")
                                  : branch.require(side.to == model.branches[b].to ? "to" : "from");
         const std::string& name = model.joints[static_cast<std::size_t>(gone->joint)].name;
-        place.fail(
-            gone->at == 0
-                ? fmt::format("leaves joint {} no length", quote(name))
-                : fmt::format("{} would leave joint {} a length of {:.6g} mm; allowed: short "
-                              "of {:.6g}, where its length is zero",
-                              place.found(), quote(name), 1e3 * gone->to,
-                              place.number("") * gone->at / side.to));
+        try {
+            place.fail(
+                gone->at == 0
+                    ? fmt::format("leaves joint {} no length", quote(name))
+                    : fmt::format("{} would leave joint {} a length of {:.6g} mm; allowed: short "
+                                  "of {:.6g}, where its length is zero",
+                                  place.found(), quote(name), 1e3 * gone->to,
+                                  place.number("") * gone->at / side.to));
+        } catch (const SceneError& error) {
+            throw LengthVanishes(error.what());
+        }
     }
 }
 

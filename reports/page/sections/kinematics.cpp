@@ -124,10 +124,6 @@ struct Found {
 std::vector<Found> find(const std::vector<ChannelInfo>& channels,
                         const std::vector<WheelInfo>& wheels, const std::string& quantity) {
     std::vector<Found> found;
-    if (quantity == "wheel_load") {
-        for (const auto& wheel : wheels) found.push_back({"", "N", wheel});
-        return found;
-    }
     for (const auto& wheel : wheels)
         for (const auto& c : channels)
             if (c.name == wheel.channel(quantity)) found.push_back({c.name, c.unit, wheel});
@@ -139,7 +135,7 @@ std::vector<Found> find(const std::vector<ChannelInfo>& channels,
 }
 
 std::vector<double> values_of(const Case& c, const Found& of) {
-    return of.channel.empty() ? c.curve.wheel_load(of.wheel.name) : c.curve.channel(of.channel);
+    return c.curve.channel(of.channel);
 }
 std::vector<double> abscissa_of(const Case& c, const Family& family, const WheelInfo& wheel,
                                 double push) {

@@ -1,0 +1,93 @@
+#include "compare/outputs/wheel_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "compare/outputs/deformation.hpp"
+#include "elastocheck/channels.hpp"
+#include "models/kinds.hpp"
+
+namespace elastocheck::compare {
+namespace {
+
+// From the nearer of centre and patch on the point's body; infinite if neither is on it.
+double away(const Wheel& wheel, const Point& point) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Point& own : {Point{wheel.body, wheel.centre_local}, wheel.contact})
+        if (own.body == point.body) least = std::min(least, (own.s_local - point.s_local).norm());
+    return least;
+}
+
+}  // namespace
+
+std::optional<std::size_t> wheel_near(const Model& model, const Point& point) {
+    std::optional<std::size_t> found;
+    for (std::size_t w = 0; w < model.wheels.size(); ++w)
+        if (const double here = away(model.wheels[w], point);
+            std::isfinite(here) && (!found || here < away(model.wheels[*found], point)))
+            found = w;
+    return found;
+}
+
+std::optional<std::size_t> wheel_at(const Model& model, const Point& point) {
+    constexpr double same = 1e-6;  // [m]
+    const auto wheel = wheel_near(model, point);
+    return wheel && away(model.wheels[*wheel], point) < same ? wheel : std::nullopt;
+}
+
+std::optional<std::size_t> wheel_on_jack(const Model& model, int joint) {
+    const ModelJoint& j = model.joints[static_cast<std::size_t>(joint)];
+    if (!j.active_only_where_driven || j.j != ground) return std::nullopt;
+    return wheel_at(model, j.at);
+}
+
+std::optional<std::size_t> wheel_on_tyre(const Model& model, int elastic) {
+    const Elastic& e = model.elastics[static_cast<std::size_t>(elastic)];
+    if (e.written_as != WrittenAs::tyre) return std::nullopt;
+    const Marker& on = std::get<Bushing>(e.kind).j;
+    return wheel_at(model, {on.body, on.s_local});
+}
+
+double wheel_load(const Model& model, const Branch& branch, const Equilibrium& state,
+                  std::size_t wheel) {
+    double road = 0;
+    const auto add = [&](const LoadKind& load, double factor) {
+        if (is_moment(load)) return;
+        const Point& point = *member<Point>(load);
+        if (!std::isfinite(away(model.wheels[wheel], point))) return;
+        const double up = load_vector(load).z();
+        const auto at = wheel_at(model, point);
+        if (is_follower(load) || (!at && up != 0))
+            road = undefined;
+        else if (at == wheel)
+            road += factor * up;
+    };
+    for (const auto& load : model.static_loads)
+        if (!load.name.starts_with("gravity.")) add(load.kind, 1);
+    std::set<int> joints, elements;
+    for (const auto& driver : branch.drivers) {
+        if (const Load* load = driven_load(driver.what))
+            add(load->kind, driver.start + driver.rate * state.load);
+        else if (const int joint = driven_joint(driver.what); joint >= 0)
+            joints.insert(joint);
+        else if (const int element = driven_element(driver.what); element >= 0)
+            elements.insert(element);
+    }
+    for (const int k : joints)
+        if (wheel_on_jack(model, k) == wheel) {
+            const Channel effort{.name = "", .reads = Effort{k}};
+            road += evaluate(model, {&effort, 1}, state).front() / in_unit(effort.unit);
+        }
+    // the tyre pulls the wheel, its body j, back by s
+    for (const int k : elements)
+        if (wheel_on_tyre(model, k) == wheel) {
+            const auto e = static_cast<std::size_t>(k);
+            const ElasticKind& tyre = model.elastics[e].kind;
+            road -= stress(tyre, e, branch, state, deformation(tyre, e, branch, state)).z();
+        }
+    return road;
+}
+
+}  // namespace elastocheck::compare
